@@ -1,0 +1,34 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace gcpdda {
+
+/// A broken promise inside the program (exit code 1): never thrown for people's input.
+class InternalError : public std::logic_error {
+public:
+  using std::logic_error::logic_error;
+};
+
+/// Trouble with a file or folder (exit code 4).
+class FileError : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a function needs from its caller. Stays on in every build: it stands outside the inner loops.
+inline void expect(bool condition, const char *what) {
+  if (!condition) {
+    throw InternalError(std::string("expectation broken: ") + what);
+  }
+}
+
+/// What a function promises to leave behind.
+inline void ensure(bool condition, const char *what) {
+  if (!condition) {
+    throw InternalError(std::string("promise broken: ") + what);
+  }
+}
+
+} // namespace gcpdda

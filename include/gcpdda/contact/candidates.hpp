@@ -1,0 +1,68 @@
+#pragma once
+
+#include "gcpdda/base/ids.hpp"
+#include "gcpdda/model/block_system.hpp"
+#include "gcpdda/model/contact_history.hpp"
+#include "gcpdda/model/scene.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gcpdda {
+
+/// Two blocks that may touch before the next refresh, with what stays constant for the pair.
+struct CandidatePair {
+  BlockIndex lower;  ///< row of the block with the lower id
+  BlockIndex higher; ///< row of the block with the higher id
+  std::int32_t law = 0;
+  double half_stiffness = 0.0;       ///< p_n/H = k_n/2, Pa/m
+  double tangential_stiffness = 0.0; ///< per length of contact, Pa/m
+  double tan_friction = 0.0;
+  double cohesion = 0.0;        ///< Pa
+  double damping = 0.0;         ///< c'/2 of the normal dashpot, Pa s/m
+  double mass = 0.0;            ///< m_A m_B/(m_A + m_B), kg per metre
+  double allowed_overlap = 0.0; ///< half the narrowest width: deeper than this the force reverses, m
+};
+
+/// A candidate pair as one of its blocks sees it.
+struct BlockContact {
+  std::uint32_t pair = 0;
+  bool is_lower = false;
+};
+
+/// Which pairs may touch, as flat lists.
+struct Candidates {
+  std::vector<CandidatePair> pairs; ///< with at least one owned block, by (lower id, higher id)
+  /// Contacts of owned row i: block_contacts[contact_begin[i] .. contact_begin[i + 1]), by the other block's id.
+  std::vector<std::uint32_t> contact_begin;
+  std::vector<BlockContact> block_contacts;
+};
+
+/// What a pair's constants follow from.
+struct ContactParameters {
+  JointLaws joints;
+  double damping_ratio = 0.0; ///< xi
+  PotentialKind potential = PotentialKind::exact;
+};
+
+/// Box of every row at t_n; a mobile block's is inflated by half the skin.
+std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin);
+
+/// All pairs with at least one owned mobile block whose boxes meet, by a background grid, as (row, row) with the lower
+/// id first, sorted by ids.
+std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &system, std::span<const Aabb> boxes);
+
+/// The candidates of those pairs, and the memory of each taken from `memory` (any order, duplicates allowed).
+Candidates make_candidates(const BlockSystem &system, std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
+                           const ContactParameters &parameters, std::vector<RegionRecord> memory,
+                           ContactHistory &history);
+
+/// Largest normal stiffness (Pa/m) and tangential stiffness a block of this material can meet.
+struct StiffnessBound {
+  double normal = 0.0;
+  double tangential = 0.0;
+};
+StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material);
+
+} // namespace gcpdda

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "gcpdda/model/block_system.hpp"
+
+namespace gcpdda {
+
+/// Upper bound of the square of the largest contact frequency (1/s2) that one rigid block can take part in,
+///
+///     omega^2 <= 2 lambda_max(M^-1 K),   K = sum over its whole boundary of
+///                                            int (k_n b_n b_n^T + k_t b_t b_t^T) ds,
+///
+/// b_n = T^T n, b_t = T^T t the generalised forces of unit tractions. The factor 2 is the neighbour's share: a two-body
+/// spring satisfies K_pair <= 2 blockdiag(K). It holds before the first contact and for every later one.
+///
+/// @param normal_stiffness, tangential_stiffness  Pa/m
+double contact_frequency_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
+                               double tangential_stiffness);
+
+} // namespace gcpdda

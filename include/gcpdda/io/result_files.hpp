@@ -1,0 +1,160 @@
+#pragma once
+
+#include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gcpdda {
+
+/// One block's row of a frame, in plain data so that it can travel to the rank that writes its slab.
+struct FrameRow {
+  std::int64_t block = 0;
+  std::int32_t material = 0;
+  std::uint8_t kind = 0; ///< 0 fixed, 1 rigid, 2 deformable
+  std::int32_t num_vertices = 0;
+  Vec2 centroid;     ///< current, m; not written
+  Vec2 displacement;
+  double rotation = 0.0;
+  std::array<double, 3> velocity{};
+  std::array<double, 3> stress{};        ///< xx, yy, xy, Pa, tension positive
+  std::array<double, 3> contact_force{}; ///< N/m, N/m, N
+};
+
+/// Rows of this rank in any order; vertices are current positions, concatenated in the order of `rows`.
+struct FrameData {
+  std::vector<FrameRow> rows;
+  std::vector<Vec2> vertices;
+};
+
+/// One touching region: a line from `begin` to `end` (its extent along the contact).
+struct ContactRow {
+  std::int64_t lower = 0;
+  std::int64_t higher = 0;
+  std::int32_t position = 0; ///< order of the region within its pair
+  std::int32_t joint = 0;    ///< index of its law
+  std::uint8_t state = 0;    ///< 1 stick, 2 slip
+  Vec2 begin;
+  Vec2 end;
+  double normal_force = 0.0; ///< N/m
+  double shear_force = 0.0;
+  double overlap = 0.0; ///< m
+  double slip = 0.0;    ///< m, accumulated
+};
+
+/// Ids are cut into one contiguous slab per rank; a slab's owner writes its rows.
+/// First id of rank's slab, of num_blocks ids over num_ranks ranks; slab_begin(n, p, p) == n.
+std::int64_t slab_begin(std::int64_t num_blocks, int num_ranks, int rank);
+int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block);
+
+/// Writes frames/, run.hdf.series and run.xdmf of a result folder (interface.md, "Files in DIR").
+/// All members are collective. Files appear under their final name only when complete.
+class FrameWriter {
+public:
+  /// @param num_blocks  all blocks of the scene, fixed ones included
+  FrameWriter(const Communicator &communicator, std::filesystem::path directory, std::int64_t num_blocks);
+
+  /// Frame number `index` (0, 1, ...); every block is in exactly one rank's data.
+  void write(int index, double time, const FrameData &data);
+  /// The same for frames/contacts_<index>.hdf; every region is on exactly one rank.
+  void write_contacts(int index, double time, const std::vector<ContactRow> &rows);
+  /// False once HDF5 has broken a collective write into independent ones: slow, and worth a test.
+  [[nodiscard]] bool all_writes_collective() const { return all_writes_collective_; }
+
+private:
+  Communicator communicator_;
+  std::filesystem::path directory_;
+  std::int64_t num_blocks_;
+  std::int64_t num_points_ = 0; ///< vertices of all blocks; known from the first frame on
+  std::string topology_;        ///< name of the file that holds what never changes
+  bool all_writes_collective_ = true;
+  std::vector<std::pair<int, double>> frames_;
+};
+
+/// One row of history/<name>.csv of a block, without its time.
+struct BlockHistoryRow {
+  Vec2 position;
+  double rotation = 0.0;
+  std::array<double, 3> velocity{};
+  std::array<double, 3> stress{};
+  Vec2 contact_force;
+};
+
+/// Columns of history/energy.csv after the time.
+struct EnergyRow {
+  double kinetic = 0.0;
+  double strain = 0.0;
+  double contact_normal = 0.0;
+  double contact_stick = 0.0;
+  double gravity = 0.0;
+  double friction_loss = 0.0;
+  double damping_loss = 0.0;
+  double boundary_work = 0.0;
+  double residual = 0.0;
+  double unbalanced_ratio = 0.0;
+  double max_speed = 0.0;
+};
+
+/// Writes history/*.csv. Lives on the root rank only; no member is collective.
+class HistoryWriter {
+public:
+  HistoryWriter(std::filesystem::path directory, const std::vector<std::string> &block_monitors);
+  void write_block(std::size_t monitor, double time, const BlockHistoryRow &row);
+  void write_energy(double time, const EnergyRow &row);
+  /// What has been written is on its way to the disk; throws FileError when the disk is full.
+  void flush();
+
+private:
+  std::filesystem::path directory_;
+  std::vector<std::string> names_;
+  std::vector<std::string> pending_; ///< text not yet appended, per monitor; energy last
+};
+
+/// Everything summary.json holds (interface.md).
+struct RunSummary {
+  int ranks = 1;
+  std::int64_t blocks = 0;
+  std::int64_t fixed_blocks = 0;
+  std::int64_t steps = 0;
+  double time = 0.0;
+  double time_step = 0.0;
+  double time_step_min = 0.0;
+  std::int64_t contacts = 0;
+  std::int64_t contact_steps = 0;
+  std::vector<std::int64_t> evaluations_per_rank;
+  double wall_s = 0.0;
+  double cpu_s = 0.0;
+  double setup_wall_s = 0.0;
+  double output_wall_s = 0.0;
+  double total_wall_s = 0.0;
+  double max_overlap = 0.0;
+  EnergyRow energy;
+  double imbalance = 1.0;
+  double bytes_sent_per_step = 0.0;
+  double messages_per_step = 0.0;
+  /// name, {min, mean, max over ranks} in wall seconds
+  std::vector<std::pair<std::string, std::array<double, 3>>> phases;
+  /// name, count: extra facts a test or a person may want (migrations, refreshes, cross_rank_contacts, ...)
+  std::vector<std::pair<std::string, double>> counters;
+  std::string verdict;
+  std::string message;
+};
+
+/// Written to a temporary name and renamed. Root only.
+void write_summary(const std::filesystem::path &directory, const RunSummary &summary);
+
+/// Makes the folder of a run, root only. A folder that holds a run is refused with FileError unless `overwrite`,
+/// which removes only what a run writes. Writes scene.toml (the resolved text).
+void prepare_result_directory(const std::filesystem::path &directory, bool overwrite,
+                              const std::string &resolved_scene);
+
+/// Root only: decomposition/owners_<step>.csv, `block,rank` in BlockId order; anything that depends on ranks lives there.
+void write_owners(const std::filesystem::path &directory, std::int64_t step,
+                  const std::vector<std::int32_t> &owner_of_block);
+
+} // namespace gcpdda

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "gcpdda/base/diagnostic.hpp"
+#include "gcpdda/model/scene.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gcpdda {
+
+struct SceneReading {
+  Scene scene;             ///< complete only if the diagnostics hold no error
+  Diagnostics diagnostics; ///< every fault of the text, in file order
+};
+
+/// Read and validate one scene. Pure: no file is touched and no MPI call made, so that every rank that is given
+/// the same text gets the same answer.
+///
+/// @param text  the TOML text
+/// @param file  its name as the user gave it, for diagnostics and Scene::stem
+/// @param sets  "dotted.path=value" arguments, applied before validation
+SceneReading read_scene(std::string_view text, const std::string &file, const std::vector<std::string> &sets);
+
+} // namespace gcpdda

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace gcpdda {
+
+using Bytes = std::vector<std::byte>;
+
+/// Owner of one MPI communicator; the only way to messages outside parallel HDF5. Every return code is
+/// checked: a failed call throws InternalError. Calls are collective unless said otherwise.
+class Communicator {
+public:
+  /// A duplicate of MPI_COMM_WORLD. MPI must be initialised.
+  static Communicator world();
+  /// Of the calling rank alone.
+  static Communicator self();
+
+  [[nodiscard]] int rank() const { return rank_; }
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] bool is_root() const { return rank_ == 0; }
+
+  void barrier() const;
+  /// In place; largest of each entry over all ranks. NaN is not allowed.
+  void max(std::span<double> values) const;
+  void max(std::span<std::int64_t> values) const;
+  void sum(std::span<std::int64_t> values) const;
+  /// Root's bytes to everybody.
+  void broadcast(Bytes &bytes) const;
+  void broadcast(std::string &text) const;
+
+  /// One message to each rank (send[r] to rank r); received[r] came from rank r.
+  [[nodiscard]] std::vector<Bytes> all_to_all(const std::vector<Bytes> &send) const;
+  /// Everybody's bytes, by rank, on every rank.
+  [[nodiscard]] std::vector<Bytes> all_gather(const Bytes &mine) const;
+
+  template <class T>
+  [[nodiscard]] std::vector<std::vector<T>> all_to_all(const std::vector<std::vector<T>> &send) const {
+    std::vector<Bytes> raw(send.size());
+    for (std::size_t r = 0; r < send.size(); ++r) {
+      raw[r] = to_bytes(send[r]);
+    }
+    std::vector<std::vector<T>> received;
+    for (const Bytes &bytes : all_to_all(raw)) {
+      received.push_back(from_bytes<T>(bytes));
+    }
+    return received;
+  }
+  template <class T> [[nodiscard]] std::vector<std::vector<T>> all_gather(const std::vector<T> &mine) const {
+    std::vector<std::vector<T>> received;
+    for (const Bytes &bytes : all_gather(to_bytes(mine))) {
+      received.push_back(from_bytes<T>(bytes));
+    }
+    return received;
+  }
+
+  /// Point-to-point round with known partners: one message to and from each peer.
+  /// Lengths must match on both sides; no collective.
+  struct Message {
+    int peer;
+    std::span<std::byte> bytes;
+  };
+  void exchange(std::span<const Message> send, std::span<const Message> receive) const;
+
+  /// The MPI_Comm behind, for parallel HDF5 only: points to an MPI_Comm.
+  [[nodiscard]] const void *native() const;
+
+private:
+  struct Handle;
+  explicit Communicator(std::shared_ptr<Handle> handle);
+
+  template <class T> static Bytes to_bytes(const std::vector<T> &values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    Bytes bytes(values.size() * sizeof(T));
+    if (!bytes.empty()) {
+      std::memcpy(bytes.data(), values.data(), bytes.size());
+    }
+    return bytes;
+  }
+  template <class T> static std::vector<T> from_bytes(const Bytes &bytes) {
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!bytes.empty()) {
+      std::memcpy(values.data(), bytes.data(), bytes.size());
+    }
+    return values;
+  }
+
+  std::shared_ptr<Handle> handle_;
+  int rank_ = 0;
+  int size_ = 1;
+};
+
+/// MPI_Init and MPI_Finalize as a scope. An exception must be caught inside: one that leaves the scope ends
+/// all ranks with exit code 1, because the others may be waiting for this one.
+class MpiScope {
+public:
+  MpiScope(int &argc, char **&argv);
+  ~MpiScope();
+  MpiScope(const MpiScope &) = delete;
+  MpiScope &operator=(const MpiScope &) = delete;
+  /// Ends all ranks at once with this exit code; for faults that one rank alone has seen.
+  [[noreturn]] static void abort(int exit_code);
+};
+
+} // namespace gcpdda

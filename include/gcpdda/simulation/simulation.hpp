@@ -1,0 +1,142 @@
+#pragma once
+
+#include "gcpdda/base/phase_timer.hpp"
+#include "gcpdda/contact/contact_forces.hpp"
+#include "gcpdda/dynamics/scheme.hpp"
+#include "gcpdda/model/scene.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+#include "gcpdda/parallel/ghosts.hpp"
+#include "gcpdda/partition/domain_map.hpp"
+#include "gcpdda/simulation/time_plan.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+namespace gcpdda {
+
+/// A scene that cannot be run (exit code 3); what it says goes to people.
+class SceneError : public std::runtime_error {
+public:
+  explicit SceneError(Diagnostics diagnostics) : std::runtime_error("bad scene"), diagnostics_(std::move(diagnostics)) {}
+  [[nodiscard]] const Diagnostics &diagnostics() const { return diagnostics_; }
+
+private:
+  Diagnostics diagnostics_;
+};
+
+/// Counts of this rank since the start.
+struct Counters {
+  std::int64_t evaluations = 0;         ///< candidate pairs looked at closely
+  std::int64_t contact_steps = 0;       ///< touching pairs summed over steps; each pair on one rank only
+  std::int64_t cross_rank_contacts = 0; ///< largest number of touching pairs with a ghost in one step, each on one rank
+  std::int64_t normals_undefined = 0;
+  std::int64_t migrations = 0; ///< blocks that left this rank, the first distribution not counted
+  std::int64_t refreshes = 0;  ///< of the neighbourhood after the first
+  double max_overlap = 0.0;    ///< m
+};
+
+/// What limits the step.
+struct StepBound {
+  double omega_max = 0.0;      ///< rad/s, 0 where nothing can touch
+  double limit = 2.0;          ///< stable W of scheme and damping; 2 stands in where every W is unstable
+  bool always_unstable = false;
+  double time_step = 0.0;      ///< safety * limit / omega_max, s
+  double damping_ratio = 0.0;  ///< modal ratio the limit was computed with
+};
+
+/// One run in memory: the state of this rank's blocks and the step. Construction distributes the blocks and finds the
+/// consistent initial state; all public members are collective unless const.
+class Simulation {
+public:
+  /// @param scene  valid, the same on all ranks; its contact laws have stiffnesses
+  /// @throws SceneError when no step fits
+  Simulation(const Communicator &communicator, Scene scene);
+
+  /// Advance all blocks from t_n to t_{n+1}.
+  void step();
+
+  [[nodiscard]] bool finished() const { return step_count_ >= plan_.num_steps || fault_.has_value(); }
+  [[nodiscard]] double time() const { return plan_.time(step_count_); }
+  [[nodiscard]] std::int64_t step_count() const { return step_count_; }
+  /// Why the run cannot go on; the same on all ranks.
+  [[nodiscard]] const std::optional<Fault> &fault() const { return fault_; }
+
+  [[nodiscard]] const Communicator &communicator() const { return communicator_; }
+  [[nodiscard]] const Scene &scene() const { return scene_; }
+  [[nodiscard]] const BlockSystem &blocks() const { return blocks_; }
+  [[nodiscard]] const Candidates &candidates() const { return candidates_; }
+  [[nodiscard]] const ContactHistory &history() const { return history_; }
+  [[nodiscard]] const ContactForces &contacts() const { return contacts_; }
+  [[nodiscard]] const std::vector<RigidDof> &forces() const { return forces_; }
+  [[nodiscard]] const DomainMap &domain_map() const { return map_; }
+  [[nodiscard]] const PartitionReport &partition() const { return partition_; }
+  [[nodiscard]] const Ghosts &ghosts() const { return ghosts_; }
+  [[nodiscard]] const Scheme &scheme() const { return scheme_; }
+  [[nodiscard]] const TimePlan &plan() const { return plan_; }
+  [[nodiscard]] const StepBound &bound() const { return bound_; }
+  [[nodiscard]] const Counters &counters() const { return counters_; }
+  [[nodiscard]] const PhaseTimes &phases() const { return phases_; }
+  [[nodiscard]] PhaseTimes &phases() { return phases_; }
+  /// Warnings and remarks of the set-up, the same on all ranks.
+  [[nodiscard]] const Diagnostics &notes() const { return notes_; }
+  /// This rank writes what is known of the pair: one rank for each pair.
+  [[nodiscard]] bool counts_here(const CandidatePair &pair) const;
+  [[nodiscard]] std::int64_t num_blocks() const { return static_cast<std::int64_t>(scene_.blocks.size()); }
+
+  /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On return the
+  /// state is as before.
+  template <class Look> void look_ahead(Look &&look) {
+    if (stale_) {
+      refresh();
+    }
+    const std::vector<RigidDof> trial = blocks_.trial;
+    const std::vector<RigidDof> previous = blocks_.trial_previous;
+    predict_next();
+    look(blocks_);
+    blocks_.trial = trial;
+    blocks_.trial_previous = previous;
+    pose(blocks_, 0, blocks_.num_mobile());
+  }
+
+private:
+  void distribute();
+  void find_bound();
+  void find_initial_state();
+  void find_initial_friction();
+  void accelerate_owned();
+  void refresh();
+  void predict_next();
+  void evaluate_contacts();
+  void gather_forces();
+  void report();
+  void agree_on_fault();
+
+  Communicator communicator_;
+  Scene scene_;
+  BlockSystem blocks_;
+  DomainMap map_;
+  PartitionReport partition_;
+  Ghosts ghosts_;
+  Candidates candidates_;
+  ContactHistory history_;
+  ContactForces contacts_;
+  std::vector<RigidDof> forces_; ///< of owned rows at the last evaluation, loads included
+  Scheme scheme_;
+  StepBound bound_;
+  TimePlan plan_;
+  std::int64_t step_count_ = 0;
+  double thinnest_ = 0.0; ///< narrowest width of any block, m
+  double base_skin_ = 0.0;
+  double skin_ = 0.0;
+  bool stale_ = true;
+  ForceReport force_report_;
+  std::optional<Fault> local_fault_;
+  std::optional<Fault> fault_;
+  Counters counters_;
+  PhaseTimes phases_;
+  Diagnostics notes_;
+};
+
+} // namespace gcpdda

@@ -1,0 +1,49 @@
+#include "gcpdda/partition/domain_map.hpp"
+
+#include "gcpdda/base/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gcpdda {
+
+namespace {
+
+std::int32_t cells_along(double length, double cell_size) {
+  // A length that is a whole number of cells up to rounding gets no extra sliver; points beyond belong to the
+  // border cell anyway.
+  return std::max(1, static_cast<std::int32_t>(std::ceil(length / cell_size * (1.0 - 1e-12))));
+}
+
+std::int64_t clamped(double place, std::int32_t count) {
+  if (!(place >= 0.0)) { // NaN too
+    return 0;
+  }
+  return place < count ? static_cast<std::int64_t>(place) : count - 1;
+}
+
+} // namespace
+
+CellGrid CellGrid::over(const Aabb &region, std::int64_t num_cells) {
+  expect(num_cells >= 1 && num_cells <= max_background_cells, "background cells: 1 to 2^27");
+  if (region.empty()) {
+    return {};
+  }
+  const Vec2 extent = region.extent();
+  expect(std::isfinite(extent.x) && std::isfinite(extent.y), "background cells: finite region");
+  const auto n = static_cast<double>(num_cells);
+  // Square cells of equal share; a strip thinner than those gets one row of cells.
+  const double size =
+      std::max(std::sqrt(extent.x / n) * std::sqrt(extent.y), std::max(extent.x, extent.y) / n);
+  if (!(size > 0.0)) {
+    return {.origin = region.low};
+  }
+  return {region.low, size, cells_along(extent.x, size), cells_along(extent.y, size)};
+}
+
+std::int64_t CellGrid::cell_of(Vec2 point) const {
+  const Vec2 place = (1.0 / cell_size) * (point - origin);
+  return clamped(place.y, rows) * columns + clamped(place.x, columns);
+}
+
+} // namespace gcpdda

@@ -1,0 +1,229 @@
+#!/usr/bin/python3
+"""Pictures and animations of a run: blocks filled and coloured by a field.
+
+    run/plot.py results/wall --frame last --field displacement --out wall.png
+    run/plot.py results/wall --frame 0,last --field stress --out before_after.png
+    run/plot.py results/wall --frame all --field velocity --out wall.gif
+
+Fixed blocks are grey and hatched. Panels and pictures of one call share axes and colour scale.
+"""
+
+import argparse
+import pathlib
+import sys
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.animation
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.patches import Patch
+
+EDGE = "#20242a"
+FIXED_FACE, FIXED_HATCH = "#d4d4d4", "#8c8c8c"
+KINDS = {1: ("rigid", "#7fa8c9"), 2: ("deformable", "#e0a15a")}
+
+
+def largest_compression(data):
+    """Minus the smaller principal value of the mean Cauchy stress (tension positive)."""
+    xx, yy, xy = data["stress"][:].T
+    return np.hypot(0.5 * (xx - yy), xy) - 0.5 * (xx + yy)
+
+
+# name: (values of a CellData group, label, unit, signed)
+FIELDS = {
+    "displacement": (lambda d: np.hypot(*d["displacement"][:, :2].T), "displacement", "m", False),
+    "velocity": (lambda d: np.hypot(*d["velocity"][:, :2].T), "speed", "m/s", False),
+    "rotation": (lambda d: np.degrees(d["rotation"][:]), "rotation, counter-clockwise", "°", True),
+    "contact_force": (lambda d: np.hypot(*d["contact_force"][:, :2].T), "resultant of contact forces", "N/m", False),
+    "stress": (largest_compression, "largest compressive stress", "Pa", False),
+    "kind": (lambda d: d["kind"][:], "", "", False),
+}
+
+
+class Frame:
+    def __init__(self, path, field):
+        with h5py.File(path) as file:
+            grid = file["VTKHDF"]
+            self.time = float(grid.attrs["time"])
+            self.points = grid["Points"][:, :2]
+            self.offsets = grid["Offsets"][:]
+            self.fixed = grid["CellData/kind"][:] == 0
+            self.values = FIELDS[field][0](grid["CellData"])
+
+    def polygons(self, of_blocks):
+        return [self.points[self.offsets[b] : self.offsets[b + 1]] for b in np.flatnonzero(of_blocks)]
+
+
+def chosen_frames(directory, words):
+    """Paths of the frames that `0,last` or `all` name."""
+    paths = sorted((directory / "frames").glob("frame_*.hdf"))
+    if not paths:
+        sys.exit(f"plot.py: no frames in {directory}")
+    by_number = {int(path.stem.split("_")[1]): path for path in paths}
+    chosen = []
+    for word in words.split(","):
+        if word == "all":
+            chosen += paths
+        elif word in ("first", "last"):
+            chosen.append(paths[0 if word == "first" else -1])
+        elif word.isdigit() and int(word) in by_number:
+            chosen.append(by_number[int(word)])
+        else:
+            sys.exit(f"plot.py: no frame {word}: there are {min(by_number)} to {max(by_number)}, first, last, all")
+    return chosen
+
+
+def view(frames):
+    """Limits of the axes: the mobile blocks of all frames, and of the fixed ones what lies around them."""
+    def box(of_fixed):
+        points = [f.points[np.repeat(f.fixed, np.diff(f.offsets)) == of_fixed] for f in frames]
+        points = np.concatenate(points)
+        return (points.min(axis=0), points.max(axis=0)) if len(points) else None
+
+    mobile, fixed = box(False), box(True)
+    low, high = mobile or fixed
+    extent = (high - low).max()
+    low, high = low - 0.03 * extent, high + 0.03 * extent
+    if mobile and fixed:
+        low = np.maximum(np.minimum(low, fixed[0] - 0.01 * extent), low - 0.12 * extent)
+        high = np.minimum(np.maximum(high, fixed[1] + 0.01 * extent), high + 0.12 * extent)
+    return low, high
+
+
+def unit_prefix(unit, largest):
+    """Factor and unit that keep the numbers of a colour bar short."""
+    if unit == "°" or largest == 0.0:
+        return 1.0, unit
+    for factor, prefix in ((1e-9, "G"), (1e-6, "M"), (1e-3, "k"), (1.0, ""), (1e3, "m"), (1e6, "µ")):
+        if prefix in "GMk" and prefix and unit.startswith("m"):
+            continue  # no kilometres
+        if largest * factor >= 0.999:
+            return factor, prefix + unit
+    return 1e9, "n" + unit
+
+
+class Colours:
+    """Colour of each block, one scale for all frames."""
+
+    def __init__(self, field, frames):
+        _, self.label, unit, signed = FIELDS[field]
+        self.by_kind = field == "kind"
+        mobile = np.concatenate([f.values[~f.fixed] for f in frames])
+        largest = float(np.abs(mobile).max()) if len(mobile) else 0.0
+        self.factor, self.unit = unit_prefix(unit, largest)
+        top = largest * self.factor or 1.0
+        # Stress alone may change sign without being `signed`: some blocks are in tension.
+        bottom = -top if signed else min(0.0, float(mobile.min(initial=0.0)) * self.factor)
+        self.scale = ScalarMappable(Normalize(bottom, top), "RdBu_r" if signed else "viridis")
+
+    def of(self, frame):
+        values = frame.values[~frame.fixed]
+        if self.by_kind:
+            return [KINDS.get(int(kind), KINDS[1])[1] for kind in values]
+        return self.scale.to_rgba(values * self.factor)
+
+    def explain(self, figure, axes, frames):
+        if not self.by_kind:
+            bar = figure.colorbar(self.scale, ax=axes, shrink=0.85, aspect=28 * axes[0].get_gridspec().nrows, pad=0.02)
+            bar.set_label(f"{self.label} ({self.unit})")
+            bar.outline.set_linewidth(0.5)
+            return
+        present = set(np.unique(np.concatenate([f.values for f in frames])).tolist())
+        patches = [Patch(fc=colour, ec=EDGE, lw=0.5, label=name) for k, (name, colour) in KINDS.items() if k in present]
+        if 0 in present:
+            patches.append(Patch(fc=FIXED_FACE, ec=FIXED_HATCH, hatch="////", lw=0.5, label="fixed"))
+        figure.legend(handles=patches, loc="lower center", ncol=3, frameon=False)
+
+
+def draw(axes, frame, colours, reference):
+    width = float(np.clip(6.0 / np.sqrt(max(len(frame.fixed), 1)), 0.08, 0.6))
+    with plt.rc_context({"hatch.linewidth": 0.5}):
+        axes.add_collection(PolyCollection(frame.polygons(frame.fixed), facecolors=FIXED_FACE,
+                                           edgecolors=FIXED_HATCH, hatch="////", linewidths=width))
+        axes.add_collection(PolyCollection(frame.polygons(~frame.fixed), facecolors=colours.of(frame),
+                                           edgecolors=EDGE, linewidths=width))
+        if reference is not None:
+            axes.add_collection(PolyCollection(reference.polygons(~reference.fixed), facecolors="none",
+                                               edgecolors="#b0332a", linewidths=1.2 * width, linestyles=(0, (4, 3))))
+
+
+def grid_shape(number, size):
+    """Rows and columns of panels: wide scenes one below the other, others side by side."""
+    columns = 1 if size[0] > 1.8 * size[1] else min(number, 3)
+    return -(-number // columns), columns
+
+
+def new_figure(frames, number, colours, title):
+    low, high = view(frames)
+    rows, columns = grid_shape(number, high - low)
+    ratio = float(np.clip((high - low)[1] / (high - low)[0], 0.2, 2.5))
+    panel = min(6.4 if columns == 1 else 4.2, 7.0 / ratio / (1 if columns == 1 else 1.3))
+    panel = max(panel, 3.0)
+    size = (columns * panel + 1.7, rows * (panel * ratio + 0.7) + (0.35 if title else 0.0) + (0.4 if colours.by_kind else 0.0))
+    figure, axes = plt.subplots(rows, columns, squeeze=False, figsize=size, sharex=True, sharey=True)
+    figure.set_layout_engine("constrained", rect=(0, 0.4 / size[1], 1, 1 - 0.4 / size[1]) if colours.by_kind else (0, 0, 1, 1))
+    if title:
+        figure.suptitle(title, fontsize=11)
+    for i, panel_axes in enumerate(axes.flat):
+        panel_axes.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]), visible=i < number)
+        below = i + columns >= number
+        panel_axes.tick_params(labelbottom=below)
+        panel_axes.set_xlabel("x (m)" if below else "")
+        panel_axes.set_ylabel("y (m)" if i % columns == 0 else "")
+    colours.explain(figure, list(axes.flat), frames)
+    return figure, list(axes.flat)[:number]
+
+
+def save_picture(frames, colours, arguments, reference):
+    figure, panels = new_figure(frames, len(frames), colours, arguments.title)
+    for axes, frame in zip(panels, frames):
+        draw(axes, frame, colours, reference)
+        axes.set_title(f"t = {frame.time:.4g} s", fontsize=9)
+    figure.savefig(arguments.out, dpi=arguments.dpi, bbox_inches="tight", pad_inches=0.06)
+
+
+def save_movie(frames, colours, arguments, reference):
+    figure, (axes,) = new_figure(frames, 1, colours, arguments.title)
+
+    def show(frame):
+        for old in list(axes.collections):
+            old.remove()
+        draw(axes, frame, colours, reference)
+        axes.set_title(f"t = {frame.time:.3f} s", fontsize=9)
+
+    movie = matplotlib.animation.FuncAnimation(figure, show, frames=frames, init_func=lambda: None)
+    movie.save(arguments.out, writer=matplotlib.animation.PillowWriter(fps=arguments.fps), dpi=min(arguments.dpi, 110))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("directory", type=pathlib.Path, metavar="DIR", help="result folder of a run")
+    parser.add_argument("--frame", default="last", help="N, first, last, all, or several: 0,last (default: last)")
+    parser.add_argument("--field", choices=FIELDS, default="displacement")
+    parser.add_argument("--out", required=True, type=pathlib.Path, help="FILE.png, .pdf, .svg; FILE.gif is animated")
+    parser.add_argument("--scale", type=float, default=1.0, help="draw the motion since the first frame so many times")
+    parser.add_argument("--compare", choices=["first"], help="outline the blocks as they were in the first frame")
+    parser.add_argument("--title")
+    parser.add_argument("--dpi", type=float, default=160)
+    parser.add_argument("--fps", type=float, default=12)
+    arguments = parser.parse_args()
+
+    plt.rcParams.update({"font.size": 9, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6,
+                         "axes.spines.top": False, "axes.spines.right": False})
+    frames = [Frame(path, arguments.field) for path in chosen_frames(arguments.directory, arguments.frame)]
+    first = Frame(chosen_frames(arguments.directory, "first")[0], arguments.field)
+    for frame in frames:
+        frame.points = first.points + arguments.scale * (frame.points - first.points)
+    colours = Colours(arguments.field, frames)
+    save = save_movie if arguments.out.suffix == ".gif" else save_picture
+    save(frames, colours, arguments, first if arguments.compare else None)
+
+
+if __name__ == "__main__":
+    main()

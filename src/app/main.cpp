@@ -1,0 +1,144 @@
+// The command line: sub-commands, the MPI scope, exceptions to exit codes.
+
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/io/scene_reader.hpp"
+#include "gcpdda/model/stiffness.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+#include "gcpdda/simulation/run.hpp"
+#include "gcpdda/simulation/simulation.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+namespace {
+
+using namespace gcpdda;
+
+enum ExitCode { done = 0, internal = 1, usage = 2, bad_scene = 3, file_trouble = 4 };
+
+struct Arguments {
+  std::string scene;
+  std::string directory;
+  std::vector<std::string> sets;
+  bool overwrite = false;
+};
+
+void print(const Communicator &world, const Diagnostics &diagnostics) {
+  if (world.is_root()) {
+    for (const Diagnostic &d : diagnostics) {
+      std::cerr << to_string(d) << '\n';
+    }
+  }
+}
+
+/// Number of processes the launcher of this very step announced; 1 without one.
+int announced_ranks() {
+  for (const char *name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
+    if (const char *value = std::getenv(name)) {
+      if (const int ranks = std::atoi(value); ranks > 1) {
+        return ranks;
+      }
+    }
+  }
+  return 1;
+}
+
+std::string read_on_root(const Communicator &world, const std::string &path) {
+  std::string text;
+  std::string trouble;
+  if (world.is_root()) {
+    std::error_code ignored;
+    std::ifstream file(path, std::ios::binary);
+    if (!file || std::filesystem::is_directory(path, ignored)) {
+      trouble = path + ": error: cannot open the scene, no such file or no right to read it, check the path";
+    } else {
+      std::ostringstream content;
+      content << file.rdbuf();
+      text = content.str();
+    }
+  }
+  world.broadcast(trouble);
+  if (!trouble.empty()) {
+    throw FileError(trouble);
+  }
+  world.broadcast(text);
+  return text;
+}
+
+int run(const Communicator &world, const Arguments &arguments) {
+  SceneReading reading = read_scene(read_on_root(world, arguments.scene), arguments.scene, arguments.sets);
+  if (!has_errors(reading.diagnostics)) {
+    resolve_stiffness(reading.scene);
+    const Diagnostics overlaps = check_initial_overlaps(reading.scene);
+    reading.diagnostics.insert(reading.diagnostics.end(), overlaps.begin(), overlaps.end());
+  }
+  print(world, reading.diagnostics);
+  if (has_errors(reading.diagnostics)) {
+    return bad_scene;
+  }
+  RunOptions options;
+  options.directory = arguments.directory.empty() ? std::filesystem::path("results") / reading.scene.stem
+                                                  : std::filesystem::path(arguments.directory);
+  options.overwrite = arguments.overwrite;
+  try {
+    return run_scene(world, reading.scene, options);
+  } catch (const SceneError &error) {
+    Diagnostics diagnostics = error.diagnostics();
+    for (Diagnostic &d : diagnostics) {
+      d.where.file = arguments.scene;
+    }
+    print(world, diagnostics);
+    return bad_scene;
+  }
+}
+
+int dispatch(const Communicator &world, int argc, char **argv) {
+  CLI::App app("gcpdda: block-by-block simulation of jointed rock slopes and tunnels");
+  app.require_subcommand(1);
+  Arguments arguments;
+  CLI::App *run_command = app.add_subcommand("run", "run a scene");
+  run_command->add_option("SCENE", arguments.scene, "scene file (TOML)")->required();
+  run_command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>");
+  run_command->add_option("--set", arguments.sets, "path=value: replace a value of the scene; repeatable")
+      ->allow_extra_args(false);
+  run_command->add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the result folder");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError &error) {
+    // One voice; --help is no fault.
+    const int code = world.is_root() ? app.exit(error) : error.get_exit_code();
+    return code == 0 ? done : usage;
+  }
+  return run(world, arguments);
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  const MpiScope mpi(argc, argv);
+  const Communicator world = Communicator::world();
+  if (world.size() == 1 && announced_ranks() > 1) {
+    std::cerr << "error: the launcher started " << announced_ranks()
+              << " processes but MPI connects only one, they would run as separate copies of the same scene, start gcpdda "
+                 "with the mpirun of the Open MPI it was built with\n";
+    return usage;
+  }
+  try {
+    return dispatch(world, argc, argv);
+  } catch (const FileError &error) { // agreed on by all ranks where it is thrown
+    if (world.is_root()) {
+      std::cerr << error.what() << '\n';
+    }
+    return file_trouble;
+  } catch (const std::exception &error) { // seen by this rank alone, perhaps: take the others along
+    std::cerr << "internal error on rank " << world.rank() << ": " << error.what() << '\n';
+    if (world.size() > 1) {
+      MpiScope::abort(internal);
+    }
+    return internal;
+  }
+}

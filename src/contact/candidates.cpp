@@ -1,0 +1,205 @@
+#include "gcpdda/contact/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gcpdda {
+
+namespace {
+
+/// Background grid over the boxes of the mobile blocks.
+struct SearchGrid {
+  Aabb region;
+  double cell = 1.0;
+  std::int64_t columns = 1;
+  std::int64_t rows = 1;
+
+  [[nodiscard]] std::int64_t column(double x) const {
+    return std::clamp(static_cast<std::int64_t>((x - region.low.x) / cell), std::int64_t{0}, columns - 1);
+  }
+  [[nodiscard]] std::int64_t row(double y) const {
+    return std::clamp(static_cast<std::int64_t>((y - region.low.y) / cell), std::int64_t{0}, rows - 1);
+  }
+  /// Visit the cells that a box covers inside the region.
+  template <class Visit> void cover(const Aabb &box, Visit &&visit) const {
+    if (!box.meets(region)) {
+      return;
+    }
+    for (std::int64_t j = row(box.low.y); j <= row(box.high.y); ++j) {
+      for (std::int64_t i = column(box.low.x); i <= column(box.high.x); ++i) {
+        visit(static_cast<std::size_t>(j * columns + i));
+      }
+    }
+  }
+};
+
+SearchGrid make_grid(std::span<const Aabb> boxes, std::size_t num_mobile) {
+  SearchGrid grid;
+  double extent = 0.0;
+  for (const Aabb &box : boxes.first(num_mobile)) {
+    grid.region.include(box);
+    extent += std::max(box.extent().x, box.extent().y);
+  }
+  const double count = static_cast<double>(num_mobile);
+  const Vec2 size = grid.region.extent();
+  // About one mean block a cell, but never more cells than a few per block: stray blocks may be far apart.
+  grid.cell = std::max(extent / count, std::sqrt(size.x * size.y / (4.0 * count)));
+  grid.cell = std::max(grid.cell, std::max(size.x, size.y) / (4.0 * count));
+  grid.columns = static_cast<std::int64_t>(size.x / grid.cell) + 1;
+  grid.rows = static_cast<std::int64_t>(size.y / grid.cell) + 1;
+  return grid;
+}
+
+/// Rows by cell, compressed.
+struct CellLists {
+  std::vector<std::uint32_t> begin;
+  std::vector<std::uint32_t> rows;
+};
+
+CellLists fill_cells(const SearchGrid &grid, std::span<const Aabb> boxes) {
+  CellLists cells;
+  cells.begin.assign(static_cast<std::size_t>(grid.columns * grid.rows) + 1, 0);
+  for (const Aabb &box : boxes) {
+    grid.cover(box, [&](std::size_t cell) { ++cells.begin[cell + 1]; });
+  }
+  for (std::size_t c = 1; c < cells.begin.size(); ++c) {
+    cells.begin[c] += cells.begin[c - 1];
+  }
+  cells.rows.resize(cells.begin.back());
+  std::vector<std::uint32_t> next(cells.begin.begin(), cells.begin.end() - 1);
+  for (std::size_t row = 0; row < boxes.size(); ++row) {
+    grid.cover(boxes[row], [&](std::size_t cell) { cells.rows[next[cell]++] = static_cast<std::uint32_t>(row); });
+  }
+  return cells;
+}
+
+CandidatePair make_pair(const BlockSystem &system, BlockIndex lower, BlockIndex higher,
+                        const ContactParameters &parameters) {
+  const BlockProperties &a = system.properties[lower.value];
+  const BlockProperties &b = system.properties[higher.value];
+  CandidatePair pair;
+  pair.lower = lower;
+  pair.higher = higher;
+  pair.law = parameters.joints.between(a.material, b.material);
+  const JointLaw &law = parameters.joints.laws[static_cast<std::size_t>(pair.law)];
+  pair.half_stiffness = 0.5 * law.normal_stiffness;
+  pair.tangential_stiffness = law.tangential_ratio * law.normal_stiffness;
+  pair.tan_friction = law.tan_friction;
+  pair.cohesion = law.cohesion;
+  // A fixed block counts as infinitely heavy and sets no length.
+  const bool a_fixed = a.kind == BlockKind::fixed;
+  const bool b_fixed = b.kind == BlockKind::fixed;
+  pair.mass = a_fixed ? b.mass : b_fixed ? a.mass : a.mass * b.mass / (a.mass + b.mass);
+  const double smaller_area = a_fixed ? b.area : b_fixed ? a.area : std::min(a.area, b.area);
+  // c' = 2 xi sqrt(k_n m_eff / L_ref), half of it for each side's pieces.
+  pair.damping =
+      parameters.damping_ratio * std::sqrt(law.normal_stiffness * pair.mass / std::sqrt(smaller_area));
+  pair.allowed_overlap = 0.5 * std::min(a.width, b.width);
+  return pair;
+}
+
+} // namespace
+
+std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin) {
+  std::vector<Aabb> boxes(system.num_rows());
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    const std::vector<Vec2> vertices = current_vertices(system, row);
+    boxes[row] = bounding_box(vertices).inflated(system.is_fixed(row) ? 0.0 : 0.5 * skin);
+  }
+  return boxes;
+}
+
+std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &system,
+                                                          std::span<const Aabb> boxes) {
+  std::vector<std::pair<BlockIndex, BlockIndex>> pairs;
+  if (system.num_owned == 0) {
+    return pairs;
+  }
+  const SearchGrid grid = make_grid(boxes, system.num_mobile());
+  const CellLists cells = fill_cells(grid, boxes);
+  for (std::size_t cell = 0; cell + 1 < cells.begin.size(); ++cell) {
+    for (std::uint32_t i = cells.begin[cell]; i < cells.begin[cell + 1]; ++i) {
+      const std::uint32_t p = cells.rows[i];
+      if (p >= system.num_owned) {
+        break; // rows ascend within a cell: no owned block follows
+      }
+      for (std::uint32_t j = i + 1; j < cells.begin[cell + 1]; ++j) {
+        const std::uint32_t q = cells.rows[j];
+        if (!boxes[p].meets(boxes[q])) {
+          continue;
+        }
+        // Several cells may hold the pair: the one with the lower left corner of the common box counts.
+        const Vec2 corner{std::max(boxes[p].low.x, boxes[q].low.x), std::max(boxes[p].low.y, boxes[q].low.y)};
+        if (static_cast<std::size_t>(grid.row(corner.y) * grid.columns + grid.column(corner.x)) != cell) {
+          continue;
+        }
+        const bool ordered = system.properties[p].id < system.properties[q].id;
+        pairs.emplace_back(BlockIndex{ordered ? p : q}, BlockIndex{ordered ? q : p});
+      }
+    }
+  }
+  const auto key = [&](const std::pair<BlockIndex, BlockIndex> &pair) {
+    return std::pair(system.properties[pair.first.value].id, system.properties[pair.second.value].id);
+  };
+  std::sort(pairs.begin(), pairs.end(), [&](const auto &a, const auto &b) { return key(a) < key(b); });
+  return pairs;
+}
+
+Candidates make_candidates(const BlockSystem &system, std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
+                           const ContactParameters &parameters, std::vector<RegionRecord> memory,
+                           ContactHistory &history) {
+  Candidates candidates;
+  candidates.pairs.reserve(pairs.size());
+  const auto record_key = [](const RegionRecord &r) { return std::pair(r.lower, r.higher); };
+  std::sort(memory.begin(), memory.end(),
+            [&](const RegionRecord &a, const RegionRecord &b) { return record_key(a) < record_key(b); });
+  history.regions.assign(pairs.size(), {});
+  auto record = memory.begin();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [lower, higher] = pairs[k];
+    candidates.pairs.push_back(make_pair(system, lower, higher, parameters));
+    const std::pair key(system.properties[lower.value].id, system.properties[higher.value].id);
+    while (record != memory.end() && record_key(*record) < key) {
+      ++record;
+    }
+    if (record != memory.end() && record_key(*record) == key) {
+      history.regions[k] = record->memory;
+    }
+  }
+
+  candidates.contact_begin.assign(system.num_owned + 1, 0);
+  const auto for_owned_ends = [&](auto &&visit) {
+    for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
+      const auto pair = static_cast<std::uint32_t>(k);
+      if (candidates.pairs[k].higher.value < system.num_owned) {
+        visit(candidates.pairs[k].higher.value, BlockContact{pair, false});
+      }
+      if (candidates.pairs[k].lower.value < system.num_owned) {
+        visit(candidates.pairs[k].lower.value, BlockContact{pair, true});
+      }
+    }
+  };
+  for_owned_ends([&](std::uint32_t row, BlockContact) { ++candidates.contact_begin[row + 1]; });
+  for (std::size_t i = 0; i < system.num_owned; ++i) {
+    candidates.contact_begin[i + 1] += candidates.contact_begin[i];
+  }
+  // Pairs ascend by (lower, higher): a block meets all lower partners, by id, before all higher ones, by id.
+  candidates.block_contacts.resize(candidates.contact_begin.back());
+  std::vector<std::uint32_t> next(candidates.contact_begin.begin(), candidates.contact_begin.end() - 1);
+  for_owned_ends([&](std::uint32_t row, BlockContact contact) { candidates.block_contacts[next[row]++] = contact; });
+  return candidates;
+}
+
+StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material) {
+  StiffnessBound bound;
+  for (std::int32_t other = 0; other < joints.num_materials; ++other) {
+    const JointLaw &law = joints.laws[static_cast<std::size_t>(joints.between(material, other))];
+    bound.normal = std::max(bound.normal, law.normal_stiffness);
+    if (law.has_friction()) {
+      bound.tangential = std::max(bound.tangential, law.tangential_ratio * law.normal_stiffness);
+    }
+  }
+  return bound;
+}
+
+} // namespace gcpdda

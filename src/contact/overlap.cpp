@@ -1,0 +1,237 @@
+#include "gcpdda/contact/overlap.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+/// The stretch of an edge inside the other block and the line on which the envelope starts there.
+struct Inside {
+  double begin = 0.0;
+  double end = 0.0;
+  std::size_t entry = none; ///< line that lets the edge in; none if the edge starts inside
+  bool leaves = false;      ///< the stretch ends before the edge does
+};
+
+/// Where all lines alpha + beta s are positive on [0, length]; an empty stretch has begin >= end.
+Inside positive_stretch(std::span<const double> alpha, std::span<const double> beta, double length) {
+  Inside in{0.0, length, none, false};
+  for (std::size_t j = 0; j < alpha.size(); ++j) {
+    if (beta[j] > 0.0) {
+      const double root = -alpha[j] / beta[j];
+      if (root > in.begin || (root == in.begin && in.entry != none && beta[j] < beta[in.entry])) {
+        in.begin = root;
+        in.entry = j;
+      }
+    } else if (beta[j] < 0.0) {
+      const double root = -alpha[j] / beta[j];
+      if (root < in.end) {
+        in.end = root;
+        in.leaves = true;
+      }
+    } else if (alpha[j] <= 0.0) {
+      in.end = 0.0;
+    }
+    if (in.begin >= in.end) {
+      break;
+    }
+  }
+  return in;
+}
+
+std::size_t lowest_at_start(std::span<const double> alpha, std::span<const double> beta) {
+  std::size_t lowest = 0;
+  for (std::size_t j = 1; j < alpha.size(); ++j) {
+    if (alpha[j] < alpha[lowest] || (alpha[j] == alpha[lowest] && beta[j] < beta[lowest])) {
+      lowest = j;
+    }
+  }
+  return lowest;
+}
+
+} // namespace
+
+void Overlap::clip_edges(const ConvexView &own, const ConvexView &other, PotentialKind potential) {
+  const std::size_t num_lines = other.vertex.size();
+  const std::size_t first_piece = pieces_.size();
+  alpha_.resize(num_lines);
+  beta_.resize(num_lines);
+  for (std::size_t e = 0; e < own.vertex.size(); ++e) {
+    const Vec2 a = own.vertex[e];
+    const Vec2 b = own.vertex[e + 1 == own.vertex.size() ? 0 : e + 1];
+    const Aabb edge_box{{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
+    if (!edge_box.meets(other.box)) {
+      continue;
+    }
+    const Vec2 tangent = perp(own.normal[e]);
+    for (std::size_t j = 0; j < num_lines; ++j) {
+      alpha_[j] = dot(other.normal[j], other.vertex[j] - a);
+      beta_[j] = -dot(other.normal[j], tangent);
+    }
+    const Inside in = positive_stretch(alpha_, beta_, own.length[e]);
+    if (in.begin >= in.end) {
+      continue;
+    }
+    std::size_t line = in.entry != none ? in.entry : lowest_at_start(alpha_, beta_);
+    const Piece start{a + in.begin * tangent, own.normal[e], 0.0, in.entry != none ? 0.0 : alpha_[line], 0.0,
+                      in.entry != none};
+    if (potential == PotentialKind::linear) {
+      pieces_.push_back(chord(start, in.begin, in.end, in.leaves));
+    } else {
+      walk_envelope(start, line, in.begin, in.end);
+    }
+  }
+  start_at_entry(first_piece);
+}
+
+Piece Overlap::chord(Piece piece, double s_begin, double s_end, bool leaves) const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < alpha_.size(); ++j) {
+    lowest = std::min(lowest, alpha_[j] + beta_[j] * s_end);
+  }
+  piece.length = s_end - s_begin;
+  piece.depth_end = leaves ? 0.0 : std::max(0.0, lowest);
+  return piece;
+}
+
+void Overlap::walk_envelope(Piece piece, std::size_t line, double s, double s_end) {
+  while (true) {
+    std::size_t next = none;
+    double s_next = s_end;
+    for (std::size_t j = 0; j < alpha_.size(); ++j) {
+      if (beta_[j] < beta_[line]) {
+        const double crossing = (alpha_[j] - alpha_[line]) / (beta_[line] - beta_[j]);
+        if (crossing < s_next || (crossing == s_next && next != none && beta_[j] < beta_[next])) {
+          s_next = crossing;
+          next = j;
+        }
+      }
+    }
+    if (s_next > s) {
+      piece.length = s_next - s;
+      piece.depth_end = std::max(0.0, alpha_[line] + beta_[line] * s_next);
+      pieces_.push_back(piece);
+      piece = {piece.end(), piece.normal, 0.0, piece.depth_end, 0.0, false};
+      s = s_next;
+    }
+    if (next == none) {
+      return;
+    }
+    line = next;
+  }
+}
+
+void Overlap::start_at_entry(std::size_t first_piece) {
+  // Sum from where the boundary comes in, the lowest leftmost such place if there are several: a choice that cutting
+  // or renumbering the block elsewhere cannot change.
+  const auto begin = pieces_.begin() + static_cast<std::ptrdiff_t>(first_piece);
+  const auto start = std::min_element(begin, pieces_.end(), [](const Piece &p, const Piece &q) {
+    if (p.enters != q.enters) {
+      return p.enters;
+    }
+    return p.begin.x != q.begin.x ? p.begin.x < q.begin.x : p.begin.y < q.begin.y;
+  });
+  std::rotate(begin, start, pieces_.end());
+}
+
+bool Overlap::find(const ConvexView &first, const ConvexView &second, PotentialKind potential) {
+  pieces_.clear();
+  clip_edges(first, second, potential);
+  num_first_ = pieces_.size();
+  clip_edges(second, first, potential);
+  return !pieces_.empty();
+}
+
+RegionIntegrals Overlap::integrate() const {
+  RegionIntegrals sum;
+  sum.origin = pieces_.front().begin;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const Piece &piece = pieces_[i];
+    const double length = piece.length;
+    const double total = 0.5 * length * (piece.depth_begin + piece.depth_end);
+    const double along = length * length * (piece.depth_begin + 2.0 * piece.depth_end) / 6.0;
+    const Vec2 moment = total * (piece.begin - sum.origin) + along * perp(piece.normal);
+    const Vec2 direction = i < num_first_ ? -piece.normal : piece.normal;
+    sum.force += total * direction;
+    sum.dyad[0] += moment.x * direction.x;
+    sum.dyad[1] += moment.x * direction.y;
+    sum.dyad[2] += moment.y * direction.x;
+    sum.dyad[3] += moment.y * direction.y;
+    sum.pressure += total;
+    sum.pressure_moment += moment;
+  }
+  return sum;
+}
+
+namespace {
+
+using Polygon = std::vector<Vec2>;
+
+/// The part of a convex polygon where distance(x) >= 0 for a linear function given by its values at the vertices.
+template <class Distance> Polygon keep_positive(const Polygon &polygon, const Distance &distance) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 a = polygon[i];
+    const Vec2 b = polygon[(i + 1) % polygon.size()];
+    const double da = distance(a);
+    const double db = distance(b);
+    if (da >= 0.0) {
+      kept.push_back(a);
+    }
+    if ((da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0)) {
+      kept.push_back(a + (da / (da - db)) * (b - a));
+    }
+  }
+  return kept;
+}
+
+/// int d dA of a linear function over a convex polygon: each triangle of the fan by the mean of its corners.
+template <class Distance> double integrate_linear(const Polygon &polygon, const Distance &distance) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
+    const double area = 0.5 * cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
+    sum += area * (distance(polygon[0]) + distance(polygon[i]) + distance(polygon[i + 1])) / 3.0;
+  }
+  return sum;
+}
+
+/// int over the region of the distance to the boundary of `block`: cut the region into the cells in which one edge
+/// line is nearest.
+double integrate_distance(const Polygon &region, const ConvexView &block) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < block.vertex.size(); ++i) {
+    const auto depth = [&](std::size_t line, Vec2 x) { return dot(block.normal[line], block.vertex[line] - x); };
+    Polygon cell = region;
+    for (std::size_t j = 0; j < block.vertex.size() && cell.size() >= 3; ++j) {
+      const auto margin = [&](Vec2 x) { return depth(j, x) - depth(i, x); };
+      if (j < i && std::all_of(cell.begin(), cell.end(), [&](Vec2 x) { return margin(x) == 0.0; })) {
+        cell.clear(); // collinear edges share a line: its cell has been counted
+      } else if (j != i) {
+        cell = keep_positive(cell, margin);
+      }
+    }
+    if (cell.size() >= 3) {
+      sum += integrate_linear(cell, [&](Vec2 x) { return depth(i, x); });
+    }
+  }
+  return sum;
+}
+
+} // namespace
+
+double overlap_energy(const ConvexView &first, const ConvexView &second) {
+  Polygon region(first.vertex.begin(), first.vertex.end());
+  for (std::size_t j = 0; j < second.vertex.size() && region.size() >= 3; ++j) {
+    region = keep_positive(region, [&](Vec2 x) { return dot(second.normal[j], second.vertex[j] - x); });
+  }
+  if (region.size() < 3) {
+    return 0.0;
+  }
+  return integrate_distance(region, first) + integrate_distance(region, second);
+}
+
+} // namespace gcpdda

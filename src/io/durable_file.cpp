@@ -1,0 +1,86 @@
+#include "durable_file.hpp"
+
+#include "gcpdda/base/check.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <initializer_list>
+
+namespace gcpdda {
+
+namespace {
+
+[[noreturn]] void fail(const std::string &what, const std::filesystem::path &path,
+                       const std::string &reason) {
+  throw FileError("cannot " + what + " " + path.string() + ": " + reason);
+}
+
+// Opens the file for one call, which returns 0 or sets errno; an errno in `harmless` is no failure.
+template <class Call>
+void call_on(const std::filesystem::path &path, int flags, const std::string &what,
+             std::initializer_list<int> harmless, Call call) {
+  const int descriptor = ::open(path.c_str(), flags);
+  if (descriptor < 0) {
+    fail("open", path, std::strerror(errno));
+  }
+  const int reason = call(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  if (reason != 0 && std::find(harmless.begin(), harmless.end(), reason) == harmless.end()) {
+    fail(what, path, std::strerror(reason));
+  }
+}
+
+} // namespace
+
+std::filesystem::path unfinished_name(const std::filesystem::path &path) {
+  return path.string() + ".tmp";
+}
+
+void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t end) {
+  if (begin < end) {
+    call_on(unfinished_name(path), O_WRONLY, "find space on the disk for", {EOPNOTSUPP, ENOSYS, EINVAL},
+            [&](int descriptor) { return ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, begin, end - begin); });
+  }
+}
+
+void publish(const std::filesystem::path &path) {
+  const std::filesystem::path unfinished = unfinished_name(path);
+  // Space reserved and not used goes back.
+  call_on(unfinished, O_WRONLY, "end", {},
+          [](int descriptor) { return ::ftruncate(descriptor, ::lseek(descriptor, 0, SEEK_END)); });
+  call_on(unfinished, O_RDONLY, "sync", {EINVAL}, ::fsync); // EINVAL: a file system without a disk
+  std::error_code error;
+  std::filesystem::rename(unfinished, path, error);
+  if (error) {
+    fail("rename to", path, error.message());
+  }
+}
+
+void write_file(const std::filesystem::path &path, const std::string &text) {
+  const std::filesystem::path unfinished = unfinished_name(path);
+  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+  if (!stream) {
+    fail("create", unfinished, std::strerror(errno));
+  }
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream) {
+    fail("write", unfinished, std::strerror(errno));
+  }
+  publish(path);
+}
+
+void make_directory(const std::filesystem::path &path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) {
+    fail("make the folder", path, error.message());
+  }
+}
+
+} // namespace gcpdda

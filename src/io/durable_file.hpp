@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace gcpdda {
+
+/// Where a file grows until it is complete.
+std::filesystem::path unfinished_name(const std::filesystem::path &path);
+
+/// Takes bytes [begin, end) of the unfinished file from the disk, so that writing them cannot fail for want
+/// of space. Does nothing where the file system cannot promise this. Throws FileError when the space is not
+/// there.
+void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t end);
+
+/// Syncs the unfinished file to the disk and gives it its final name. Throws FileError.
+void publish(const std::filesystem::path &path);
+
+/// The whole file at once, under its final name only when complete. Throws FileError.
+void write_file(const std::filesystem::path &path, const std::string &text);
+
+/// Throws FileError.
+void make_directory(const std::filesystem::path &path);
+
+} // namespace gcpdda

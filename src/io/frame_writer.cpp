@@ -1,0 +1,283 @@
+// One file per frame, its rows in BlockId order whatever the number of ranks: ids are cut into one slab per
+// rank, every row travels once to the owner of its slab, and all ranks write their slabs together. What never
+// changes is in a topology file of its own, which the frames link to.
+
+#include "gcpdda/io/result_files.hpp"
+
+#include "durable_file.hpp"
+#include "hdf5_vtk_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <numeric>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr std::array<const char *, 2> constant_cell_data{"block", "material"};
+constexpr const char *xdmf_cells = "/XdmfTopology";
+
+std::string frame_name(int index) {
+  return fmt::format("frame_{:06}.hdf", index);
+}
+
+// A FrameData as one message.
+Bytes pack(const FrameData &data) {
+  const std::size_t num_rows = data.rows.size();
+  const std::size_t row_bytes = num_rows * sizeof(FrameRow);
+  const std::size_t vertex_bytes = data.vertices.size() * sizeof(Vec2);
+  Bytes bytes(sizeof(num_rows) + row_bytes + vertex_bytes);
+  std::memcpy(bytes.data(), &num_rows, sizeof(num_rows));
+  if (num_rows > 0) {
+    std::memcpy(bytes.data() + sizeof(num_rows), data.rows.data(), row_bytes);
+    std::memcpy(bytes.data() + sizeof(num_rows) + row_bytes, data.vertices.data(), vertex_bytes);
+  }
+  return bytes;
+}
+
+void unpack_behind(FrameData &data, const Bytes &bytes) {
+  std::size_t num_rows = 0;
+  std::memcpy(&num_rows, bytes.data(), sizeof(num_rows));
+  if (num_rows == 0) {
+    return;
+  }
+  const std::size_t row_bytes = num_rows * sizeof(FrameRow);
+  const std::size_t vertex_bytes = bytes.size() - sizeof(num_rows) - row_bytes;
+  const std::size_t old_rows = data.rows.size();
+  const std::size_t old_vertices = data.vertices.size();
+  data.rows.resize(old_rows + num_rows);
+  data.vertices.resize(old_vertices + vertex_bytes / sizeof(Vec2));
+  std::memcpy(data.rows.data() + old_rows, bytes.data() + sizeof(num_rows), row_bytes);
+  std::memcpy(data.vertices.data() + old_vertices, bytes.data() + sizeof(num_rows) + row_bytes, vertex_bytes);
+}
+
+// Calls act(row, first vertex, last vertex) for each row.
+template <class Act> void for_each_row(const FrameData &data, Act act) {
+  auto vertex = data.vertices.begin();
+  for (const FrameRow &row : data.rows) {
+    act(row, vertex, vertex + row.num_vertices);
+    vertex += row.num_vertices;
+  }
+}
+
+FrameData sorted_by_block(const FrameData &data) {
+  std::vector<std::pair<const FrameRow *, const Vec2 *>> order;
+  order.reserve(data.rows.size());
+  for_each_row(data, [&](const FrameRow &row, auto first, auto) { order.emplace_back(&row, &*first); });
+  std::sort(order.begin(), order.end(), [](auto a, auto b) { return a.first->block < b.first->block; });
+  FrameData sorted;
+  sorted.rows.reserve(data.rows.size());
+  sorted.vertices.reserve(data.vertices.size());
+  for (const auto &[row, first] : order) {
+    sorted.rows.push_back(*row);
+    sorted.vertices.insert(sorted.vertices.end(), first, first + row->num_vertices);
+  }
+  return sorted;
+}
+
+bool is_sound(const FrameData &data, std::int64_t num_blocks) {
+  std::int64_t num_vertices = 0;
+  for (const FrameRow &row : data.rows) {
+    if (row.block < 0 || row.block >= num_blocks || row.num_vertices < 1) {
+      return false;
+    }
+    num_vertices += row.num_vertices;
+  }
+  return num_vertices == std::ssize(data.vertices);
+}
+
+/// Rows and vertices of this rank's slab, in BlockId order.
+FrameData route_to_slabs(const Communicator &communicator, std::int64_t num_blocks, const FrameData &data) {
+  expect_on_all_ranks(communicator, is_sound(data, num_blocks), "frame rows with valid ids and vertices");
+  std::vector<FrameData> parts(static_cast<std::size_t>(communicator.size()));
+  for_each_row(data, [&](const FrameRow &row, auto first, auto last) {
+    const int owner = slab_owner(num_blocks, communicator.size(), row.block);
+    FrameData &part = parts[static_cast<std::size_t>(owner)];
+    part.rows.push_back(row);
+    part.vertices.insert(part.vertices.end(), first, last);
+  });
+  std::vector<Bytes> send;
+  send.reserve(parts.size());
+  std::transform(parts.begin(), parts.end(), std::back_inserter(send), pack);
+
+  FrameData received;
+  for (const Bytes &bytes : communicator.all_to_all(send)) {
+    unpack_behind(received, bytes);
+  }
+  FrameData slab = sorted_by_block(received);
+
+  std::int64_t next = slab_begin(num_blocks, communicator.size(), communicator.rank());
+  const bool in_order = std::all_of(slab.rows.begin(), slab.rows.end(),
+                                    [&next](const FrameRow &row) { return row.block == next++; });
+  expect_on_all_ranks(
+      communicator, in_order && next == slab_begin(num_blocks, communicator.size(), communicator.rank() + 1),
+      "each block on exactly one rank's frame data");
+  return slab;
+}
+
+// XDMF wants its own mixture: for each cell 3 (a polygon), the number of its vertices, their numbers.
+void write_xdmf_cells(CollectiveFile &file, RowRange cells, RowRange points,
+                      const std::vector<std::int32_t> &sizes) {
+  std::vector<std::int64_t> mixed;
+  std::int64_t vertex = points.first;
+  for (const std::int32_t size : sizes) {
+    mixed.push_back(3);
+    mixed.push_back(size);
+    for (std::int32_t i = 0; i < size; ++i) {
+      mixed.push_back(vertex++);
+    }
+  }
+  file.dataset(
+      xdmf_cells,
+      {points.first + 2 * cells.first, points.count + 2 * cells.count, points.total + 2 * cells.total},
+      mixed);
+}
+
+void write_cell_data(CollectiveFile &file, RowRange cells, const std::vector<FrameRow> &rows) {
+  const auto column = [&](const char *name, auto get) {
+    file.dataset(vtk::cell_data(name), cells, vtk::column(rows, get));
+  };
+  const auto three_columns = [&](const char *name, auto get) {
+    file.dataset(vtk::cell_data(name), cells, vtk::three_columns(rows, get), 3);
+  };
+  column("kind", [](const FrameRow &row) { return row.kind; });
+  column("rotation", [](const FrameRow &row) { return row.rotation; });
+  three_columns("displacement", [](const FrameRow &row) {
+    return std::array{row.displacement.x, row.displacement.y, 0.0};
+  });
+  three_columns("velocity", [](const FrameRow &row) { return row.velocity; });
+  three_columns("stress", [](const FrameRow &row) { return row.stress; });
+  three_columns("contact_force", [](const FrameRow &row) { return row.contact_force; });
+}
+
+std::string series_index(const std::vector<std::pair<int, double>> &frames) {
+  std::string text = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [";
+  const char *separator = "\n";
+  for (const auto &[index, time] : frames) {
+    text += fmt::format("{}    {{\"name\": \"frames/{}\", \"time\": {:.17g}}}", separator, frame_name(index),
+                        time);
+    separator = ",\n";
+  }
+  return text + "\n  ]\n}\n";
+}
+
+struct XdmfField {
+  const char *name;
+  const char *number; ///< NumberType and Precision
+  int columns;
+};
+constexpr std::array<XdmfField, 8> xdmf_fields{
+    {{"block", "NumberType=\"Int\" Precision=\"8\"", 1},
+     {"material", "NumberType=\"Int\" Precision=\"4\"", 1},
+     {"kind", "NumberType=\"UChar\" Precision=\"1\"", 1},
+     {"displacement", "NumberType=\"Float\" Precision=\"8\"", 3},
+     {"rotation", "NumberType=\"Float\" Precision=\"8\"", 1},
+     {"velocity", "NumberType=\"Float\" Precision=\"8\"", 3},
+     {"stress", "NumberType=\"Float\" Precision=\"8\"", 3},
+     {"contact_force", "NumberType=\"Float\" Precision=\"8\"", 3}}};
+
+bool is_constant(const char *name) {
+  return std::any_of(constant_cell_data.begin(), constant_cell_data.end(),
+                     [name](const char *constant) { return std::strcmp(name, constant) == 0; });
+}
+
+std::string xdmf_item(const std::string &dimensions, const char *number, const std::string &file,
+                      const std::string &dataset) {
+  return fmt::format("<DataItem Format=\"HDF\" Dimensions=\"{}\" {}>frames/{}:{}</DataItem>", dimensions,
+                     number, file, dataset);
+}
+
+std::string xdmf_index(const std::vector<std::pair<int, double>> &frames, std::int64_t num_blocks,
+                       std::int64_t num_points, const std::string &topology) {
+  std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
+                     "    <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (const auto &[index, time] : frames) {
+    const std::string frame = frame_name(index);
+    text += fmt::format("      <Grid Name=\"{}\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n",
+                        frame, time);
+    text += fmt::format("        <Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">{}</Topology>\n",
+                        num_blocks,
+                        xdmf_item(fmt::format("{}", num_points + 2 * num_blocks),
+                                  "NumberType=\"Int\" Precision=\"8\"", topology, xdmf_cells));
+    text += fmt::format("        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
+                        xdmf_item(fmt::format("{} 3", num_points), "NumberType=\"Float\" Precision=\"8\"",
+                                  frame, vtk::at("Points")));
+    for (const XdmfField &field : xdmf_fields) {
+      const std::string dimensions = fmt::format("{}{}", num_blocks, field.columns == 3 ? " 3" : "");
+      text +=
+          fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n",
+                      field.name, field.columns == 3 ? "Vector" : "Scalar",
+                      xdmf_item(dimensions, field.number, is_constant(field.name) ? topology : frame,
+                                vtk::cell_data(field.name)));
+    }
+    text += "      </Grid>\n";
+  }
+  return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
+}
+
+} // namespace
+
+std::int64_t slab_begin(std::int64_t num_blocks, int num_ranks, int rank) {
+  return num_blocks * rank / num_ranks;
+}
+
+int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block) {
+  return static_cast<int>(((block + 1) * num_ranks - 1) / num_blocks);
+}
+
+FrameWriter::FrameWriter(const Communicator &communicator, std::filesystem::path directory,
+                         std::int64_t num_blocks)
+    : communicator_(communicator), directory_(std::move(directory)), num_blocks_(num_blocks) {
+  on_root(communicator_, [this] { make_directory(directory_ / "frames"); });
+}
+
+void FrameWriter::write(int index, double time, const FrameData &data) {
+  expect(frames_.empty() || index > frames_.back().first, "frames in the order of their numbers");
+  const FrameData slab = route_to_slabs(communicator_, num_blocks_, data);
+  const RowRange cells = rows_in_rank_order(communicator_, std::ssize(slab.rows));
+  const RowRange points = rows_in_rank_order(communicator_, std::ssize(slab.vertices));
+
+  if (topology_.empty()) {
+    const std::string name = fmt::format("topology_{:06}.h5", index);
+    const auto sizes = vtk::column(slab.rows, [](const FrameRow &row) { return row.num_vertices; });
+    CollectiveFile file(communicator_, directory_ / "frames" / name);
+    file.group("/VTKHDF");
+    file.group("/VTKHDF/CellData");
+    vtk::write_cells(file, cells, points, vtk::CellType::polygon, sizes);
+    file.dataset(vtk::cell_data("block"), cells,
+                 vtk::column(slab.rows, [](const FrameRow &row) { return row.block; }));
+    file.dataset(vtk::cell_data("material"), cells,
+                 vtk::column(slab.rows, [](const FrameRow &row) { return row.material; }));
+    write_xdmf_cells(file, cells, points, sizes);
+    file.publish();
+    all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+    topology_ = name;
+    num_points_ = points.total;
+  }
+  expect(points.total == num_points_, "as many vertices as in the first frame");
+
+  CollectiveFile file(communicator_, directory_ / "frames" / frame_name(index));
+  vtk::write_header(file, time);
+  for (const char *name : vtk::cell_datasets) {
+    file.link(vtk::at(name), topology_);
+  }
+  for (const char *name : constant_cell_data) {
+    file.link(vtk::cell_data(name), topology_);
+  }
+  vtk::write_points(file, points, slab.vertices);
+  write_cell_data(file, cells, slab.rows);
+  file.publish();
+  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+
+  frames_.emplace_back(index, time);
+  on_root(communicator_, [this] {
+    write_file(directory_ / "run.hdf.series", series_index(frames_));
+    write_file(directory_ / "run.xdmf", xdmf_index(frames_, num_blocks_, num_points_, topology_));
+  });
+}
+
+} // namespace gcpdda

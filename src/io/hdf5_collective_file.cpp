@@ -1,0 +1,232 @@
+#include "hdf5_collective_file.hpp"
+
+#include "durable_file.hpp"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace gcpdda {
+
+namespace {
+
+std::string file_name(const std::filesystem::path &path, const std::string &object) {
+  return path.string() + (object.empty() ? "" : " at " + object);
+}
+
+hdf5::Properties parallel_access(const Communicator &communicator) {
+  hdf5::Properties access(hdf5::checked(H5Pcreate(H5P_FILE_ACCESS), "set up parallel file access"));
+  const MPI_Comm native = *static_cast<const MPI_Comm *>(communicator.native());
+  hdf5::checked(H5Pset_fapl_mpio(access.get(), native, MPI_INFO_NULL), "set up parallel file access");
+  hdf5::checked(H5Pset_coll_metadata_write(access.get(), true), "set up collective metadata");
+  hdf5::checked(H5Pset_all_coll_metadata_ops(access.get(), true), "set up collective metadata");
+  return access;
+}
+
+// No time stamps (files of two runs are equal), no fill values (every row is written).
+hdf5::Properties plain_dataset() {
+  hdf5::Properties creation(hdf5::checked(H5Pcreate(H5P_DATASET_CREATE), "describe a dataset"));
+  hdf5::checked(H5Pset_obj_track_times(creation.get(), false), "describe a dataset");
+  hdf5::checked(H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY), "describe a dataset");
+  hdf5::checked(H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER), "describe a dataset");
+  return creation;
+}
+
+hdf5::Dataspace simple_space(hsize_t rows, hsize_t columns) {
+  const std::array<hsize_t, 2> shape{rows, columns};
+  return hdf5::Dataspace(
+      hdf5::checked(H5Screate_simple(columns > 1 ? 2 : 1, shape.data(), nullptr), "describe a shape"));
+}
+
+} // namespace
+
+void on_all_ranks(const Communicator &communicator, const std::function<void()> &action) {
+  std::string trouble;
+  try {
+    action();
+  } catch (const std::exception &error) {
+    trouble = error.what();
+  }
+  std::int64_t any = trouble.empty() ? 0 : 1;
+  communicator.max(std::span(&any, 1));
+  if (any == 0) {
+    return;
+  }
+  const std::vector<std::vector<char>> texts =
+      communicator.all_gather(std::vector<char>(trouble.begin(), trouble.end()));
+  const auto first = std::find_if(texts.begin(), texts.end(), [](const auto &text) { return !text.empty(); });
+  throw FileError(std::string(first->begin(), first->end()));
+}
+
+void on_root(const Communicator &communicator, const std::function<void()> &action) {
+  on_all_ranks(communicator, [&] {
+    if (communicator.is_root()) {
+      action();
+    }
+  });
+}
+
+void expect_on_all_ranks(const Communicator &communicator, bool condition, const char *what) {
+  std::int64_t broken = condition ? 0 : 1;
+  communicator.max(std::span(&broken, 1));
+  expect(broken == 0, what);
+}
+
+RowRange rows_in_rank_order(const Communicator &communicator, std::int64_t count) {
+  RowRange range{0, count, 0};
+  const auto counts = communicator.all_gather(std::vector<std::int64_t>{count});
+  for (std::size_t rank = 0; rank < counts.size(); ++rank) {
+    range.first += rank < static_cast<std::size_t>(communicator.rank()) ? counts[rank][0] : 0;
+    range.total += counts[rank][0];
+  }
+  return range;
+}
+
+CollectiveFile::CollectiveFile(const Communicator &communicator, std::filesystem::path path)
+    : communicator_(communicator), path_(std::move(path)) {
+  // MPI-IO would truncate what is there, but keep its size on some file systems.
+  on_root(communicator_, [&] { std::filesystem::remove(unfinished_name(path_)); });
+  on_all_ranks(communicator_, [&] {
+    const hdf5::Properties access = parallel_access(communicator_);
+    file_ = hdf5::File(
+        hdf5::checked(H5Fcreate(unfinished_name(path_).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()),
+                      "create " + unfinished_name(path_).string()));
+  });
+}
+
+CollectiveFile::~CollectiveFile() {
+  file_.close();
+  if (!published_ && communicator_.is_root()) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished_name(path_), ignored);
+  }
+}
+
+void CollectiveFile::group(const std::string &name) {
+  on_all_ranks(communicator_, [&] {
+    const hdf5::Properties creation(hdf5::checked(H5Pcreate(H5P_GROUP_CREATE), "describe a group"));
+    hdf5::checked(H5Pset_obj_track_times(creation.get(), false), "describe a group");
+    const hdf5::Group group(
+        hdf5::checked(H5Gcreate2(file_.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                      "create " + file_name(path_, name)));
+  });
+}
+
+// Open MPI's collective write returns success when the disk is full (4.1, fcoll/vulcan): the file would be
+// published with holes. So the place of every byte is taken before it is written.
+void CollectiveFile::reserve_space(const hdf5::Dataset &dataset) {
+  const haddr_t begin = H5Dget_offset(dataset.get());
+  if (begin == HADDR_UNDEF || !communicator_.is_root()) {
+    return; // without rows, without place
+  }
+  constexpr std::int64_t room_for_metadata = 16384;
+  const auto size = static_cast<std::int64_t>(H5Dget_storage_size(dataset.get()));
+  const std::int64_t end = static_cast<std::int64_t>(begin) + size + room_for_metadata;
+  reserve(path_, reserved_, end);
+  reserved_ = std::max(reserved_, end);
+}
+
+void CollectiveFile::write_dataset(const std::string &name, RowRange rows, hsize_t columns, Values values) {
+  const std::string what = "write " + file_name(path_, name);
+  const auto count = static_cast<hsize_t>(rows.count);
+  hdf5::Dataspace file_space;
+  hdf5::Dataspace memory_space;
+  hdf5::Dataset dataset;
+  const hdf5::Properties transfer(H5Pcreate(H5P_DATASET_XFER));
+
+  on_all_ranks(communicator_, [&] {
+    file_space = simple_space(static_cast<hsize_t>(rows.total), columns);
+    memory_space = simple_space(std::max<hsize_t>(count, 1), columns);
+    if (count == 0) {
+      hdf5::checked(H5Sselect_none(file_space.get()), what);
+      hdf5::checked(H5Sselect_none(memory_space.get()), what);
+    } else {
+      const std::array<hsize_t, 2> start{static_cast<hsize_t>(rows.first), 0};
+      const std::array<hsize_t, 2> extent{count, columns};
+      hdf5::checked(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr,
+                                        extent.data(), nullptr),
+                    what);
+    }
+    hdf5::checked(H5Pset_dxpl_mpio(transfer.get(), H5FD_MPIO_COLLECTIVE), what);
+    const hdf5::Properties creation = plain_dataset();
+    dataset =
+        hdf5::Dataset(hdf5::checked(H5Dcreate2(file_.get(), name.c_str(), values.file_type, file_space.get(),
+                                               H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                                    what));
+    reserve_space(dataset);
+  });
+  if (rows.total == 0) {
+    return; // nothing is allocated then, and a collective write of nothing fails for want of an address
+  }
+  on_all_ranks(communicator_, [&] {
+    // A rank without rows still takes part; HDF5 refuses a null pointer from it.
+    static constexpr double nothing = 0.0;
+    hdf5::checked(H5Dwrite(dataset.get(), values.memory_type, memory_space.get(), file_space.get(),
+                           transfer.get(), count == 0 ? &nothing : values.first),
+                  what);
+  });
+  H5D_mpio_actual_io_mode_t mode = H5D_MPIO_NO_COLLECTIVE;
+  H5Pget_mpio_actual_io_mode(transfer.get(), &mode);
+  all_writes_collective_ = all_writes_collective_ && mode != H5D_MPIO_NO_COLLECTIVE;
+}
+
+void CollectiveFile::number(const std::string &name, std::int64_t value) {
+  const std::int64_t mine = communicator_.is_root() ? 1 : 0;
+  dataset(name, {0, mine, 1}, std::vector<std::int64_t>(static_cast<std::size_t>(mine), value));
+}
+
+void CollectiveFile::write_attribute(const std::string &object, const std::string &name, hid_t space,
+                                     Values value) {
+  const std::string what = "write " + file_name(path_, object + "@" + name);
+  on_all_ranks(communicator_, [&] {
+    const hdf5::Attribute attribute(
+        hdf5::checked(H5Acreate_by_name(file_.get(), object.c_str(), name.c_str(), value.file_type, space,
+                                        H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                      what));
+    hdf5::checked(H5Awrite(attribute.get(), value.memory_type, value.first), what);
+  });
+}
+
+void CollectiveFile::attribute(const std::string &object, const std::string &name, double value) {
+  const hdf5::Dataspace space(H5Screate(H5S_SCALAR));
+  write_attribute(object, name, space.get(),
+                  {NumberType<double>::file(), NumberType<double>::memory(), &value});
+}
+
+void CollectiveFile::attribute(const std::string &object, const std::string &name,
+                               const std::array<std::int64_t, 2> &value) {
+  const hdf5::Dataspace space = simple_space(value.size(), 1);
+  write_attribute(object, name, space.get(),
+                  {NumberType<std::int64_t>::file(), NumberType<std::int64_t>::memory(), value.data()});
+}
+
+void CollectiveFile::attribute(const std::string &object, const std::string &name, const std::string &ascii) {
+  const hdf5::Dataspace space(H5Screate(H5S_SCALAR));
+  const hdf5::Datatype type(H5Tcopy(H5T_C_S1));
+  on_all_ranks(communicator_, [&] {
+    hdf5::checked(H5Tset_size(type.get(), ascii.size()), "describe a text");
+    hdf5::checked(H5Tset_strpad(type.get(), H5T_STR_NULLPAD), "describe a text");
+  });
+  write_attribute(object, name, space.get(), {type.get(), type.get(), ascii.data()});
+}
+
+void CollectiveFile::link(const std::string &name, const std::string &file) {
+  on_all_ranks(communicator_, [&] {
+    hdf5::checked(
+        H5Lcreate_external(file.c_str(), name.c_str(), file_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+        "link " + file_name(path_, name) + " to " + file);
+  });
+}
+
+void CollectiveFile::publish() {
+  on_all_ranks(communicator_, [&] {
+    if (!file_.close()) {
+      throw FileError("cannot close " + unfinished_name(path_).string() + ": " + hdf5::last_error());
+    }
+  });
+  on_root(communicator_, [&] { gcpdda::publish(path_); });
+  published_ = true;
+}
+
+} // namespace gcpdda

@@ -1,0 +1,145 @@
+#include "hdf5_input.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace gcpdda::hdf5 {
+
+namespace {
+
+// Deeper than any of our files: links that lead in a circle.
+constexpr int deepest_group = 32;
+
+void append_name(const char *name, void *names) {
+  static_cast<std::vector<std::string> *>(names)->emplace_back(name);
+}
+
+std::vector<std::string> attribute_names(const Object &object, const std::string &path) {
+  std::vector<std::string> names;
+  const auto append = [](hid_t, const char *name, const H5A_info_t *, void *data) -> herr_t {
+    append_name(name, data);
+    return 0;
+  };
+  checked(H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append, &names),
+          "list attributes of " + path);
+  return names;
+}
+
+std::vector<std::string> member_names(const Object &group, const std::string &path) {
+  std::vector<std::string> names;
+  const auto append = [](hid_t, const char *name, const H5L_info_t *, void *data) -> herr_t {
+    append_name(name, data);
+    return 0;
+  };
+  checked(H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append, &names), "list " + path);
+  return names;
+}
+
+// `path` is that of the object, without a slash at its end.
+void list_below(const File &file, const std::string &path, int depth, std::vector<std::string> &found) {
+  if (depth > deepest_group) {
+    throw FileError("links of " + path + " lead in a circle");
+  }
+  const std::string name = path.empty() ? "/" : path;
+  const Object object(checked(H5Oopen(file.get(), name.c_str(), H5P_DEFAULT), "open " + name));
+  for (const std::string &attribute : attribute_names(object, name)) {
+    found.push_back(name + "@" + attribute);
+  }
+  if (H5Iget_type(object.get()) != H5I_GROUP) {
+    found.push_back(name);
+    return;
+  }
+  found.push_back(path + "/");
+  for (const std::string &member : member_names(object, name)) {
+    list_below(file, path + "/" + member, depth + 1, found);
+  }
+}
+
+std::string type_in_words(const Datatype &type) {
+  static constexpr std::array<const char *, 11> classes{"integer",  "float",    "time",     "string",
+                                                        "bitfield", "opaque",   "compound", "reference",
+                                                        "enum",     "variable", "array"};
+  const auto type_class = static_cast<std::size_t>(H5Tget_class(type.get()));
+  const bool is_variable = type_class == H5T_VLEN || H5Tis_variable_str(type.get()) > 0;
+  if (type_class >= classes.size() || is_variable) {
+    throw FileError("cannot read values of variable length");
+  }
+  std::string words =
+      std::string(classes[type_class]) + " of " + std::to_string(H5Tget_size(type.get())) + " bytes";
+  if (type_class == H5T_INTEGER) {
+    words += H5Tget_sign(type.get()) == H5T_SGN_NONE ? ", unsigned" : ", signed";
+  }
+  if (type_class == H5T_STRING) {
+    words += ", padding " + std::to_string(H5Tget_strpad(type.get())) + ", character set " +
+             std::to_string(H5Tget_cset(type.get()));
+  }
+  return words + (H5Tget_order(type.get()) == H5T_ORDER_BE ? ", big endian" : "");
+}
+
+// Shape and type of a dataset or attribute; room for its bytes.
+Content describe(const std::string &path, const Dataspace &space, const Datatype &type) {
+  Content content{path, type_in_words(type), {}, {}};
+  const int dimensions = checked(H5Sget_simple_extent_ndims(space.get()), "read the shape of " + path);
+  content.shape.resize(static_cast<std::size_t>(dimensions));
+  checked(H5Sget_simple_extent_dims(space.get(), content.shape.data(), nullptr), "read the shape of " + path);
+  const auto count = static_cast<std::size_t>(
+      checked(H5Sget_simple_extent_npoints(space.get()), "read the shape of " + path));
+  content.bytes.resize(count * H5Tget_size(type.get()));
+  return content;
+}
+
+} // namespace
+
+File open_to_read(const std::filesystem::path &path) {
+  return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open " + path.string()));
+}
+
+std::vector<std::string> list_contents(const File &file) {
+  std::vector<std::string> found;
+  list_below(file, "", 0, found);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+Content read_content(const File &file, const std::string &path) {
+  const std::string what = "read " + path;
+  if (path.ends_with('/')) {
+    return {path, "group", {}, {}};
+  }
+  const std::size_t at = path.find('@');
+  const Object object(checked(H5Oopen(file.get(), path.substr(0, at).c_str(), H5P_DEFAULT), what));
+  if (at != std::string::npos) {
+    const Attribute attribute(checked(H5Aopen(object.get(), path.c_str() + at + 1, H5P_DEFAULT), what));
+    const Datatype type(checked(H5Aget_type(attribute.get()), what));
+    Content content = describe(path, Dataspace(checked(H5Aget_space(attribute.get()), what)), type);
+    checked(H5Aread(attribute.get(), type.get(), content.bytes.data()), what);
+    return content;
+  }
+  const Datatype type(checked(H5Dget_type(object.get()), what));
+  Content content = describe(path, Dataspace(checked(H5Dget_space(object.get()), what)), type);
+  if (!content.bytes.empty()) {
+    checked(H5Dread(object.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, content.bytes.data()), what);
+  }
+  return content;
+}
+
+template <class T> std::vector<T> read_numbers(const File &file, const std::string &path) {
+  const Content content = read_content(file, path);
+  const Datatype expected(H5Tcopy(NumberType<T>::file()));
+  if (content.type != type_in_words(expected)) {
+    throw FileError("cannot read " + path + ": it is " + content.type);
+  }
+  std::vector<T> values(content.bytes.size() / sizeof(T));
+  if (!values.empty()) {
+    std::memcpy(values.data(), content.bytes.data(), content.bytes.size());
+  }
+  return values;
+}
+
+template std::vector<double> read_numbers(const File &, const std::string &);
+template std::vector<std::int64_t> read_numbers(const File &, const std::string &);
+template std::vector<std::int32_t> read_numbers(const File &, const std::string &);
+template std::vector<std::uint8_t> read_numbers(const File &, const std::string &);
+
+} // namespace gcpdda::hdf5

@@ -1,0 +1,167 @@
+#include "scene_parts.hpp"
+
+#include "edit_distance.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace gcpdda::scene_text {
+
+namespace {
+
+using MaterialPair = std::pair<std::int32_t, std::int32_t>;
+
+class JointReader {
+public:
+  JointReader(const SceneSource &source, const MaterialIndex &materials)
+      : source_(source), materials_(&materials) {
+    const Section run = section(source.root, "run", source.faulty);
+    Vec2 gravity = RunSettings{}.gravity;
+    run.read("gravity", gravity);
+    weightless_ = run.known("gravity") && gravity == Vec2{};
+    laws_.num_materials = static_cast<std::int32_t>(materials.size());
+    laws_.of_material.assign(materials.size() * materials.size(), 0);
+  }
+
+  JointLaws read() {
+    const auto sections = named_sections(source_.root, "joint", source_.faulty, source_.faults.origins());
+    JointLaw base;
+    base.name = "default";
+    laws_.laws.push_back(base);
+    const NamedSection *base_section = nullptr;
+    for (const NamedSection &named : sections) {
+      if (named.name == "default") {
+        base_section = &named;
+      }
+    }
+    if (base_section != nullptr) {
+      read_default(base_section->section);
+    } else if (!sections.empty()) {
+      source_.faults.add(source_.root.get("joint")->source(), "'default' in [joint] is missing",
+                         "pairs of materials without a law of their own take it", "write [joint.default]");
+    }
+    for (const NamedSection &named : sections) {
+      if (&named != base_section) {
+        read_special(named);
+      }
+    }
+    return std::move(laws_);
+  }
+
+private:
+  void fault(const toml::source_region &where, std::string what, std::string why, std::string hint) {
+    source_.faults.add(where, std::move(what), std::move(why), std::move(hint));
+  }
+
+  void read_default(const Section &law) {
+    if (const toml::node *materials = law.given("materials")) {
+      fault(materials->source(), law.subject("materials") + " has no meaning",
+            "the default law is for all pairs without their own", "leave it out");
+    }
+    if (law.given("normal_stiffness") == nullptr && law.given("allowed_overlap") == nullptr) {
+      fault(law.source(), law.label() + " gives neither normal_stiffness nor allowed_overlap",
+            "exactly one of them is needed", "for example normal_stiffness = 1e9");
+    }
+    read_values(law, laws_.laws.front());
+  }
+
+  void read_special(const NamedSection &named) {
+    const Section &law = named.section;
+    const auto index = static_cast<std::int32_t>(laws_.laws.size());
+    laws_.laws.push_back(laws_.laws.front());
+    laws_.laws.back().name = named.name;
+    read_values(law, laws_.laws.back());
+    if (const toml::node *materials = law.sound("materials")) {
+      assign(law, *materials->as_array(), index);
+    } else if (law.given("materials") == nullptr && law.is_table()) {
+      fault(law.source(), law.subject("materials") + " is missing",
+            "a law other than default is for one pair", "for example materials = [\"granite\", \"clay\"]");
+    }
+  }
+
+  void read_values(const Section &law, JointLaw &values) {
+    const toml::node *stiffness = law.given("normal_stiffness");
+    const toml::node *overlap = law.given("allowed_overlap");
+    if (stiffness != nullptr && overlap != nullptr) {
+      const Origins &origins = source_.faults.origins();
+      const bool stiffness_last = origins.order(overlap->source()) < origins.order(stiffness->source());
+      fault((stiffness_last ? stiffness : overlap)->source(),
+            law.label() + " gives both normal_stiffness and allowed_overlap", "one follows from the other",
+            "leave one of them out");
+    } else if (stiffness != nullptr) {
+      values.allowed_overlap = 0.0;
+      law.read("normal_stiffness", values.normal_stiffness);
+    } else if (overlap != nullptr) {
+      values.normal_stiffness = 0.0;
+      law.read("allowed_overlap", values.allowed_overlap);
+      if (weightless_) {
+        fault(overlap->source(), law.subject("allowed_overlap") + " has no meaning without gravity",
+              "the stiffness follows from the weight of the blocks", "give normal_stiffness instead");
+      }
+    }
+    law.read("tangential_ratio", values.tangential_ratio);
+    law.read("cohesion", values.cohesion);
+    if (law.sound("friction_angle_deg") != nullptr) {
+      double degrees = 0.0;
+      law.read("friction_angle_deg", degrees);
+      values.tan_friction = std::tan(degrees * std::numbers::pi / 180.0);
+    }
+  }
+
+  void assign(const Section &law, const toml::array &names, std::int32_t index) {
+    const auto &first = names[0].as_string()->get();
+    const auto &second = names[1].as_string()->get();
+    const std::int32_t a = find_material(*materials_, first, names[0].source(), source_.faults);
+    const std::int32_t b = find_material(*materials_, second, names[1].source(), source_.faults);
+    if (a < 0 || b < 0) {
+      return;
+    }
+    const auto [earlier, is_new] = law_of_pair_.emplace(MaterialPair(std::minmax(a, b)), law);
+    if (!is_new) {
+      fault(names.source(), fmt::format("{} is a second law for '{}' and '{}'", law.label(), first, second),
+            fmt::format("{} at {} is for them too", earlier->second.label(),
+                        source_.faults.origins().place(earlier->second.source())),
+            "keep one of them");
+      return;
+    }
+    const auto n = static_cast<std::size_t>(laws_.num_materials);
+    const auto i = static_cast<std::size_t>(a);
+    const auto j = static_cast<std::size_t>(b);
+    laws_.of_material[i * n + j] = index;
+    laws_.of_material[j * n + i] = index;
+  }
+
+  SceneSource source_;
+  const MaterialIndex *materials_;
+  bool weightless_ = false;
+  JointLaws laws_;
+  std::map<MaterialPair, Section> law_of_pair_;
+};
+
+} // namespace
+
+std::int32_t find_material(const MaterialIndex &materials, const std::string &name,
+                           const toml::source_region &where, Faults &faults) {
+  const auto found = materials.find(name);
+  if (found != materials.end()) {
+    return found->second;
+  }
+  std::vector<std::string> names;
+  for (const auto &[known, index] : materials) {
+    names.push_back(known);
+  }
+  const std::string near = nearest_word(name, names);
+  faults.add(where, fmt::format("no material is named '{}'", name), "",
+             near.empty() ? fmt::format("add a table [material.{}]", name)
+                          : fmt::format("did you mean '{}'?", near));
+  return -1;
+}
+
+JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materials) {
+  return JointReader(source, materials).read();
+}
+
+} // namespace gcpdda::scene_text

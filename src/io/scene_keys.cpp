@@ -1,0 +1,160 @@
+#include "scene_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace gcpdda::scene_text {
+
+namespace {
+
+constexpr Range any{};
+
+constexpr Range from_to(double low, double high) {
+  return {low, high, false, false};
+}
+constexpr Range above_to(double low, double high) {
+  return {low, high, true, false};
+}
+constexpr Range from_below(double low, double high) {
+  return {low, high, false, true};
+}
+constexpr Range between(double low, double high) {
+  return {low, high, true, true};
+}
+
+constexpr auto required = Need::required;
+constexpr auto optional = Need::optional;
+
+// Upper bounds without a physical reason are there so that no product of input numbers overflows.
+// clang-format off
+constexpr Key all_keys[] = {
+  {"run", Kind::table, required, any, "", "", "[run]", "How the run goes."},
+  {"run.duration", Kind::number, required, above_to(0, 1e12), "", "", "2.0", "[s] Simulated time."},
+  {"run.gravity", Kind::vector2, optional, from_to(-1e6, 1e6), "", "[0.0, -9.81]", "[0.0, -9.81]", "[m/s2] Acceleration of gravity."},
+  {"run.gravity_ramp", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.0", "[s] Time over which gravity rises smoothly from zero; only 0 in this version."},
+  {"run.time_step", Kind::number_or_auto, optional, above_to(0, 1e12), "", "\"auto\"", "1e-4", "[s] Time step, used as given, or \"auto\" for the largest one that meets the stability bound."},
+  {"run.safety", Kind::number, optional, above_to(0, 1), "", "0.25", "0.25", "Fraction of the stability bound that \"auto\" takes."},
+  {"run.scheme", Kind::choice, optional, any, "generalized-alpha newmark-dda central-difference explicit-generalized-alpha", "\"generalized-alpha\"", "\"generalized-alpha\"", "Time integration."},
+  {"run.spectral_radius", Kind::number, optional, from_to(0, 1), "", "0.8", "0.8", "Spectral radius at infinite frequency of generalized-alpha and explicit-generalized-alpha: 1 keeps all high frequencies, 0 removes them in one step."},
+  {"run.contact_time", Kind::choice, optional, any, "leapfrog start predictor predictor-end", "\"leapfrog\"", "\"leapfrog\"", "Where within the step generalized-alpha takes the contact force."},
+  {"run.potential", Kind::choice, optional, any, "exact linear", "\"exact\"", "\"exact\"", "Contact potential."},
+  {"run.fidelity", Kind::choice, optional, any, "auto rigid deformable", "\"auto\"", "\"rigid\"", "How blocks deform; in this version all are rigid."},
+  {"run.accepted_error", Kind::number, optional, above_to(0, 1), "", "0.01", "0.01", "Relative error up to which fidelity \"auto\" computes a block as rigid."},
+  {"run.initial_friction", Kind::choice, optional, any, "consistent zero", "\"consistent\"", "\"consistent\"", "Shear force of the contacts that exist at the start."},
+  {"run.contact_damping", Kind::number, optional, from_to(0, 100), "", "0.05", "0.05", "Damping ratio of the contact dashpots."},
+  {"run.local_damping", Kind::number, optional, from_below(0, 1), "", "0.0", "0.0", "Non-viscous damping for static problems; only 0 in this version."},
+  {"run.plane", Kind::choice, optional, any, "strain stress", "\"strain\"", "\"strain\"", "Plane strain or plane stress."},
+
+  {"material", Kind::named_tables, required, any, "", "", "[material.granite]", "The rocks of the scene, one table each, in this order."},
+  {"material.*", Kind::table, optional, any, "", "", "[material.granite]", "One rock."},
+  {"material.*.density", Kind::number, required, above_to(0, 1e12), "", "", "2600.0", "[kg/m3] Density."},
+  {"material.*.youngs_modulus", Kind::number, optional, above_to(0, 1e20), "", "<none>", "40e9", "[Pa] Young's modulus; needed only where a block may deform."},
+  {"material.*.poissons_ratio", Kind::number, optional, from_below(0, 0.5), "", "<none>", "0.25", "Poisson's ratio; needed only where a block may deform."},
+
+  {"joint", Kind::named_tables, required, any, "", "", "[joint.default]", "Contact laws: default for every pair of materials, further ones for the pair they name."},
+  {"joint.*", Kind::table, optional, any, "", "", "[joint.default]", "One contact law; keys missing in another law than default are taken from default."},
+  {"joint.*.materials", Kind::pair_of_names, optional, any, "", "<required except in default>", "[\"granite\", \"clay\"]", "The pair of materials that takes this law."},
+  {"joint.*.normal_stiffness", Kind::number, optional, above_to(0, 1e20), "", "<exactly one of this and allowed_overlap>", "1e9", "[Pa/m] Normal stiffness k_n = 2 p_n/H."},
+  {"joint.*.allowed_overlap", Kind::number, optional, between(0, 1), "", "<exactly one of this and normal_stiffness>", "0.001", "Overlap under the weight of the scene relative to the block size, from which the normal stiffness follows."},
+  {"joint.*.tangential_ratio", Kind::number, optional, above_to(0, 1000), "", "0.5", "0.5", "Tangential stiffness over normal stiffness."},
+  {"joint.*.friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "0.0", "35.0", "[degrees] Friction angle."},
+  {"joint.*.cohesion", Kind::number, optional, from_to(0, 1e20), "", "0.0", "0.0", "[Pa] Cohesion."},
+
+  {"block[]", Kind::table_list, required, any, "", "", "[[block]]", "The blocks, in the order of their ids."},
+  {"block[].name", Kind::name, optional, any, "", "<b and the position of the block, from 0>", "\"slider\"", "Name, unique in the scene."},
+  {"block[].material", Kind::name, required, any, "", "", "\"granite\"", "One of the materials."},
+  {"block[].vertices", Kind::polygon, required, from_to(-1e9, 1e9), "", "", "[[0, 0], [1, 0], [1, 1], [0, 1]]", "[m] Corners in order around the block, either way round."},
+  {"block[].velocity", Kind::vector3, optional, from_to(-1e9, 1e9), "", "[0.0, 0.0, 0.0]", "[0.0, 0.0, 0.0]", "[m/s, m/s, rad/s] Initial velocity of the centroid and angular velocity, counter-clockwise positive."},
+  {"block[].fixed", Kind::boolean, optional, any, "", "false", "true", "A fixed block never moves."},
+  {"block[].fidelity", Kind::choice, optional, any, "auto rigid deformable", "<run.fidelity>", "\"rigid\"", "How this block deforms; in this version all are rigid."},
+  {"block[].fixed_points", Kind::later, optional, any, "", "", "[[0, 0]]", "[m] Points of the block that are held."},
+  {"block[].prescribed_velocity", Kind::later, optional, any, "", "", "[1.0, 0.0, 0.0]", "[m/s, m/s, rad/s] Motion forced on the block."},
+  {"block[].load", Kind::later, optional, any, "", "", "[[block.load]]", "Point loads."},
+
+  {"wall", Kind::later, optional, any, "", "", "[[wall]]", "Generator of a wall of bricks."},
+  {"pyramid", Kind::later, optional, any, "", "", "[[pyramid]]", "Generator of a pyramid of bricks."},
+  {"blocks", Kind::later, optional, any, "", "", "[blocks]", "Blocks from an HDF5 file."},
+
+  {"output", Kind::table, optional, any, "", "", "[output]", "What is written and when."},
+  {"output.interval", Kind::number, optional, above_to(0, 1e12), "", "<duration/100>", "0.02", "[s] Time between frames."},
+  {"output.history_interval", Kind::number, optional, above_to(0, 1e12), "", "<interval>", "0.02", "[s] Time between rows of the histories; divides interval or is a multiple of it."},
+  {"output.contacts", Kind::boolean, optional, any, "", "true", "true", "Whether contacts are written beside the frames."},
+
+  {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks whose history is written."},
+  {"monitor[].block", Kind::name, required, any, "", "", "\"slider\"", "Name of the block."},
+  {"monitor[].name", Kind::later, optional, any, "", "", "\"roof\"", "Name of a monitored point."},
+  {"monitor[].point", Kind::later, optional, any, "", "", "[0.0, 1.0]", "[m] Point that follows the block that holds it."},
+};
+// clang-format on
+
+} // namespace
+
+std::span<const Key> scene_keys() {
+  return all_keys;
+}
+
+std::string_view parent_of(const Key &key) {
+  const std::size_t dot = key.path.rfind('.');
+  return dot == std::string_view::npos ? std::string_view() : key.path.substr(0, dot);
+}
+
+std::string_view name_of(const Key &key) {
+  const std::size_t dot = key.path.rfind('.');
+  std::string_view name = dot == std::string_view::npos ? key.path : key.path.substr(dot + 1);
+  if (name.ends_with("[]")) {
+    name.remove_suffix(2);
+  }
+  return name;
+}
+
+const Key *find_key(std::string_view parent, std::string_view name) {
+  for (const Key &key : all_keys) {
+    if (parent_of(key) == parent && (name_of(key) == name || name_of(key) == "*")) {
+      return &key;
+    }
+  }
+  return nullptr;
+}
+
+std::vector<std::string> names_below(std::string_view parent) {
+  std::vector<std::string> names;
+  for (const Key &key : all_keys) {
+    if (parent_of(key) == parent) {
+      names.emplace_back(name_of(key));
+    }
+  }
+  return names;
+}
+
+std::string header_of(std::string_view parent) {
+  if (parent.ends_with("[]")) {
+    return fmt::format("[[{}]]", parent.substr(0, parent.size() - 2));
+  }
+  return fmt::format("[{}]", parent);
+}
+
+std::vector<std::string> words_of(std::string_view choices) {
+  std::istringstream stream{std::string(choices)};
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) {
+    words.push_back(word);
+  }
+  return words;
+}
+
+std::string describe(const Range &range) {
+  const std::string low = fmt::format("{} {:g}", range.low_open ? "above" : "at least", range.low);
+  return fmt::format("{} and {} {:g}", low, range.high_open ? "below" : "at most", range.high);
+}
+
+bool is_name(std::string_view text) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '.' || c == '-';
+  };
+  return !text.empty() && text.size() <= longest_name && std::all_of(text.begin(), text.end(), allowed);
+}
+
+} // namespace gcpdda::scene_text

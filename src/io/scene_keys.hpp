@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gcpdda::scene_text {
+
+/// What a key holds.
+enum class Kind {
+  table,          ///< [run]
+  named_tables,   ///< [material.NAME]
+  table_list,     ///< [[block]]
+  number,         ///< real or integer
+  number_or_auto, ///< the same, or "auto"
+  boolean,
+  choice, ///< one of a few words
+  name,
+  pair_of_names,
+  vector2,
+  vector3,
+  polygon, ///< list of [x, y]
+  later    ///< part of the contract that this version does not have
+};
+
+/// Numbers a key accepts; also each number of a vector or polygon.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;
+  bool high_open = false;
+
+  [[nodiscard]] bool holds(double x) const {
+    return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
+  }
+};
+
+enum class Need { required, optional };
+
+/// One row of the table of scene keys: all that is known of a key by itself. What several keys mean together
+/// is checked where the scene is put together.
+struct Key {
+  std::string_view path; ///< `[]` ends a list of tables, `*` stands for a name a person chooses
+  Kind kind;
+  Need need;
+  Range range;
+  std::string_view choices;  ///< separated by blanks, in the order of the enumeration they are read into
+  std::string_view fallback; ///< value when absent, as TOML or, between < and >, in words
+  std::string_view example;  ///< as TOML
+  std::string_view doc;      ///< one sentence; starts with the unit in brackets if there is one
+};
+
+inline constexpr std::size_t most_blocks = 10'000;
+inline constexpr std::size_t most_vertices = 10'000;
+inline constexpr std::size_t longest_name = 100;
+
+/// Every key of the scene contract, in the order of its description.
+std::span<const Key> scene_keys();
+
+/// "block[].vertices" -> "block[]", "vertices"; "block[]" -> "", "block".
+std::string_view parent_of(const Key &key);
+std::string_view name_of(const Key &key);
+
+/// The row of `name` directly below the row `parent` ("" for the top level); null if there is none.
+const Key *find_key(std::string_view parent, std::string_view name);
+
+/// Names of the keys directly below `parent`, in table order.
+std::vector<std::string> names_below(std::string_view parent);
+
+/// How a person writes the table a key lives in: "[run]", "[material.*]", "[[block]]".
+std::string header_of(std::string_view parent);
+
+/// The words of a choice.
+std::vector<std::string> words_of(std::string_view choices);
+
+/// "above 0 and at most 1".
+std::string describe(const Range &range);
+
+/// Letters, digits, _ . and -, 1 to longest_name of them: fit for a file name on any system.
+bool is_name(std::string_view text);
+
+} // namespace gcpdda::scene_text

@@ -1,0 +1,235 @@
+#include "scene_sets.hpp"
+
+#include "edit_distance.hpp"
+#include "scene_keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace gcpdda::scene_text {
+
+namespace {
+
+using Path = std::vector<std::string>;
+
+// toml++ recurses once per dotted level and would overflow the stack: the position of a key with absurdly
+// many levels, if there is one. A stretch of text that can hold a dotted key ends at any of the other marks
+// of TOML.
+std::optional<toml::source_position> find_endless_key(std::string_view text) {
+  constexpr int most_levels = 200;
+  toml::source_position at{1, 1};
+  int dots = 0;
+  bool comment = false;
+  bool line_start = true;
+  for (const char c : text) {
+    if (c == '\n') {
+      at = {at.line + 1, 0};
+      comment = false;
+    }
+    comment = comment || (line_start && c == '#');
+    line_start = c == '\n' || (line_start && (c == ' ' || c == '\t'));
+    const bool ends = c == '\n' || std::string_view("=,{}[]").find(c) != std::string_view::npos;
+    dots = ends ? 0 : dots + (c == '.' ? 1 : 0);
+    if (dots > most_levels && !comment) {
+      return at;
+    }
+    ++at.column;
+  }
+  return std::nullopt;
+}
+
+std::optional<toml::table> parse(std::string_view text, const toml::source_path_ptr &path, Faults &faults) {
+  toml::source_region where{{1, 1}, {1, 1}, path};
+  if (const auto position = find_endless_key(text)) {
+    where.begin = *position;
+    faults.add(where, "key with more than 200 levels", "", "remove the superfluous dots");
+    return std::nullopt;
+  }
+  try {
+    return toml::parse(text, path ? std::string_view(*path) : std::string_view());
+  } catch (const toml::parse_error &error) {
+    where.begin = error.source().begin;
+    faults.add(where, "not valid TOML", std::string(error.description()),
+               "check quotes, brackets and = up to this place");
+    return std::nullopt;
+  }
+}
+
+// "block.'a b'.fixed" -> block, a b, fixed; nothing where a segment is empty or a quote stays open.
+std::optional<Path> split(std::string_view dotted) {
+  Path path(1);
+  char quote = 0;
+  bool complete = false; // a quoted segment takes nothing more
+  for (const char c : dotted) {
+    if (quote != 0) {
+      complete = c == quote;
+      quote = complete ? 0 : quote;
+      if (!complete) {
+        path.back() += c;
+      }
+    } else if (c == '.') {
+      if (path.back().empty()) {
+        return std::nullopt;
+      }
+      path.emplace_back();
+      complete = false;
+    } else if ((c == '"' || c == '\'') && path.back().empty() && !complete) {
+      quote = c;
+    } else if (is_name(std::string_view(&c, 1)) && !complete) {
+      path.back() += c;
+    } else {
+      return std::nullopt;
+    }
+  }
+  constexpr std::size_t deepest = 16;
+  if (quote != 0 || path.back().empty() || path.size() > deepest) {
+    return std::nullopt;
+  }
+  return path;
+}
+
+std::string quoted(const std::string &text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      result += '\\';
+    }
+    result += c;
+  }
+  return result + '"';
+}
+
+bool is_bare_word(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return is_name(std::string_view(&c, 1)) || c == '+' || c == '/';
+  });
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  const std::size_t last = text.find_last_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
+}
+
+// The tree of one assignment. The value is tried alone first, so that a bare word can be told from broken
+// TOML.
+std::optional<toml::table> parse_assignment(const Path &path, std::string_view value,
+                                            const toml::source_path_ptr &label, Faults &faults) {
+  std::string text(trimmed(value));
+  if (is_bare_word(text)) {
+    try {
+      (void)toml::parse("value = " + text);
+    } catch (const toml::parse_error &) {
+      text = quoted(text);
+    }
+  }
+  std::string keys;
+  for (const std::string &segment : path) {
+    keys += (keys.empty() ? "" : ".") + quoted(segment);
+  }
+  auto tree = parse(keys + " = " + text, label, faults);
+  // A line break in the value could smuggle in a second assignment.
+  const toml::table *level = tree ? &*tree : nullptr;
+  for (std::size_t i = 0; level != nullptr && i < path.size(); ++i) {
+    if (level->size() != 1) {
+      faults.add({{}, {}, label}, "the value is more than one TOML value", "",
+                 "give every assignment its own --set");
+      return std::nullopt;
+    }
+    level = level->begin()->second.as_table();
+  }
+  return tree;
+}
+
+// Finds the block that path[1], or path[1] to path[k] joined by dots (names may hold dots), names, and takes
+// these segments off the path.
+toml::table *find_block(toml::table &root, Path &path, const toml::source_region &where, Faults &faults) {
+  std::vector<std::string> names;
+  toml::array *blocks = root["block"].as_array();
+  for (std::size_t i = 0; blocks != nullptr && i < blocks->size(); ++i) {
+    names.push_back(block_name((*blocks)[i], i));
+  }
+  std::string name;
+  for (std::size_t k = 1; k + 1 < path.size(); ++k) {
+    name += (k == 1 ? "" : ".") + path[k];
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      continue;
+    }
+    if (toml::table *block = (*blocks)[static_cast<std::size_t>(found - names.begin())].as_table()) {
+      path.erase(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(k + 1));
+      return block;
+    }
+  }
+  if (name.empty()) {
+    faults.add(where, fmt::format("'block.{}' names no key of a block", shown(path[1])), "",
+               "for example --set block.slider.fixed=true");
+    return nullptr;
+  }
+  const std::string near = nearest_word(name, names);
+  faults.add(where, fmt::format("no block is named '{}'", shown(name)), "",
+             near.empty() ? "unnamed blocks are b<n>, from 0 in file order"
+                          : fmt::format("did you mean '{}'?", near));
+  return nullptr;
+}
+
+} // namespace
+
+std::optional<toml::table> parse_scene(std::string_view text, Faults &faults) {
+  return parse(text, nullptr, faults);
+}
+
+std::string block_name(const toml::node &block, std::size_t index) {
+  if (const toml::table *table = block.as_table()) {
+    const auto name = (*table)["name"].value<std::string_view>();
+    if (name && is_name(*name)) {
+      return std::string(*name);
+    }
+  }
+  return fmt::format("b{}", index);
+}
+
+void apply_set(toml::table &root, const std::string &set, std::size_t index, Faults &faults) {
+  const auto label = std::make_shared<const std::string>(faults.origins().label_of_set(index));
+  const toml::source_region where{{}, {}, label};
+  const std::size_t equals = set.find('=');
+  auto path =
+      equals == std::string::npos ? std::nullopt : split(trimmed(std::string_view(set).substr(0, equals)));
+  if (!path) {
+    faults.add(where, "not of the form path=value", "a path is made of names joined by dots",
+               "for example --set run.time_step=1e-4");
+    return;
+  }
+  toml::table *table = &root;
+  if (path->front() == "block" && path->size() > 1) {
+    table = find_block(root, *path, where, faults);
+  }
+  auto tree = table == nullptr
+                  ? std::nullopt
+                  : parse_assignment(*path, std::string_view(set).substr(equals + 1), label, faults);
+  if (!tree) {
+    return;
+  }
+  // Down as far as the tables exist; what remains of the new tree, value or tables around it, is moved in.
+  toml::table *added = &*tree;
+  for (std::size_t i = 0;; ++i) {
+    const auto entry = added->begin();
+    toml::node *existing = table->get((*path)[i]);
+    if (i + 1 == path->size() || existing == nullptr) {
+      table->insert_or_assign(entry->first, std::move(entry->second));
+      return;
+    }
+    if (!existing->is_table()) {
+      faults.add(where, fmt::format("'{}' is not a table", shown((*path)[i])), "the path goes on below it",
+                 "shorten the path");
+      return;
+    }
+    table = existing->as_table();
+    added = entry->second.as_table();
+  }
+}
+
+} // namespace gcpdda::scene_text

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "scene_faults.hpp"
+#include "scene_toml.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace gcpdda::scene_text {
+
+/// The TOML tree of the scene file; nothing, and one fault, where the text is not TOML.
+std::optional<toml::table> parse_scene(std::string_view text, Faults &faults);
+
+/// Puts "dotted.path=value" into the tree; tables on the way are made. Whether the key exists is for the
+/// check of the whole tree to say.
+void apply_set(toml::table &root, const std::string &set, std::size_t index, Faults &faults);
+
+/// The name of block number `index`: its own if it has a fit one, else b<index>.
+std::string block_name(const toml::node &block, std::size_t index);
+
+} // namespace gcpdda::scene_text

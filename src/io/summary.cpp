@@ -1,0 +1,114 @@
+#include "gcpdda/io/result_files.hpp"
+
+#include "durable_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <concepts>
+
+namespace gcpdda {
+
+namespace {
+
+std::string json(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : "null"; // JSON knows no inf and nan
+}
+
+std::string json(std::integral auto value) {
+  return fmt::format("{}", value);
+}
+
+std::string json(const std::string &text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + '"';
+}
+
+std::string json(const std::vector<std::int64_t> &values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+/// `{"key": value, ...}` on one line, or on a line per key.
+class JsonObject {
+public:
+  explicit JsonObject(std::string between = ", ") : between_(std::move(between)) {}
+  template <class Value> JsonObject &add(const std::string &key, const Value &value) {
+    return add_raw(key, json(value));
+  }
+  JsonObject &add(const std::string &key, const JsonObject &value) { return add_raw(key, value.text()); }
+  [[nodiscard]] std::string text() const { return "{" + members_ + "}"; }
+
+private:
+  JsonObject &add_raw(const std::string &key, const std::string &value) {
+    members_ += (members_.empty() ? "" : between_) + json(key) + ": " + value;
+    return *this;
+  }
+  std::string between_;
+  std::string members_;
+};
+
+JsonObject energy_object(const EnergyRow &row) {
+  return JsonObject()
+      .add("kinetic", row.kinetic)
+      .add("strain", row.strain)
+      .add("contact_normal", row.contact_normal)
+      .add("contact_stick", row.contact_stick)
+      .add("gravity", row.gravity)
+      .add("friction_loss", row.friction_loss)
+      .add("damping_loss", row.damping_loss)
+      .add("boundary_work", row.boundary_work)
+      .add("residual", row.residual)
+      .add("unbalanced_ratio", row.unbalanced_ratio)
+      .add("max_speed", row.max_speed);
+}
+
+} // namespace
+
+void write_summary(const std::filesystem::path &directory, const RunSummary &summary) {
+  JsonObject phases;
+  for (const auto &[name, seconds] : summary.phases) {
+    phases.add(name, JsonObject().add("min", seconds[0]).add("mean", seconds[1]).add("max", seconds[2]));
+  }
+  JsonObject counters;
+  for (const auto &[name, count] : summary.counters) {
+    counters.add(name, count);
+  }
+  JsonObject object(",\n ");
+  object.add("ranks", summary.ranks)
+      .add("blocks", summary.blocks)
+      .add("fixed_blocks", summary.fixed_blocks)
+      .add("steps", summary.steps)
+      .add("time", summary.time)
+      .add("time_step", summary.time_step)
+      .add("time_step_min", summary.time_step_min)
+      .add("contacts", summary.contacts)
+      .add("contact_steps", summary.contact_steps)
+      .add("evaluations_per_rank", summary.evaluations_per_rank)
+      .add("wall_s", summary.wall_s)
+      .add("cpu_s", summary.cpu_s)
+      .add("setup_wall_s", summary.setup_wall_s)
+      .add("output_wall_s", summary.output_wall_s)
+      .add("total_wall_s", summary.total_wall_s)
+      .add("max_overlap", summary.max_overlap)
+      .add("energy", energy_object(summary.energy))
+      .add("imbalance", summary.imbalance)
+      .add("bytes_sent_per_step", summary.bytes_sent_per_step)
+      .add("messages_per_step", summary.messages_per_step)
+      .add("phases", phases)
+      .add("counters", counters)
+      .add("verdict", summary.verdict)
+      .add("message", summary.message);
+  write_file(directory / "summary.json", object.text() + "\n");
+}
+
+} // namespace gcpdda

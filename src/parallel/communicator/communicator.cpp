@@ -1,0 +1,220 @@
+// The wall: the MPI calls of the program outside parallel HDF5. MPI errors are returned, not fatal, so that a
+// failed call ends with its name and reason in the ordinary error path.
+
+#include "gcpdda/parallel/communicator.hpp"
+
+#include "gcpdda/base/check.hpp"
+
+// Open MPI's and MPICH's old C++ interface would need a library of its own.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include <mpi.h>
+
+#include <cstdlib>
+#include <exception>
+#include <limits>
+#include <utility>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr int data_tag = 1;
+constexpr int round_tag = 2;
+
+void check(int code, const char *call) {
+  if (code == MPI_SUCCESS) {
+    return;
+  }
+  char text[MPI_MAX_ERROR_STRING] = "";
+  int length = 0;
+  MPI_Error_string(code, text, &length);
+  throw InternalError(std::string(call) + " failed: " + text);
+}
+
+/// Counts of MPI 3 are int.
+int count_of(std::size_t size) {
+  if (size > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    throw InternalError("a message of " + std::to_string(size) +
+                        " is too long: MPI counts end at 2^31-1 bytes or entries, use more ranks");
+  }
+  return static_cast<int>(size);
+}
+
+template <class T>
+void reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation, MPI_Comm communicator) {
+  check(MPI_Allreduce(MPI_IN_PLACE, values.data(), count_of(values.size()), type, operation, communicator),
+        "MPI_Allreduce");
+}
+
+void wait_all(std::vector<MPI_Request> &requests) {
+  check(MPI_Waitall(count_of(requests.size()), requests.data(), MPI_STATUSES_IGNORE), "MPI_Waitall");
+}
+
+template <class Text> void broadcast_resizable(Text &data, MPI_Comm communicator) {
+  std::uint64_t size = data.size();
+  check(MPI_Bcast(&size, 1, MPI_UINT64_T, 0, communicator), "MPI_Bcast");
+  const int count = count_of(size);
+  data.resize(size);
+  check(MPI_Bcast(data.data(), count, MPI_BYTE, 0, communicator), "MPI_Bcast");
+}
+
+} // namespace
+
+struct Communicator::Handle {
+  MPI_Comm value = MPI_COMM_NULL;
+  /// Kept between rounds so that a step does not allocate.
+  std::vector<MPI_Request> requests;
+
+  explicit Handle(MPI_Comm parent) {
+    check(MPI_Comm_dup(parent, &value), "MPI_Comm_dup");
+    check(MPI_Comm_set_errhandler(value, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+  }
+  ~Handle() {
+    int finalized = 0;
+    MPI_Finalized(&finalized);
+    // Freeing is collective: after an exception the other ranks are elsewhere.
+    if (finalized == 0 && std::uncaught_exceptions() == 0) {
+      MPI_Comm_free(&value);
+    }
+  }
+  Handle(const Handle &) = delete;
+  Handle &operator=(const Handle &) = delete;
+};
+
+Communicator::Communicator(std::shared_ptr<Handle> handle) : handle_(std::move(handle)) {
+  check(MPI_Comm_rank(handle_->value, &rank_), "MPI_Comm_rank");
+  check(MPI_Comm_size(handle_->value, &size_), "MPI_Comm_size");
+}
+
+Communicator Communicator::world() {
+  return Communicator(std::make_shared<Handle>(MPI_COMM_WORLD));
+}
+
+Communicator Communicator::self() {
+  return Communicator(std::make_shared<Handle>(MPI_COMM_SELF));
+}
+
+void Communicator::barrier() const {
+  check(MPI_Barrier(handle_->value), "MPI_Barrier");
+}
+
+void Communicator::max(std::span<double> values) const {
+  reduce(values, MPI_DOUBLE, MPI_MAX, handle_->value);
+}
+
+void Communicator::max(std::span<std::int64_t> values) const {
+  reduce(values, MPI_INT64_T, MPI_MAX, handle_->value);
+}
+
+void Communicator::sum(std::span<std::int64_t> values) const {
+  reduce(values, MPI_INT64_T, MPI_SUM, handle_->value);
+}
+
+void Communicator::broadcast(Bytes &bytes) const {
+  broadcast_resizable(bytes, handle_->value);
+}
+
+void Communicator::broadcast(std::string &text) const {
+  broadcast_resizable(text, handle_->value);
+}
+
+std::vector<Bytes> Communicator::all_to_all(const std::vector<Bytes> &send) const {
+  const auto num_ranks = static_cast<std::size_t>(size_);
+  expect(send.size() == num_ranks, "all_to_all: one message for each rank");
+  std::vector<int> send_sizes(num_ranks);
+  std::vector<int> receive_sizes(num_ranks);
+  for (std::size_t r = 0; r < num_ranks; ++r) {
+    send_sizes[r] = count_of(send[r].size());
+  }
+  check(MPI_Alltoall(send_sizes.data(), 1, MPI_INT, receive_sizes.data(), 1, MPI_INT, handle_->value),
+        "MPI_Alltoall");
+
+  // Only non-empty messages travel: migration has few partners, Alltoallv would visit them all.
+  const auto own = static_cast<std::size_t>(rank_);
+  std::vector<Bytes> received(num_ranks);
+  std::vector<MPI_Request> requests;
+  requests.reserve(2 * num_ranks);
+  for (std::size_t r = 0; r < num_ranks; ++r) {
+    if (r != own && receive_sizes[r] > 0) {
+      received[r].resize(static_cast<std::size_t>(receive_sizes[r]));
+      check(MPI_Irecv(received[r].data(), receive_sizes[r], MPI_BYTE, static_cast<int>(r), data_tag,
+                      handle_->value, &requests.emplace_back(MPI_REQUEST_NULL)),
+            "MPI_Irecv");
+    }
+  }
+  for (std::size_t r = 0; r < num_ranks; ++r) {
+    if (r != own && send_sizes[r] > 0) {
+      check(MPI_Isend(send[r].data(), send_sizes[r], MPI_BYTE, static_cast<int>(r), data_tag, handle_->value,
+                      &requests.emplace_back(MPI_REQUEST_NULL)),
+            "MPI_Isend");
+    }
+  }
+  received[own] = send[own];
+  wait_all(requests);
+  return received;
+}
+
+std::vector<Bytes> Communicator::all_gather(const Bytes &mine) const {
+  const auto num_ranks = static_cast<std::size_t>(size_);
+  const int my_size = count_of(mine.size());
+  std::vector<int> sizes(num_ranks);
+  check(MPI_Allgather(&my_size, 1, MPI_INT, sizes.data(), 1, MPI_INT, handle_->value), "MPI_Allgather");
+  std::vector<int> offsets(num_ranks);
+  std::size_t total = 0;
+  for (std::size_t r = 0; r < num_ranks; ++r) {
+    offsets[r] = count_of(total);
+    total += static_cast<std::size_t>(sizes[r]);
+  }
+  Bytes all(static_cast<std::size_t>(count_of(total)));
+  check(MPI_Allgatherv(mine.data(), my_size, MPI_BYTE, all.data(), sizes.data(), offsets.data(), MPI_BYTE,
+                       handle_->value),
+        "MPI_Allgatherv");
+
+  std::vector<Bytes> received(num_ranks);
+  for (std::size_t r = 0; r < num_ranks; ++r) {
+    const auto begin = all.begin() + offsets[r];
+    received[r].assign(begin, begin + sizes[r]);
+  }
+  return received;
+}
+
+void Communicator::exchange(std::span<const Message> send, std::span<const Message> receive) const {
+  // Several messages to one peer share the tag: MPI keeps their order.
+  std::vector<MPI_Request> &requests = handle_->requests;
+  requests.assign(send.size() + receive.size(), MPI_REQUEST_NULL);
+  std::size_t next = 0;
+  for (const Message &message : receive) {
+    check(MPI_Irecv(message.bytes.data(), count_of(message.bytes.size()), MPI_BYTE, message.peer, round_tag,
+                    handle_->value, &requests[next++]),
+          "MPI_Irecv");
+  }
+  for (const Message &message : send) {
+    check(MPI_Isend(message.bytes.data(), count_of(message.bytes.size()), MPI_BYTE, message.peer, round_tag,
+                    handle_->value, &requests[next++]),
+          "MPI_Isend");
+  }
+  wait_all(requests);
+}
+
+const void *Communicator::native() const {
+  return &handle_->value;
+}
+
+MpiScope::MpiScope(int &argc, char **&argv) {
+  check(MPI_Init(&argc, &argv), "MPI_Init");
+}
+
+MpiScope::~MpiScope() {
+  if (std::uncaught_exceptions() > 0) {
+    abort(1); // MPI_Finalize would wait for ranks that wait for this one
+  }
+  MPI_Finalize();
+}
+
+void MpiScope::abort(int exit_code) {
+  MPI_Abort(MPI_COMM_WORLD, exit_code);
+  std::_Exit(exit_code);
+}
+
+} // namespace gcpdda

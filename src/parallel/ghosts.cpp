@@ -1,0 +1,206 @@
+#include "gcpdda/parallel/ghosts.hpp"
+
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/parallel/packing.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace gcpdda {
+
+namespace {
+
+/// What the owner of a ghost sends each step.
+struct GhostMotion {
+  RigidDof trial;
+  RigidDof velocity;
+};
+
+/// A published box of another rank.
+struct PublishedBox {
+  std::int32_t rank = 0;
+  Aabb box;
+};
+
+/// Published boxes of other ranks, sorted by the background cells they cover.
+class BoxesByCell {
+public:
+  BoxesByCell(const CellGrid &grid, const std::vector<PublishedBox> &boxes) : grid_(grid), boxes_(boxes) {
+    for (std::uint32_t k = 0; k < boxes.size(); ++k) {
+      for_cells(boxes[k].box, [&](std::int64_t cell) { entries_.emplace_back(cell, k); });
+    }
+    std::sort(entries_.begin(), entries_.end());
+  }
+
+  /// Ranks with a published box that meets this one, ascending, each once.
+  void ranks_meeting(const Aabb &box, std::vector<std::int32_t> &ranks) const {
+    ranks.clear();
+    if (entries_.empty()) {
+      return;
+    }
+    for_cells(box, [&](std::int64_t cell) {
+      auto entry = std::lower_bound(entries_.begin(), entries_.end(), std::pair(cell, std::uint32_t{0}));
+      for (; entry != entries_.end() && entry->first == cell; ++entry) {
+        if (boxes_[entry->second].box.meets(box)) {
+          ranks.push_back(boxes_[entry->second].rank);
+        }
+      }
+    });
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+  }
+
+private:
+  // Cells are clamped to the grid, which is monotone: two boxes that meet share a cell.
+  template <class Visit> void for_cells(const Aabb &box, Visit &&visit) const {
+    const std::int64_t low = grid_.cell_of(box.low);
+    const std::int64_t high = grid_.cell_of(box.high);
+    for (std::int64_t j = low / grid_.columns; j <= high / grid_.columns; ++j) {
+      for (std::int64_t i = low % grid_.columns; i <= high % grid_.columns; ++i) {
+        visit(j * grid_.columns + i);
+      }
+    }
+  }
+
+  CellGrid grid_;
+  const std::vector<PublishedBox> &boxes_;
+  std::vector<std::pair<std::int64_t, std::uint32_t>> entries_;
+};
+
+/// Union of the reach boxes of the blocks in each occupied cell.
+std::vector<Aabb> boxes_of_cells(const DomainMap &map, const BlockSystem &system, std::span<const Aabb> boxes) {
+  std::map<std::int64_t, Aabb> by_cell;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    by_cell[map.grid.cell_of(system.centroid(row))].include(boxes[row]);
+  }
+  std::vector<Aabb> published;
+  for (const auto &[cell, box] : by_cell) {
+    published.push_back(box);
+  }
+  return published;
+}
+
+} // namespace
+
+std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator, const DomainMap &map,
+                                                    const BlockSystem &system, std::span<const Aabb> boxes) {
+  const auto num_ranks = static_cast<std::size_t>(communicator.size());
+  const std::vector<Aabb> mine = boxes_of_cells(map, system, boxes);
+  Aabb hull;
+  for (const Aabb &box : mine) {
+    hull.include(box);
+  }
+  // One hull from everybody, then details only between ranks whose hulls meet.
+  const std::vector<std::vector<Aabb>> hulls = communicator.all_gather(std::vector<Aabb>{hull});
+  std::vector<std::vector<Aabb>> details(num_ranks);
+  for (std::size_t r = 0; r < num_ranks; ++r) {
+    if (static_cast<int>(r) != communicator.rank() && hulls[r][0].meets(hull)) {
+      std::copy_if(mine.begin(), mine.end(), std::back_inserter(details[r]),
+                   [&](const Aabb &box) { return box.meets(hulls[r][0]); });
+    }
+  }
+  std::vector<PublishedBox> published;
+  const auto received = communicator.all_to_all(details);
+  for (std::size_t r = 0; r < num_ranks; ++r) {
+    for (const Aabb &box : received[r]) {
+      published.push_back({static_cast<std::int32_t>(r), box});
+    }
+  }
+  const BoxesByCell lookup(map.grid, published);
+  std::vector<std::vector<std::uint32_t>> rows(num_ranks);
+  std::vector<std::int32_t> ranks;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    lookup.ranks_meeting(boxes[row], ranks);
+    for (const std::int32_t r : ranks) {
+      rows[static_cast<std::size_t>(r)].push_back(static_cast<std::uint32_t>(row));
+    }
+  }
+  return rows;
+}
+
+void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const Aabb> boxes) {
+  expect(system.num_ghosts == 0, "ghosts are rebuilt from owned blocks alone");
+  const auto rows = border_rows(communicator_, map, system, boxes);
+  std::vector<Bytes> messages(rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (const std::uint32_t row : rows[r]) {
+      pack_row(system, row, messages[r]);
+    }
+  }
+  BlockSystem arrived;
+  std::vector<int> sender;
+  const std::vector<Bytes> received = communicator_.all_to_all(messages);
+  for (std::size_t r = 0; r < received.size(); ++r) {
+    unpack_rows(received[r], arrived);
+    sender.resize(arrived.num_rows(), static_cast<int>(r));
+  }
+  std::vector<std::size_t> order(arrived.num_rows());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return arrived.properties[a].id < arrived.properties[b].id; });
+
+  BlockSystem whole;
+  const auto append_range = [&](std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      append_row(whole, system, row);
+    }
+  };
+  append_range(0, system.num_owned);
+  neighbours_.clear();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (!rows[r].empty() || !received[r].empty()) {
+      neighbours_.push_back({static_cast<int>(r), rows[r], {}, {}, {}});
+    }
+  }
+  // Senders pack in order of id, so walking the ghosts by id meets each sender's rows in message order.
+  for (const std::size_t ghost : order) {
+    const auto neighbour = std::find_if(neighbours_.begin(), neighbours_.end(),
+                                        [&](const Neighbour &n) { return n.rank == sender[ghost]; });
+    neighbour->receive_rows.push_back(static_cast<std::uint32_t>(whole.num_rows()));
+    append_row(whole, arrived, ghost);
+  }
+  append_range(system.num_owned, system.num_rows());
+  whole.num_owned = system.num_owned;
+  whole.num_ghosts = order.size();
+  whole.num_fixed = system.num_fixed;
+  system = std::move(whole);
+}
+
+void Ghosts::transfer() {
+  outgoing_.clear();
+  incoming_.clear();
+  for (Neighbour &n : neighbours_) {
+    if (!n.send.empty()) {
+      outgoing_.push_back({n.rank, n.send});
+      ++messages_sent_;
+      bytes_sent_ += static_cast<std::int64_t>(n.send.size());
+    }
+    if (!n.receive.empty()) {
+      incoming_.push_back({n.rank, n.receive});
+    }
+  }
+  communicator_.exchange(outgoing_, incoming_);
+}
+
+void Ghosts::update(BlockSystem &system) {
+  pack(
+      [&](std::size_t row, std::byte *to) {
+        const GhostMotion motion{system.trial[row], system.velocity[row]};
+        std::memcpy(to, &motion, sizeof motion);
+      },
+      sizeof(GhostMotion));
+  transfer();
+  unpack(
+      [&](std::size_t row, const std::byte *from) {
+        GhostMotion motion;
+        std::memcpy(&motion, from, sizeof motion);
+        system.trial_previous[row] = system.trial[row];
+        system.trial[row] = motion.trial;
+        system.velocity[row] = motion.velocity;
+      },
+      sizeof(GhostMotion));
+  pose(system, system.num_owned, system.first_fixed());
+}
+
+} // namespace gcpdda

@@ -1,0 +1,139 @@
+#include "gcpdda/simulation/energy_ledger.hpp"
+
+#include "gcpdda/base/exact_sum.hpp"
+
+#include <algorithm>
+
+namespace gcpdda {
+
+namespace {
+
+/// Terms summed over all blocks and pairs of all ranks.
+struct Terms {
+  ExactSum kinetic;
+  ExactSum normal;
+  ExactSum stick; ///< in the springs at x*_n
+  ExactSum gravity;
+  ExactSum shear_work; ///< by friction up to x*_n
+  ExactSum damping_work;
+  ExactSum open_shear_work; ///< from x*_n to the middle
+
+  void agree(const Communicator &communicator) {
+    for (ExactSum *sum : {&kinetic, &normal, &stick, &gravity, &shear_work, &damping_work, &open_shear_work}) {
+      communicator.sum(sum->limbs());
+    }
+  }
+};
+
+double kinetic_energy(const BlockProperties &block, const RigidDof &velocity) {
+  return 0.5 * (block.mass * dot(velocity.u, velocity.u) + block.inertia * velocity.r * velocity.r);
+}
+
+void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
+  const BlockSystem &blocks = simulation.blocks();
+  for (const CandidatePair &pair : simulation.candidates().pairs) {
+    const std::size_t a = pair.lower.value;
+    const std::size_t b = pair.higher.value;
+    if (simulation.counts_here(pair) && blocks.box[a].meets(blocks.box[b])) {
+      sum.add(share * pair.half_stiffness * overlap_energy(view_of(blocks, a), view_of(blocks, b)));
+    }
+  }
+}
+
+void add_stick(const Simulation &simulation, ExactSum &sum) {
+  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
+    const CandidatePair &pair = simulation.candidates().pairs[k];
+    const RegionMemory &memory = simulation.history().regions[k];
+    if (memory.shear != 0.0 && simulation.counts_here(pair)) {
+      sum.add(0.5 * memory.shear * memory.shear / (pair.tangential_stiffness * memory.longest));
+    }
+  }
+}
+
+Terms initial_terms(const Simulation &simulation) {
+  Terms terms;
+  const BlockSystem &blocks = simulation.blocks();
+  for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+    terms.kinetic.add(kinetic_energy(blocks.properties[row], blocks.velocity[row]));
+  }
+  add_normal(simulation, 1.0, terms.normal);
+  add_stick(simulation, terms.stick);
+  return terms;
+}
+
+Terms current_terms(Simulation &simulation) {
+  Terms terms;
+  const double time_step = simulation.plan().time_step;
+  const Vec2 gravity = simulation.scene().run.gravity;
+  simulation.look_ahead([&](const BlockSystem &blocks) {
+    for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+      const BlockProperties &block = blocks.properties[row];
+      const BlockLedger &ledger = blocks.ledger[row];
+      const RigidDof increment = blocks.trial[row] - blocks.trial_previous[row];
+      const Vec2 middle = 0.5 * (blocks.trial[row].u + blocks.trial_previous[row].u);
+      terms.kinetic.add(kinetic_energy(block, (1.0 / time_step) * increment));
+      terms.gravity.add(-block.mass * dot(gravity, middle));
+      terms.shear_work.add(ledger.shear_work);
+      terms.open_shear_work.add(0.5 * work(ledger.shear_force, increment));
+      terms.damping_work.add(ledger.damping_work + 0.5 * work(ledger.damping_force, increment));
+    }
+    add_normal(simulation, 0.5, terms.normal);
+  });
+  add_normal(simulation, 0.5, terms.normal);
+  add_stick(simulation, terms.stick);
+  return terms;
+}
+
+/// Largest net force over the largest force that acts anywhere; rows and pairs of the last evaluation.
+double unbalanced_ratio(const Simulation &simulation) {
+  const BlockSystem &blocks = simulation.blocks();
+  std::array<double, 2> largest{};
+  for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+    largest[0] = std::max(largest[0], norm(simulation.forces()[row].u));
+    largest[1] = std::max(largest[1], blocks.properties[row].mass * norm(simulation.scene().run.gravity));
+  }
+  for (const PairForce &force : simulation.contacts().pairs()) {
+    if (force.touching) {
+      largest[1] = std::max(largest[1], norm(force.force));
+    }
+  }
+  simulation.communicator().max(largest);
+  return largest[1] > 0.0 ? largest[0] / largest[1] : 0.0;
+}
+
+double max_speed(const Simulation &simulation) {
+  double fastest = 0.0;
+  for (std::size_t row = 0; row < simulation.blocks().num_owned; ++row) {
+    fastest = std::max(fastest, norm(simulation.blocks().velocity[row].u));
+  }
+  simulation.communicator().max(std::span(&fastest, 1));
+  return fastest;
+}
+
+} // namespace
+
+EnergyLedger::EnergyLedger(Simulation &simulation) {
+  Terms terms = initial_terms(simulation);
+  terms.agree(simulation.communicator());
+  stick_at_start_ = terms.stick.value();
+  total_at_start_ = terms.kinetic.value() + terms.normal.value() + terms.stick.value();
+}
+
+EnergyRow EnergyLedger::row(Simulation &simulation) const {
+  EnergyRow row;
+  row.unbalanced_ratio = unbalanced_ratio(simulation);
+  row.max_speed = max_speed(simulation);
+  Terms terms = simulation.step_count() == 0 ? initial_terms(simulation) : current_terms(simulation);
+  terms.agree(simulation.communicator());
+  row.kinetic = terms.kinetic.value();
+  row.contact_normal = terms.normal.value();
+  row.contact_stick = terms.stick.value() - terms.open_shear_work.value();
+  row.gravity = terms.gravity.value();
+  row.friction_loss = stick_at_start_ - terms.stick.value() - terms.shear_work.value();
+  row.damping_loss = -terms.damping_work.value();
+  row.residual = row.kinetic + row.contact_normal + row.contact_stick + row.gravity + row.friction_loss +
+                 row.damping_loss - total_at_start_;
+  return row;
+}
+
+} // namespace gcpdda

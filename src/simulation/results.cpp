@@ -1,0 +1,170 @@
+#include "gcpdda/simulation/results.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <unordered_map>
+
+namespace gcpdda {
+
+namespace {
+
+/// What one mobile block puts on a fixed one.
+struct Reaction {
+  std::int64_t fixed = 0;
+  std::int64_t mobile = 0;
+  ContactPart part;
+};
+
+FrameRow row_of(const BlockSystem &blocks, std::size_t row) {
+  const BlockProperties &block = blocks.properties[row];
+  FrameRow out;
+  out.block = block.id.value;
+  out.material = block.material;
+  out.kind = static_cast<std::uint8_t>(block.kind);
+  out.num_vertices = static_cast<std::int32_t>(blocks.num_vertices(row));
+  out.centroid = blocks.centroid(row);
+  out.displacement = blocks.displacement[row].u;
+  out.rotation = blocks.displacement[row].r;
+  out.velocity = {blocks.velocity[row].u.x, blocks.velocity[row].u.y, blocks.velocity[row].r};
+  return out;
+}
+
+/// Reactions on the fixed blocks of this rank's id slab, by fixed id, then by mobile id.
+std::vector<Reaction> collect_reactions(const Simulation &simulation) {
+  const BlockSystem &blocks = simulation.blocks();
+  const int num_ranks = simulation.communicator().size();
+  std::vector<std::vector<Reaction>> outgoing(static_cast<std::size_t>(num_ranks));
+  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
+    const CandidatePair &pair = simulation.candidates().pairs[k];
+    const PairForce &force = simulation.contacts().pairs()[k];
+    const bool lower_fixed = blocks.is_fixed(pair.lower.value);
+    if (!force.touching || (!lower_fixed && !blocks.is_fixed(pair.higher.value))) {
+      continue;
+    }
+    const std::size_t fixed = lower_fixed ? pair.lower.value : pair.higher.value;
+    const std::size_t mobile = lower_fixed ? pair.higher.value : pair.lower.value;
+    const std::int64_t id = blocks.properties[fixed].id.value;
+    const auto writer = static_cast<std::size_t>(slab_owner(simulation.num_blocks(), num_ranks, id));
+    outgoing[writer].push_back({id, blocks.properties[mobile].id.value,
+                                contact_part(force, lower_fixed, blocks.trial_centroid[fixed])});
+  }
+  std::vector<Reaction> reactions;
+  for (const auto &arrived : simulation.communicator().all_to_all(outgoing)) {
+    reactions.insert(reactions.end(), arrived.begin(), arrived.end());
+  }
+  std::sort(reactions.begin(), reactions.end(), [](const Reaction &a, const Reaction &b) {
+    return std::pair(a.fixed, a.mobile) < std::pair(b.fixed, b.mobile);
+  });
+  return reactions;
+}
+
+FrameData collect_rows(const Simulation &simulation, const std::function<bool(std::int64_t)> &wanted) {
+  const BlockSystem &blocks = simulation.blocks();
+  const auto &forces = simulation.contacts().pairs();
+  FrameData data;
+  const auto append = [&](const FrameRow &row, std::size_t index) {
+    data.rows.push_back(row);
+    const std::vector<Vec2> vertices = current_vertices(blocks, index);
+    data.vertices.insert(data.vertices.end(), vertices.begin(), vertices.end());
+  };
+  for (std::size_t index = 0; index < blocks.num_owned; ++index) {
+    if (!wanted(blocks.properties[index].id.value)) {
+      continue;
+    }
+    FrameRow row = row_of(blocks, index);
+    row.stress = mean_stress(blocks, simulation.candidates(), forces, index);
+    const RigidDof force = sum_contacts(blocks, simulation.candidates(), forces, index).force;
+    row.contact_force = {force.u.x, force.u.y, force.r};
+    append(row, index);
+  }
+  const std::vector<Reaction> reactions = collect_reactions(simulation);
+  auto reaction = reactions.begin();
+  for (std::size_t index = blocks.first_fixed(); index < blocks.num_rows(); ++index) {
+    const BlockProperties &block = blocks.properties[index];
+    if (slab_owner(simulation.num_blocks(), simulation.communicator().size(), block.id.value) !=
+        simulation.communicator().rank()) {
+      continue;
+    }
+    Vec2 force;
+    std::array<double, 4> dyad{};
+    for (; reaction != reactions.end() && reaction->fixed == block.id.value; ++reaction) {
+      force += reaction->part.force;
+      for (std::size_t i = 0; i < 4; ++i) {
+        dyad[i] += reaction->part.dyad[i];
+      }
+    }
+    if (!wanted(block.id.value)) {
+      continue;
+    }
+    FrameRow row = row_of(blocks, index);
+    row.stress = {dyad[0] / block.area, dyad[3] / block.area, 0.5 * (dyad[1] + dyad[2]) / block.area};
+    row.contact_force = {force.x, force.y, dyad[1] - dyad[2]};
+    append(row, index);
+  }
+  return data;
+}
+
+} // namespace
+
+FrameData collect_frame(const Simulation &simulation) {
+  return collect_rows(simulation, [](std::int64_t) { return true; });
+}
+
+std::vector<ContactRow> collect_contacts(const Simulation &simulation) {
+  const BlockSystem &blocks = simulation.blocks();
+  std::vector<ContactRow> rows;
+  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
+    const CandidatePair &pair = simulation.candidates().pairs[k];
+    const PairForce &force = simulation.contacts().pairs()[k];
+    if (!force.touching || !simulation.counts_here(pair)) {
+      continue;
+    }
+    const RegionMemory &memory = simulation.history().regions[k];
+    const Vec2 tangent = perp(force.normal);
+    ContactRow row;
+    row.lower = blocks.properties[pair.lower.value].id.value;
+    row.higher = blocks.properties[pair.higher.value].id.value;
+    row.joint = pair.law;
+    row.state = static_cast<std::uint8_t>(memory.state);
+    row.begin = force.point + force.extent_begin * tangent;
+    row.end = force.point + force.extent_end * tangent;
+    row.normal_force = force.normal_force;
+    row.shear_force = force.shear;
+    row.overlap = force.overlap;
+    row.slip = memory.slip;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
+  struct Found {
+    std::int64_t block;
+    BlockHistoryRow row;
+  };
+  const std::vector<Monitor> &monitors = simulation.scene().monitors;
+  std::vector<BlockHistoryRow> rows(monitors.size());
+  if (monitors.empty()) {
+    return rows;
+  }
+  std::unordered_multimap<std::int64_t, std::size_t> monitor_of;
+  for (std::size_t m = 0; m < monitors.size(); ++m) {
+    monitor_of.emplace(monitors[m].block, m);
+  }
+  const FrameData data = collect_rows(simulation, [&](std::int64_t block) { return monitor_of.contains(block); });
+  std::vector<Found> mine;
+  for (const FrameRow &row : data.rows) {
+    mine.push_back({row.block,
+                    {row.centroid, row.rotation, row.velocity, row.stress,
+                     Vec2{row.contact_force[0], row.contact_force[1]}}});
+  }
+  for (const auto &found : simulation.communicator().all_gather(mine)) {
+    for (const Found &f : found) {
+      const auto [first, last] = monitor_of.equal_range(f.block);
+      std::for_each(first, last, [&](const auto &entry) { rows[entry.second] = f.row; });
+    }
+  }
+  return rows;
+}
+
+} // namespace gcpdda

@@ -1,0 +1,362 @@
+#include "gcpdda/simulation/run.hpp"
+
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/geometry/polygon.hpp"
+#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/simulation/energy_ledger.hpp"
+#include "gcpdda/simulation/results.hpp"
+#include "gcpdda/simulation/simulation.hpp"
+#include "run_log.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <fmt/format.h>
+#include <numeric>
+#include <optional>
+
+namespace gcpdda {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+std::vector<std::string> monitor_names(const Scene &scene) {
+  std::vector<std::string> names;
+  for (const Monitor &monitor : scene.monitors) {
+    names.push_back(monitor.name);
+  }
+  return names;
+}
+
+/// Root's file work that may fail on the root alone: the verdict is shared before anybody throws.
+template <class Work> void on_root(const Communicator &communicator, Work &&work) {
+  std::string trouble;
+  if (communicator.is_root()) {
+    try {
+      work();
+    } catch (const std::exception &e) {
+      trouble = e.what();
+    }
+  }
+  communicator.broadcast(trouble);
+  if (!trouble.empty()) {
+    throw FileError(trouble);
+  }
+}
+
+template <class T> std::int64_t total(const Communicator &communicator, T value) {
+  auto sum = static_cast<std::int64_t>(value);
+  communicator.sum(std::span(&sum, 1));
+  return sum;
+}
+
+/// {min, mean, max} of everybody's value.
+std::array<double, 3> spread(const Communicator &communicator, double value) {
+  std::array<double, 3> s{value, 0.0, value};
+  const auto all = communicator.all_gather(std::vector<double>{value});
+  for (const auto &v : all) {
+    s = {std::min(s[0], v[0]), s[1] + v[0] / static_cast<double>(all.size()), std::max(s[2], v[0])};
+  }
+  return s;
+}
+
+/// max/mean of everybody's count.
+double imbalance_of(const std::vector<std::int64_t> &counts) {
+  const double sum = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
+  const double most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
+  return sum > 0.0 ? most * static_cast<double>(counts.size()) / sum : 1.0;
+}
+
+std::vector<std::int64_t> counts_by_rank(const Communicator &communicator, std::int64_t mine) {
+  std::vector<std::int64_t> counts;
+  for (const auto &count : communicator.all_gather(std::vector<std::int64_t>{mine})) {
+    counts.push_back(count[0]);
+  }
+  return counts;
+}
+
+/// A run with its files.
+class SceneRun {
+public:
+  SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options)
+      : communicator_(communicator), directory_(options.directory), simulation_(communicator, scene) {
+    on_root(communicator, [&] {
+      prepare_result_directory(directory_, options.overwrite, scene.resolved);
+      histories_.emplace(directory_, monitor_names(scene));
+    });
+    log_.emplace(communicator.is_root(), directory_);
+    frames_.emplace(communicator, directory_, simulation_.num_blocks());
+    ledger_.emplace(simulation_);
+    set_up_seconds_ = seconds_since(start_);
+  }
+
+  int run() {
+    announce();
+    write_owners_of_blocks();
+    write_due();
+    const Clock::time_point loop_start = Clock::now();
+    const double cpu_start = cpu_seconds();
+    while (!simulation_.finished()) {
+      simulation_.step();
+      if (simulation_.step_count() == std::min<std::int64_t>(steps_to_predict, simulation_.plan().num_steps)) {
+        predict_duration(seconds_since(loop_start));
+      }
+      write_due();
+      show_progress(loop_start);
+    }
+    loop_seconds_ = seconds_since(loop_start) - output_in_loop_seconds_;
+    cpu_seconds_ = cpu_seconds() - cpu_start - output_in_loop_cpu_;
+    return finish();
+  }
+
+private:
+  static constexpr std::int64_t steps_to_predict = 20;
+
+  void announce() {
+    const auto owned = counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_owned));
+    const auto work = counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.candidates().pairs.size()));
+    const StepBound &bound = simulation_.bound();
+    const Scene &scene = simulation_.scene();
+    for (const Diagnostic &note : simulation_.notes()) {
+      log_->diagnostic(note);
+    }
+    const auto mobile = std::accumulate(owned.begin(), owned.end(), std::int64_t{0});
+    log_->line(fmt::format("gcpdda: {} rank{}, {} mobile and {} fixed blocks, {} to {} per rank, imbalance {:.3f} ({})",
+                           communicator_.size(), communicator_.size() == 1 ? "" : "s", mobile,
+                           simulation_.num_blocks() - mobile, *std::min_element(owned.begin(), owned.end()),
+                           *std::max_element(owned.begin(), owned.end()), imbalance_of(work),
+                           simulation_.partition().by_metis ? "METIS" : "space-filling curve"));
+    log_->line(fmt::format("step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
+                           "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
+                           simulation_.plan().time_step, simulation_.plan().num_steps, simulation_.plan().duration,
+                           bound.time_step, scene.run.safety, bound.limit, bound.omega_max));
+    for (const JointLaw &law : scene.joints.laws) {
+      log_->line(fmt::format("joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
+                             "cohesion {:g} Pa",
+                             law.name, law.normal_stiffness,
+                             law.allowed_overlap > 0.0 ? fmt::format(" for an overlap of {:g} m", law.allowed_overlap) : "",
+                             law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion));
+    }
+    report_accepted_error(scene);
+  }
+
+  // Rigid blocks leave out the elastic part of a joint's closure.
+  void report_accepted_error(const Scene &scene) {
+    double worst = 0.0;
+    for (const SceneBlock &block : scene.blocks) {
+      const Material &material = scene.materials[static_cast<std::size_t>(block.material)];
+      if (!block.fixed && material.youngs_modulus > 0.0) {
+        const double joint = stiffness_bound(scene.joints, block.material).normal *
+                             std::sqrt(signed_area(block.vertices));
+        worst = std::max(worst, joint / (material.youngs_modulus + joint));
+      }
+    }
+    if (worst > scene.run.accepted_error) {
+      log_->line(fmt::format("warning: all blocks are rigid, which leaves out up to {:.2g} of the joints' compliance; "
+                             "accepted are {:g} (run.accepted_error)",
+                             worst, scene.run.accepted_error));
+    }
+  }
+
+  void predict_duration(double seconds) {
+    const auto steps = static_cast<double>(simulation_.step_count());
+    log_->line(fmt::format("predicted time of the step loop: {:.3g} s",
+                           seconds / steps * static_cast<double>(simulation_.plan().num_steps)));
+  }
+
+  void show_progress(Clock::time_point loop_start) {
+    if (!log_->progress_due()) {
+      return;
+    }
+    const auto steps = static_cast<double>(simulation_.step_count());
+    const double elapsed = seconds_since(loop_start);
+    const double share = steps / static_cast<double>(simulation_.plan().num_steps);
+    log_->progress(fmt::format("{:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  remaining {:.0f} s  unbalanced {:.2e}  "
+                               "max speed {:.3g} m/s",
+                               100.0 * share, simulation_.time(), simulation_.step_count(),
+                               steps * static_cast<double>(simulation_.num_blocks()) / elapsed,
+                               elapsed * (1.0 - share) / share, energy_.unbalanced_ratio, energy_.max_speed));
+  }
+
+  void write_due() {
+    const std::int64_t step = simulation_.step_count();
+    const TimePlan &plan = simulation_.plan();
+    const bool failed = simulation_.fault().has_value();
+    if (!failed && !plan.output_due(step) && !plan.history_due(step)) {
+      return;
+    }
+    const Clock::time_point start = Clock::now();
+    const double cpu_start = cpu_seconds();
+    if (failed || plan.output_due(step)) {
+      const int index = num_frames_++;
+      frames_->write(index, simulation_.time(), collect_frame(simulation_));
+      if (simulation_.scene().output.contacts) {
+        frames_->write_contacts(index, simulation_.time(), collect_contacts(simulation_));
+      }
+    }
+    if (failed || plan.history_due(step)) {
+      write_history(failed);
+    }
+    if (step > 0) {
+      output_in_loop_seconds_ += seconds_since(start);
+      output_in_loop_cpu_ += cpu_seconds() - cpu_start;
+    }
+    output_seconds_ += seconds_since(start);
+  }
+
+  void write_history(bool failed) {
+    const std::vector<BlockHistoryRow> rows = collect_monitors(simulation_);
+    contacts_at_end_ = count_contacts();
+    if (!failed) { // the energies of a broken state say nothing
+      energy_ = ledger_->row(simulation_);
+    }
+    on_root(communicator_, [&] {
+      for (std::size_t m = 0; m < rows.size(); ++m) {
+        histories_->write_block(m, simulation_.time(), rows[m]);
+      }
+      if (!failed) {
+        histories_->write_energy(simulation_.time(), energy_);
+      }
+      histories_->flush();
+    });
+  }
+
+  std::int64_t count_contacts() {
+    std::int64_t count = 0;
+    for (std::size_t k = 0; k < simulation_.candidates().pairs.size(); ++k) {
+      count += simulation_.contacts().pairs()[k].touching && simulation_.counts_here(simulation_.candidates().pairs[k]) ? 1 : 0;
+    }
+    return total(communicator_, count);
+  }
+
+  void write_owners_of_blocks() {
+    std::vector<std::int64_t> owner(static_cast<std::size_t>(simulation_.num_blocks()), -1);
+    for (std::size_t row = 0; row < simulation_.blocks().num_owned; ++row) {
+      owner[static_cast<std::size_t>(simulation_.blocks().properties[row].id.value)] = communicator_.rank();
+    }
+    communicator_.max(owner);
+    on_root(communicator_, [&] {
+      write_owners(directory_, simulation_.step_count(), {owner.begin(), owner.end()});
+    });
+  }
+
+  std::string fault_message() const {
+    const Fault &fault = *simulation_.fault();
+    const auto name = [&](BlockId id) {
+      return simulation_.scene().blocks[static_cast<std::size_t>(id.value)].name;
+    };
+    const std::string where = fmt::format("block '{}' at t = {:.9g} s", name(fault.block), simulation_.time());
+    switch (fault.cause) {
+    case Fault::Cause::too_deep:
+      return fmt::format("{}: overlaps block '{}' by {:.4g} m, deeper than half the narrowest width {:.4g} m, where the "
+                         "contact force reverses; try a larger joint.normal_stiffness or a smaller run.time_step",
+                         where, name(fault.other), fault.value, fault.limit);
+    case Fault::Cause::too_fast:
+      return fmt::format("{}: moves {:.4g} m in one step, more than the narrowest block width {:.4g} m, and could tunnel "
+                         "through a block; try a smaller run.time_step",
+                         where, fault.value, fault.limit);
+    case Fault::Cause::not_finite:
+      break;
+    }
+    return fmt::format("{}: its state is no longer finite; try a smaller run.time_step", where);
+  }
+
+  int finish() {
+    const bool failed = simulation_.fault().has_value();
+    RunSummary summary;
+    summary.verdict = failed ? "failed" : "completed";
+    summary.message = failed ? fault_message() : fmt::format("reached t = {:g} s", simulation_.time());
+    fill(summary);
+    on_root(communicator_, [&] { write_summary(directory_, summary); });
+    write_owners_of_blocks();
+    for (const auto &[name, seconds] : summary.phases) {
+      log_->line(fmt::format("{:>8} {:9.3f} {:9.3f} {:9.3f} s (min, mean, max over ranks)", name, seconds[0], seconds[1],
+                             seconds[2]));
+    }
+    log_->line(fmt::format("{} steps, {} contacts at the end, largest overlap {:.3g} m, energy residual {:.3g} J/m, "
+                           "{:.3g} s in the step loop",
+                           summary.steps, summary.contacts, summary.max_overlap, summary.energy.residual, summary.wall_s));
+    log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
+               directory_.string());
+    return failed ? 5 : 0;
+  }
+
+  void fill(RunSummary &summary) {
+    const Counters &counters = simulation_.counters();
+    const TimePlan &plan = simulation_.plan();
+    summary.ranks = communicator_.size();
+    summary.blocks = total(communicator_, simulation_.blocks().num_owned);
+    summary.fixed_blocks = static_cast<std::int64_t>(simulation_.blocks().num_fixed);
+    summary.steps = simulation_.step_count();
+    summary.time = simulation_.time();
+    summary.time_step = plan.time_step;
+    summary.time_step_min = plan.time_step;
+    summary.contacts = contacts_at_end_;
+    summary.contact_steps = total(communicator_, counters.contact_steps);
+    summary.evaluations_per_rank = counts_by_rank(communicator_, counters.evaluations);
+    summary.imbalance = imbalance_of(summary.evaluations_per_rank);
+    summary.wall_s = spread(communicator_, loop_seconds_)[2];
+    const auto num_ranks = static_cast<double>(communicator_.size());
+    summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
+    summary.setup_wall_s = spread(communicator_, set_up_seconds_)[2];
+    summary.output_wall_s = spread(communicator_, output_seconds_)[2];
+    summary.total_wall_s = spread(communicator_, seconds_since(start_))[2];
+    double max_overlap = counters.max_overlap;
+    communicator_.max(std::span(&max_overlap, 1));
+    summary.max_overlap = max_overlap;
+    summary.energy = energy_;
+    const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps, 1));
+    summary.bytes_sent_per_step =
+        static_cast<double>(total(communicator_, simulation_.ghosts().bytes_sent())) / steps;
+    summary.messages_per_step =
+        static_cast<double>(total(communicator_, simulation_.ghosts().messages_sent())) / steps;
+    for (std::size_t p = 0; p < phase_names.size(); ++p) {
+      const double seconds = static_cast<Phase>(p) == Phase::output ? output_seconds_
+                                                                     : simulation_.phases().seconds(static_cast<Phase>(p));
+      summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
+    }
+    const auto add = [&](const char *name, std::int64_t value) {
+      summary.counters.emplace_back(name, static_cast<double>(value));
+    };
+    add("migrations", total(communicator_, counters.migrations));
+    add("refreshes", counters.refreshes);
+    add("cross_rank_contacts", total(communicator_, counters.cross_rank_contacts));
+    add("normals_undefined", total(communicator_, counters.normals_undefined));
+  }
+
+  Clock::time_point start_ = Clock::now();
+  Communicator communicator_;
+  std::filesystem::path directory_;
+  Simulation simulation_;
+  std::optional<HistoryWriter> histories_;
+  std::optional<RunLog> log_;
+  std::optional<FrameWriter> frames_;
+  std::optional<EnergyLedger> ledger_;
+  EnergyRow energy_;
+  int num_frames_ = 0;
+  std::int64_t contacts_at_end_ = 0;
+  double set_up_seconds_ = 0.0;
+  double output_seconds_ = 0.0;
+  double output_in_loop_seconds_ = 0.0;
+  double output_in_loop_cpu_ = 0.0;
+  double loop_seconds_ = 0.0;
+  double cpu_seconds_ = 0.0;
+};
+
+} // namespace
+
+int run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
+  return SceneRun(communicator, scene, options).run();
+}
+
+} // namespace gcpdda

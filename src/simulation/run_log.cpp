@@ -1,0 +1,49 @@
+#include "run_log.hpp"
+
+#include <iostream>
+#include <unistd.h>
+
+namespace gcpdda {
+
+RunLog::RunLog(bool speaks, const std::filesystem::path &directory)
+    : speaks_(speaks), terminal_(speaks && isatty(STDERR_FILENO) != 0) {
+  if (speaks_) {
+    file_.open(directory / "run.log");
+  }
+}
+
+void RunLog::line(const std::string &text) {
+  if (speaks_) {
+    end_progress();
+    std::cerr << text << '\n';
+    file_ << text << std::endl;
+  }
+}
+
+void RunLog::diagnostic(const Diagnostic &diagnostic) {
+  line(to_string(diagnostic));
+}
+
+bool RunLog::progress_due() const {
+  const std::chrono::duration<double> since = Clock::now() - last_progress_;
+  return speaks_ && since.count() >= (terminal_ ? 0.2 : 10.0);
+}
+
+void RunLog::progress(const std::string &text) {
+  last_progress_ = Clock::now();
+  if (terminal_) {
+    std::cerr << '\r' << text << "\033[K" << std::flush;
+    in_progress_ = true;
+  } else {
+    line(text);
+  }
+}
+
+void RunLog::end_progress() {
+  if (in_progress_) {
+    std::cerr << '\n';
+    in_progress_ = false;
+  }
+}
+
+} // namespace gcpdda

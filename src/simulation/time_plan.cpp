@@ -1,0 +1,70 @@
+#include "gcpdda/simulation/time_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace gcpdda {
+
+namespace {
+
+/// Ratios closer than this to a whole number count as whole.
+constexpr double whole = 1e-9;
+
+bool is_whole(double ratio) {
+  return std::abs(ratio - std::round(ratio)) <= whole * std::max(1.0, ratio);
+}
+
+/// Steps of at most `wanted` that fill `stretch`.
+double steps_in(double stretch, double wanted) {
+  const double ratio = stretch / wanted;
+  return std::max(1.0, is_whole(ratio) ? std::round(ratio) : std::ceil(ratio));
+}
+
+} // namespace
+
+TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double bound, Diagnostics &notes) {
+  // Every output, history row and the end must fall on a whole number of `unit`.
+  double unit = std::min(output.interval, output.history_interval);
+  constexpr int most_parts = 1000;
+  int parts = 1;
+  while (parts <= most_parts && !is_whole(run.duration / (unit / parts))) {
+    ++parts;
+  }
+  if (parts > most_parts) {
+    notes.push_back({Severity::error, {},
+                     fmt::format("run.duration = {:g} s and output.interval = {:g} s have no common step", run.duration,
+                                 output.interval),
+                     "the last frame must fall on the end of the run exactly",
+                     "make the duration a multiple of the interval"});
+    return {};
+  }
+  unit /= parts;
+
+  TimePlan plan;
+  plan.duration = run.duration;
+  const bool automatic = run.time_step <= 0.0;
+  const double wanted = automatic ? std::min(bound, unit) : run.time_step;
+  const double count = steps_in(unit, wanted);
+  plan.time_step = unit / count;
+  if (!automatic && is_whole(unit / wanted) && wanted <= unit * (1.0 + whole)) {
+    plan.time_step = run.time_step;
+  } else if (!automatic) {
+    notes.push_back({Severity::info, {},
+                     fmt::format("the time step is lowered from {:g} s to {:g} s", run.time_step, plan.time_step),
+                     "the given one does not divide the output interval", ""});
+  }
+  if (plan.time_step > bound * (1.0 + whole)) {
+    notes.push_back({Severity::warning, {},
+                     fmt::format("the time step {:g} s is above the recommended {:g} s", plan.time_step, bound),
+                     "contacts may gain energy or pass through each other",
+                     "lower run.time_step or set it to \"auto\""});
+  }
+  const auto steps = [&](double stretch) { return static_cast<std::int64_t>(std::llround(stretch / plan.time_step)); };
+  plan.num_steps = steps(run.duration);
+  plan.steps_per_output = steps(output.interval);
+  plan.steps_per_history = steps(output.history_interval);
+  return plan;
+}
+
+} // namespace gcpdda

@@ -1,0 +1,290 @@
+// Every include line against the module table of the architecture. A layer that is only hoped for does not
+// last: this test is what keeps physics free of MPI, the library free of files, and lower modules free of
+// higher ones.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Rule {
+  std::set<std::string> may_include; ///< transitive downwards
+  std::set<std::string> must_never;  ///< beats what comes with the modules above
+};
+
+const std::map<std::string, Rule> modules{
+    {"base", {}},
+    {"geometry", {{"base"}, {}}},
+    {"model", {{"geometry"}, {}}},
+    {"contact", {{"model"}, {}}},
+    {"dynamics", {{"model"}, {}}},
+    {"blockgen", {{"model"}, {}}},
+    {"partition", {{"geometry"}, {}}},
+    {"communicator", {{"base"}, {}}},
+    {"parallel", {{"model", "partition", "communicator"}, {}}},
+    {"io", {{"model", "communicator"}, {}}},
+    {"simulation", {{"contact", "dynamics", "parallel", "io"}, {}}},
+    {"app",
+     {{"simulation", "blockgen", "io", "partition", "communicator"}, {"contact", "dynamics", "parallel"}}},
+};
+
+/// Libraries that only some folders may see. Public headers under include/ see none of them.
+struct Wall {
+  const char *header; ///< regular expression
+  std::vector<std::string> folders;
+};
+
+const std::vector<Wall> walls{
+    {R"(mpi\.h)", {"src/parallel/", "src/io/"}},
+    {R"(metis\.h)", {"partition/"}},
+    {R"(hdf5.*\.h|H5.*)", {"src/io/"}},
+    {R"(geos.*)", {"src/blockgen/"}},
+    {R"(Eigen/.*)", {"src/dynamics/"}},
+    {R"(toml\+\+/.*|toml\.hpp)", {"src/io/"}},
+    {R"(CLI/.*)", {"src/app/", "partition/tool/"}},
+};
+
+const std::vector<std::string> walked_folders{"include/gcpdda", "src", "partition"};
+
+/// The module of a path relative to the source folder.
+std::optional<std::string> module_of(const std::string &path) {
+  static const std::regex communicator(R"((include/gcpdda|src)/parallel/communicator[./].*)");
+  static const std::regex folder(R"((?:include/gcpdda|src)/([^/]+)/.*)");
+  std::smatch match;
+  if (std::regex_match(path, communicator)) {
+    return "communicator";
+  }
+  if (path.starts_with("partition/")) {
+    return "partition";
+  }
+  if (std::regex_match(path, match, folder) && modules.contains(match[1])) {
+    return match[1];
+  }
+  return std::nullopt;
+}
+
+/// All a module may include, itself among it.
+std::set<std::string> reach(const std::string &module) {
+  std::set<std::string> all{module};
+  for (const std::string &lower : modules.at(module).may_include) {
+    all.merge(reach(lower));
+  }
+  for (const std::string &banned : modules.at(module).must_never) {
+    all.erase(banned);
+  }
+  return all;
+}
+
+struct Include {
+  int line;
+  std::string header;
+  bool quoted;
+};
+
+std::vector<Include> includes_in(const std::string &text) {
+  static const std::regex directive(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
+  std::vector<Include> includes;
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::smatch match;
+    if (std::regex_match(line, match, directive)) {
+      includes.push_back({number, match[2], match[1] == "\""});
+    }
+  }
+  return includes;
+}
+
+/// Where an include of ours leads, relative to the source folder; nothing for the headers of others.
+std::optional<std::string> target_of(const std::string &path, const Include &include) {
+  if (include.header.starts_with("gcpdda/")) {
+    return "include/" + include.header;
+  }
+  if (include.quoted) {
+    return (fs::path(path).parent_path() / include.header).lexically_normal().generic_string();
+  }
+  return std::nullopt;
+}
+
+std::string fault_of(const std::string &path, const std::string &module, const Include &include) {
+  const std::optional<std::string> target = target_of(path, include);
+  if (target) {
+    const std::optional<std::string> other = module_of(*target);
+    if (!other) {
+      return "is not in a module of ours; other libraries go in angle brackets";
+    }
+    return reach(module).contains(*other) ? "" : module + " may not include " + *other;
+  }
+  for (const Wall &wall : walls) {
+    const bool inside = std::any_of(wall.folders.begin(), wall.folders.end(),
+                                    [&](const std::string &folder) { return path.starts_with(folder); });
+    if (!inside && std::regex_match(include.header, std::regex(wall.header))) {
+      return "is walled off from " + module;
+    }
+  }
+  return "";
+}
+
+/// One line for each include of a file that breaks the table.
+std::vector<std::string> faults_in(const std::string &path, const std::string &text) {
+  const std::optional<std::string> module = module_of(path);
+  if (!module) {
+    return {path + ": belongs to no module of the table"};
+  }
+  std::vector<std::string> faults;
+  for (const Include &include : includes_in(text)) {
+    const std::string fault = fault_of(path, *module, include);
+    if (!fault.empty()) {
+      faults.push_back(path + ":" + std::to_string(include.line) + ": " + include.header + " " + fault);
+    }
+  }
+  return faults;
+}
+
+bool is_source(const fs::path &path) {
+  static const std::set<std::string> endings{".hpp", ".cpp", ".h", ".c", ".inl", ".ipp"};
+  return endings.contains(path.extension().string());
+}
+
+std::string read(const fs::path &path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+std::map<std::string, std::string> sources() {
+  const fs::path root = GCPDDA_SOURCE_DIR;
+  std::map<std::string, std::string> texts;
+  for (const std::string &folder : walked_folders) {
+    for (const auto &entry : fs::recursive_directory_iterator(root / folder)) {
+      if (entry.is_regular_file() && is_source(entry.path())) {
+        texts[fs::relative(entry.path(), root).generic_string()] = read(entry.path());
+      }
+    }
+  }
+  return texts;
+}
+
+TEST(Includes, RespectTheModuleTable) {
+  for (const auto &[path, text] : sources()) {
+    for (const std::string &fault : faults_in(path, text)) {
+      ADD_FAILURE() << fault;
+    }
+  }
+}
+
+TEST(Includes, TheWalkSawTheTree) {
+  const auto texts = sources();
+  std::set<std::string> seen;
+  std::size_t num_includes = 0;
+  for (const auto &[path, text] : texts) {
+    seen.insert(module_of(path).value_or("none"));
+    num_includes += includes_in(text).size();
+  }
+  EXPECT_GE(texts.size(), 20U);
+  EXPECT_GE(num_includes, 100U);
+  for (const char *module : {"base", "geometry", "model", "partition", "communicator", "io"}) {
+    EXPECT_TRUE(seen.contains(module)) << module;
+  }
+  EXPECT_TRUE(texts.contains("include/gcpdda/parallel/communicator.hpp"));
+}
+
+TEST(Includes, LocalHeadersExist) {
+  for (const auto &[path, text] : sources()) {
+    for (const Include &include : includes_in(text)) {
+      const std::optional<std::string> target = target_of(path, include);
+      if (target) {
+        EXPECT_TRUE(fs::exists(fs::path(GCPDDA_SOURCE_DIR) / *target)) << path << ":" << include.line;
+      }
+    }
+  }
+}
+
+struct Planted {
+  const char *path;
+  const char *line;
+};
+
+TEST(Includes, PlantedFaultsAreCaught) {
+  const std::array<Planted, 18> bad{{
+      {"src/base/check.cpp", "#include \"gcpdda/geometry/vec2.hpp\""},
+      {"include/gcpdda/geometry/aabb.hpp", "#include \"gcpdda/model/scene.hpp\""},
+      {"src/contact/law.cpp", "#include \"gcpdda/dynamics/scheme.hpp\""},
+      {"src/dynamics/scheme.cpp", "#include \"gcpdda/parallel/communicator.hpp\""},
+      {"src/dynamics/scheme.cpp", "  #  include <gcpdda/contact/law.hpp> // spaced, in angle brackets"},
+      {"src/dynamics/scheme.cpp", "#include \"../contact/private.hpp\""},
+      {"src/parallel/communicator/communicator.cpp", "#include \"gcpdda/model/scene.hpp\""},
+      {"src/parallel/ghosts.cpp", "#include \"gcpdda/contact/law.hpp\""},
+      {"src/io/writer.cpp", "#include \"gcpdda/parallel/ghosts.hpp\""},
+      {"src/simulation/run.cpp", "#include \"gcpdda/blockgen/joints.hpp\""},
+      {"src/app/main.cpp", "#include \"gcpdda/dynamics/scheme.hpp\""},
+      {"src/simulation/run.cpp", "#include <mpi.h>"},
+      {"include/gcpdda/parallel/communicator.hpp", "#include <mpi.h>"},
+      {"src/parallel/rebalance.cpp", "#include <metis.h>"},
+      {"src/simulation/run.cpp", "#include <hdf5.h>"},
+      {"src/model/scene.cpp", "#include <H5Fpublic.h>"},
+      {"src/contact/law.cpp", "#include <Eigen/Dense>"},
+      {"src/utils/strings.cpp", "#include <string>"},
+  }};
+  for (const Planted &plant : bad) {
+    EXPECT_EQ(faults_in(plant.path, std::string("#pragma once\n") + plant.line + "\n").size(), 1U)
+        << plant.path << " " << plant.line;
+  }
+}
+
+TEST(Includes, LegalOnesAreNot) {
+  const std::array<Planted, 9> good{{
+      {"src/contact/law.cpp", "#include \"gcpdda/base/ids.hpp\""},
+      {"src/contact/law.cpp", "#include \"envelope.hpp\""},
+      {"src/contact/law.cpp", "// #include <mpi.h>"},
+      {"src/simulation/run.cpp", "#include \"gcpdda/partition/domain_map.hpp\""},
+      {"src/parallel/communicator/communicator.cpp", "#include <mpi.h>"},
+      {"src/io/writer.cpp", "#include <hdf5.h>"},
+      {"src/dynamics/scheme.cpp", "#include <Eigen/Dense>"},
+      {"src/app/main.cpp", "#include \"gcpdda/model/scene.hpp\""},
+      {"partition/tool/main.cpp", "#include \"../cut.hpp\""},
+  }};
+  for (const Planted &plant : good) {
+    EXPECT_EQ(faults_in(plant.path, plant.line), std::vector<std::string>()) << plant.line;
+  }
+}
+
+// A layer cannot be respected both ways round.
+TEST(ModuleTable, HasNoCircle) {
+  for (const auto &[module, rule] : modules) {
+    for (const std::string &lower : rule.may_include) {
+      ASSERT_TRUE(modules.contains(lower)) << lower;
+      EXPECT_FALSE(reach(lower).contains(module)) << module << " and " << lower;
+    }
+  }
+}
+
+TEST(TopLevel, HoldsWhatIsPrescribedOnly) {
+  const std::set<std::string> prescribed{"CMakeLists.txt", "CMakePresets.json", "README.md", "src",
+                                         "include",        "partition",         "tests",     "run"};
+  std::size_t found = 0;
+  for (const auto &entry : fs::directory_iterator(GCPDDA_SOURCE_DIR)) {
+    const std::string name = entry.path().filename().string();
+    const bool product = name.starts_with("build") || name == "results";
+    found += prescribed.contains(name) ? 1 : 0;
+    EXPECT_TRUE(prescribed.contains(name) || name.starts_with(".") || product) << name;
+  }
+  EXPECT_GE(found, 6U);
+}
+
+} // namespace

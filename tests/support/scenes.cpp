@@ -1,0 +1,118 @@
+#include "support/scenes.hpp"
+
+#include "gcpdda/io/scene_reader.hpp"
+#include "gcpdda/model/stiffness.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <numbers>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+
+namespace gcpdda::testing {
+
+namespace {
+
+Scene checked(SceneReading reading) {
+  if (has_errors(reading.diagnostics)) {
+    std::string text;
+    for (const Diagnostic &d : reading.diagnostics) {
+      text += to_string(d) + "\n";
+    }
+    throw std::runtime_error(text);
+  }
+  resolve_stiffness(reading.scene);
+  return reading.scene;
+}
+
+// The standard distributions differ between libraries; the engine does not.
+double uniform(std::mt19937 &engine, double low, double high) {
+  return low + (high - low) * (static_cast<double>(engine()) / 4294967296.0);
+}
+
+} // namespace
+
+Scene scene_of(const std::string &toml, const std::vector<std::string> &sets) {
+  return checked(read_scene(toml, "test.toml", sets));
+}
+
+Scene shipped_scene(const std::string &name, const std::vector<std::string> &sets) {
+  const std::string path = std::string(GCPDDA_SOURCE_DIR) + "/run/scenes/" + name + ".toml";
+  std::ifstream file(path);
+  if (!file) {
+    throw std::runtime_error("no scene " + path);
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  return checked(read_scene(text.str(), path, sets));
+}
+
+std::string block_toml(const std::string &name, const std::vector<Vec2> &vertices, const std::string &extra) {
+  std::string points;
+  for (const Vec2 v : vertices) {
+    points += fmt::format("[{:.17g}, {:.17g}], ", v.x, v.y);
+  }
+  return fmt::format("[[block]]\nname = \"{}\"\nmaterial = \"rock\"\nvertices = [{}]\n{}\n", name, points, extra);
+}
+
+std::vector<Vec2> placed(const std::vector<Vec2> &points, double angle, Vec2 offset) {
+  std::vector<Vec2> moved;
+  for (const Vec2 p : points) {
+    moved.push_back(Rotation::of(angle)(p) + offset);
+  }
+  return moved;
+}
+
+std::vector<Vec2> rectangle(Vec2 low, Vec2 high) {
+  return {low, {high.x, low.y}, high, {low.x, high.y}};
+}
+
+std::vector<Vec2> random_polygon(unsigned seed, int num_vertices, double radius, Vec2 centre) {
+  std::mt19937 engine(seed);
+  std::vector<Vec2> vertices;
+  const double first = uniform(engine, 0.0, 2.0 * std::numbers::pi);
+  for (int k = 0; k < num_vertices; ++k) {
+    const double angle = first + (k + uniform(engine, -0.3, 0.3)) * 2.0 * std::numbers::pi / num_vertices;
+    vertices.push_back(centre + radius * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return vertices;
+}
+
+std::string falling_pile_toml(int num_blocks, double duration) {
+  const int columns = static_cast<int>(std::sqrt(num_blocks)) + 1;
+  const double spacing = 1.15;
+  const double width = columns * spacing;
+  std::string toml = fmt::format(R"([run]
+duration = {}
+fidelity = "rigid"
+[material.rock]
+density = 2600.0
+[joint.default]
+normal_stiffness = 2e8
+friction_angle_deg = 30.0
+[output]
+interval = {}
+[[monitor]]
+block = "grain5"
+)",
+                                 duration, duration / 4.0);
+  toml += block_toml("floor", rectangle({-3.0, -2.0}, {width + 2.0, 0.0}), "fixed = true");
+  toml += block_toml("left", rectangle({-3.0, 0.0}, {-0.8, 2.0 * width}), "fixed = true");
+  toml += block_toml("right", rectangle({width, 0.0}, {width + 2.0, 2.0 * width}), "fixed = true");
+  std::mt19937 engine(20261121);
+  for (int k = 0; k < num_blocks; ++k) {
+    const Vec2 centre{spacing * (k % columns) + uniform(engine, -0.05, 0.05),
+                      0.6 + spacing * static_cast<double>(k / columns) + uniform(engine, -0.05, 0.05)};
+    const int num_vertices = 3 + static_cast<int>(engine() % 6);
+    const auto seed = static_cast<unsigned>(engine());
+    const std::vector<Vec2> shape = random_polygon(seed, num_vertices, uniform(engine, 0.38, 0.5), centre);
+    toml += block_toml(fmt::format("grain{}", k), shape,
+                       fmt::format("velocity = [{:.6g}, {:.6g}, {:.6g}]", uniform(engine, -2.0, 2.0),
+                                   uniform(engine, -2.0, 0.0), uniform(engine, -3.0, 3.0)));
+  }
+  return toml;
+}
+
+} // namespace gcpdda::testing

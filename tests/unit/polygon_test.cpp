@@ -1,0 +1,228 @@
+#include "gcpdda/geometry/polygon.hpp"
+
+#include "gcpdda/geometry/aabb.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+namespace gcpdda {
+namespace {
+
+using Polygon = std::vector<Vec2>;
+
+const Polygon unit_square{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+const Polygon right_triangle{{0.0, 0.0}, {3.0, 0.0}, {0.0, 2.0}};
+const Polygon l_shape{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 3.0}, {0.0, 3.0}};
+
+Polygon regular(int num_vertices, double radius) {
+  Polygon polygon;
+  for (int i = 0; i < num_vertices; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / num_vertices;
+    polygon.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  return polygon;
+}
+
+template <class Map> Polygon mapped(Polygon polygon, Map map) {
+  std::transform(polygon.begin(), polygon.end(), polygon.begin(), map);
+  return polygon;
+}
+
+Polygon moved(const Polygon &polygon, Vec2 by) {
+  return mapped(polygon, [&](Vec2 p) { return p + by; });
+}
+
+Polygon reversed(Polygon polygon) {
+  std::reverse(polygon.begin(), polygon.end());
+  return polygon;
+}
+
+Polygon started_at(Polygon polygon, std::ptrdiff_t first) {
+  std::rotate(polygon.begin(), polygon.begin() + first, polygon.end());
+  return polygon;
+}
+
+void expect_near(const Moments &m, const Moments &exact, double tolerance) {
+  EXPECT_NEAR(m.area, exact.area, tolerance);
+  EXPECT_NEAR(m.xx, exact.xx, tolerance);
+  EXPECT_NEAR(m.yy, exact.yy, tolerance);
+  EXPECT_NEAR(m.xy, exact.xy, tolerance);
+}
+
+constexpr double rounding = 1e-14;
+
+TEST(Moments, UnitSquare) {
+  const Moments m = polygon_moments(unit_square);
+  expect_near(m, {1.0, {}, 1.0 / 12, 1.0 / 12, 0.0}, rounding);
+  EXPECT_NEAR(m.centroid.x, 0.5, rounding);
+  EXPECT_NEAR(m.centroid.y, 0.5, rounding);
+}
+
+TEST(Moments, RightTriangle) {
+  // About the centroid: b^3 h / 36, b h^3 / 36, -b^2 h^2 / 72.
+  const Moments m = polygon_moments(right_triangle);
+  expect_near(m, {3.0, {}, 54.0 / 36, 24.0 / 36, -36.0 / 72}, rounding);
+  EXPECT_NEAR(m.centroid.x, 1.0, rounding);
+  EXPECT_NEAR(m.centroid.y, 2.0 / 3.0, rounding);
+}
+
+// Two rectangles, 2 x 1 below and 1 x 2 above, and the parallel axis theorem.
+TEST(Moments, ConcaveShapeIsTheSumOfItsRectangles) {
+  const double area = 4.0;
+  const Vec2 centroid{(2.0 * 1.0 + 2.0 * 0.5) / area, (2.0 * 0.5 + 2.0 * 2.0) / area};
+  const Vec2 below = Vec2{1.0, 0.5} - centroid;
+  const Vec2 above = Vec2{0.5, 2.0} - centroid;
+  const double xx = 8.0 / 12 + 2.0 / 12 + 2.0 * below.x * below.x + 2.0 * above.x * above.x;
+  const double yy = 2.0 / 12 + 8.0 / 12 + 2.0 * below.y * below.y + 2.0 * above.y * above.y;
+  const double xy = 2.0 * below.x * below.y + 2.0 * above.x * above.y;
+  for (std::ptrdiff_t first = 0; first < 6; ++first) {
+    const Moments m = polygon_moments(started_at(l_shape, first));
+    expect_near(m, {area, {}, xx, yy, xy}, 10 * rounding);
+    EXPECT_NEAR(m.centroid.x, centroid.x, rounding);
+    EXPECT_NEAR(m.centroid.y, centroid.y, rounding);
+  }
+}
+
+TEST(Moments, RegularPolygon) {
+  for (const int n : {3, 5, 6, 17}) {
+    const double radius = 2.5;
+    const double turn = 2.0 * std::numbers::pi / n;
+    const double area = 0.5 * n * radius * radius * std::sin(turn);
+    // Half of the polar moment, by symmetry.
+    const double second = area * radius * radius * (2.0 + std::cos(turn)) / 12.0;
+    const Moments m = polygon_moments(regular(n, radius));
+    expect_near(m, {area, {}, second, second, 0.0}, 1e-12);
+    EXPECT_NEAR(norm(m.centroid), 0.0, rounding * 10);
+  }
+}
+
+// Vertices on a grid of 1/8 m are exact at 1e6 m too: moving must change the centroid alone, and no bit of
+// the rest.
+TEST(Moments, DistantOriginCostsNoDigits) {
+  const Vec2 far{1e6, -2e6};
+  for (const Polygon &polygon : {unit_square, right_triangle, l_shape}) {
+    const Moments near = polygon_moments(polygon);
+    const Moments m = polygon_moments(moved(polygon, far));
+    EXPECT_EQ(m.area, near.area);
+    EXPECT_EQ(m.xx, near.xx);
+    EXPECT_EQ(m.yy, near.yy);
+    EXPECT_EQ(m.xy, near.xy);
+    EXPECT_NEAR(m.centroid.x, near.centroid.x + far.x, 1e-9);
+    EXPECT_NEAR(m.centroid.y, near.centroid.y + far.y, 1e-9);
+  }
+}
+
+TEST(Moments, TurnWithThePolygon) {
+  const Moments m = polygon_moments(l_shape);
+  for (const double angle : {0.3, 1.0, 2.0, -2.5}) {
+    const Rotation rotation = Rotation::of(angle);
+    const Moments turned = polygon_moments(mapped(l_shape, rotation));
+    const double c = rotation.c;
+    const double s = rotation.s;
+    expect_near(turned,
+                {m.area,
+                 {},
+                 c * c * m.xx - 2.0 * c * s * m.xy + s * s * m.yy,
+                 s * s * m.xx + 2.0 * c * s * m.xy + c * c * m.yy,
+                 c * s * (m.xx - m.yy) + (c * c - s * s) * m.xy},
+                1e-13);
+    EXPECT_NEAR(norm(turned.centroid - rotation(m.centroid)), 0.0, rounding * 10);
+  }
+}
+
+TEST(Moments, ClockwiseRingIsAHole) {
+  const Moments m = polygon_moments(l_shape);
+  const Moments hole = polygon_moments(reversed(l_shape));
+  expect_near(hole, {-m.area, {}, -m.xx, -m.yy, -m.xy}, 10 * rounding);
+  EXPECT_NEAR(norm(hole.centroid - m.centroid), 0.0, rounding);
+}
+
+TEST(Moments, CollinearVertexChangesNothing) {
+  Polygon polygon = right_triangle;
+  polygon.insert(polygon.begin() + 1, {1.0, 0.0});
+  const Moments m = polygon_moments(right_triangle);
+  const Moments with = polygon_moments(polygon);
+  expect_near(with, m, rounding);
+  EXPECT_NEAR(norm(with.centroid - m.centroid), 0.0, rounding);
+}
+
+TEST(SignedArea, FollowsTheOrientation) {
+  EXPECT_EQ(signed_area(l_shape), 4.0);
+  EXPECT_EQ(signed_area(reversed(l_shape)), -4.0);
+  EXPECT_EQ(signed_area(moved(l_shape, {1e6, 1e6})), 4.0);
+  EXPECT_EQ(signed_area(Polygon{{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}}), 0.0);
+}
+
+TEST(IsSimple, AcceptsConvexConcaveAndCollinear) {
+  for (const Polygon &polygon : {unit_square, right_triangle, l_shape, regular(40, 1.0)}) {
+    EXPECT_TRUE(is_simple(polygon));
+    EXPECT_TRUE(is_simple(reversed(polygon)));
+    EXPECT_TRUE(is_simple(moved(polygon, {1e6, 1e6})));
+  }
+  EXPECT_TRUE(is_simple(Polygon{{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}));
+}
+
+TEST(IsSimple, RefusesEveryKindOfSelfContact) {
+  const Polygon bow_tie{{0.0, 0.0}, {1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}};
+  const Polygon vertex_on_edge{{0.0, 0.0}, {4.0, 0.0}, {4.0, 2.0}, {2.0, 0.0}, {0.0, 2.0}};
+  const Polygon pinched{{0.0, 0.0}, {1.0, 1.0}, {2.0, 0.0}, {2.0, 2.0}, {1.0, 1.0}, {0.0, 2.0}};
+  const Polygon spike{{0.0, 0.0}, {2.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}};
+  const Polygon pentagram = [] {
+    const Polygon p = regular(5, 1.0);
+    return Polygon{p[0], p[2], p[4], p[1], p[3]};
+  }();
+  for (const Polygon &polygon : {bow_tie, vertex_on_edge, pinched, spike, pentagram}) {
+    for (std::size_t first = 0; first < polygon.size(); ++first) {
+      EXPECT_FALSE(is_simple(started_at(polygon, static_cast<std::ptrdiff_t>(first))));
+    }
+    EXPECT_FALSE(is_simple(reversed(polygon)));
+  }
+}
+
+TEST(IsConvex, LeftTurnsOnly) {
+  EXPECT_TRUE(is_convex(unit_square));
+  EXPECT_TRUE(is_convex(regular(100, 3.0)));
+  EXPECT_TRUE(is_convex(Polygon{{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}, {0.5, 1.0}})) << "a straight vertex";
+  EXPECT_FALSE(is_convex(l_shape));
+  EXPECT_FALSE(is_convex(reversed(unit_square)));
+  for (std::ptrdiff_t first = 0; first < 6; ++first) {
+    EXPECT_FALSE(is_convex(started_at(l_shape, first)));
+  }
+}
+
+TEST(IsConvex, ForgivesADentOfRoundingOnly) {
+  const auto dented = [](double depth) { return Polygon{{0.0, 0.0}, {0.5, depth}, {1.0, 0.0}, {0.5, 1.0}}; };
+  EXPECT_TRUE(is_convex(dented(1e-13)));
+  EXPECT_FALSE(is_convex(dented(1e-6)));
+}
+
+TEST(NarrowestWidth, OfKnownShapes) {
+  EXPECT_NEAR(narrowest_width(unit_square), 1.0, rounding);
+  EXPECT_NEAR(narrowest_width(right_triangle), 6.0 / std::sqrt(13.0), rounding)
+      << "the height on the long edge";
+  EXPECT_NEAR(narrowest_width(regular(6, 2.0)), 2.0 * std::sqrt(3.0), 1e-13);
+  EXPECT_NEAR(narrowest_width(regular(5, 1.0)), 1.0 + std::cos(std::numbers::pi / 5), 1e-13);
+}
+
+TEST(NarrowestWidth, DoesNotDependOnPlaceOrDirection) {
+  const Polygon plate{{0.0, 0.0}, {10.0, 0.0}, {10.0, 0.25}, {0.0, 0.25}};
+  EXPECT_NEAR(narrowest_width(plate), 0.25, rounding);
+  EXPECT_NEAR(narrowest_width(reversed(plate)), 0.25, rounding);
+  EXPECT_EQ(narrowest_width(moved(plate, {1e6, -1e6})), 0.25);
+  EXPECT_NEAR(narrowest_width(mapped(plate, Rotation::of(0.7))), 0.25, 1e-14);
+}
+
+// The arrow is narrowest across the diagonal of its hull, which is none of its own edges.
+TEST(NarrowestWidth, OfAConcaveShapeIsThatOfItsHull) {
+  const Polygon hull{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 3.0}, {0.0, 3.0}};
+  EXPECT_NEAR(narrowest_width(l_shape), narrowest_width(hull), rounding);
+  const Polygon arrow{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}, {9.0, 1.0}};
+  const Polygon arrow_hull{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}};
+  EXPECT_NEAR(narrowest_width(arrow), narrowest_width(arrow_hull), rounding);
+}
+
+} // namespace
+} // namespace gcpdda
