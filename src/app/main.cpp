@@ -123,7 +123,8 @@ int main(int argc, char **argv) {
   const Communicator world = Communicator::world();
   if (world.size() == 1 && announced_ranks() > 1) {
     std::cerr << "error: the launcher started " << announced_ranks()
-              << " processes but MPI connects only one, they would run as separate copies of the same scene, start gcpdda "
+              << " processes but MPI connects only one, they would run as separate copies of the same scene, "
+                 "start gcpdda "
                  "with the mpirun of the Open MPI it was built with\n";
     return usage;
   }

@@ -68,7 +68,8 @@ CellLists fill_cells(const SearchGrid &grid, std::span<const Aabb> boxes) {
   cells.rows.resize(cells.begin.back());
   std::vector<std::uint32_t> next(cells.begin.begin(), cells.begin.end() - 1);
   for (std::size_t row = 0; row < boxes.size(); ++row) {
-    grid.cover(boxes[row], [&](std::size_t cell) { cells.rows[next[cell]++] = static_cast<std::uint32_t>(row); });
+    grid.cover(boxes[row],
+               [&](std::size_t cell) { cells.rows[next[cell]++] = static_cast<std::uint32_t>(row); });
   }
   return cells;
 }
@@ -145,7 +146,8 @@ std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &sys
   return pairs;
 }
 
-Candidates make_candidates(const BlockSystem &system, std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
+Candidates make_candidates(const BlockSystem &system,
+                           std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
                            ContactHistory &history) {
   Candidates candidates;
@@ -186,7 +188,8 @@ Candidates make_candidates(const BlockSystem &system, std::span<const std::pair<
   // Pairs ascend by (lower, higher): a block meets all lower partners, by id, before all higher ones, by id.
   candidates.block_contacts.resize(candidates.contact_begin.back());
   std::vector<std::uint32_t> next(candidates.contact_begin.begin(), candidates.contact_begin.end() - 1);
-  for_owned_ends([&](std::uint32_t row, BlockContact contact) { candidates.block_contacts[next[row]++] = contact; });
+  for_owned_ends(
+      [&](std::uint32_t row, BlockContact contact) { candidates.block_contacts[next[row]++] = contact; });
   return candidates;
 }
 

@@ -13,8 +13,8 @@ constexpr double least_resultant = 0.1;
 
 /// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
 Vec2 increment_at(const TrialIncrement &step, Vec2 r) {
-  return step.u + Vec2{step.one_minus_cosine * r.x - step.sine * r.y,
-                       step.sine * r.x + step.one_minus_cosine * r.y};
+  return step.u +
+         Vec2{step.one_minus_cosine * r.x - step.sine * r.y, step.sine * r.x + step.one_minus_cosine * r.y};
 }
 
 /// Relative velocity of two blocks as a field: v(x) = at_origin + spin perp(x - origin).
@@ -63,6 +63,14 @@ TractionIntegral integrate_without_tension(double length, double p0, double p1, 
   return q;
 }
 
+double deepest(std::span<const Piece> pieces) {
+  double depth = 0.0;
+  for (const Piece &piece : pieces) {
+    depth = std::max({depth, piece.depth_begin, piece.depth_end});
+  }
+  return depth;
+}
+
 /// Thickness along n_r and extent along t_r of the pieces, relative to x_r.
 void measure_region(std::span<const Piece> pieces, PairForce &force) {
   const Vec2 tangent = perp(force.normal);
@@ -80,7 +88,9 @@ void measure_region(std::span<const Piece> pieces, PairForce &force) {
       high_t = std::max(high_t, along_t);
     }
   }
-  force.overlap = high_n - low_n;
+  // Faces that coincide up to rounding leave only their ends to set n_r, which then lies along the joint: the
+  // deepest point, never far below the thickness of a real overlap, keeps its length out.
+  force.overlap = std::min(high_n - low_n, 4.0 * deepest(pieces));
   force.extent_begin = low_t;
   force.extent_end = high_t;
 }
@@ -102,7 +112,8 @@ void add_normal_dashpot(const Overlap &overlap, const CandidatePair &pair, const
   Vec2 moment;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece &piece = pieces[i];
-    const double facing = i < overlap.num_first() ? -dot(force.normal, piece.normal) : dot(force.normal, piece.normal);
+    const double facing =
+        i < overlap.num_first() ? -dot(force.normal, piece.normal) : dot(force.normal, piece.normal);
     if (facing <= 0.0) {
       continue;
     }
@@ -111,9 +122,8 @@ void add_normal_dashpot(const Overlap &overlap, const CandidatePair &pair, const
     const double rate = pair.damping * facing;
     const double d0 = -rate * dot(velocity.at(begin), force.normal);
     const double d1 = -rate * dot(velocity.at(piece.end() - force.origin), force.normal);
-    const TractionIntegral q =
-        integrate_without_tension(piece.length, pair.half_stiffness * piece.depth_begin,
-                                  pair.half_stiffness * piece.depth_end, d0, d1);
+    const TractionIntegral q = integrate_without_tension(
+        piece.length, pair.half_stiffness * piece.depth_begin, pair.half_stiffness * piece.depth_end, d0, d1);
     total += q.total;
     moment += q.total * begin + q.along * perp(piece.normal);
   }
@@ -130,8 +140,8 @@ void add_normal_dashpot(const Overlap &overlap, const CandidatePair &pair, const
 } // namespace
 
 ConvexView view_of(const BlockSystem &system, std::size_t row) {
-  return {system.of_row(system.vertex, row), system.of_row(system.normal, row), system.of_row(system.edge_length, row),
-          system.box[row]};
+  return {system.of_row(system.vertex, row), system.of_row(system.normal, row),
+          system.of_row(system.edge_length, row), system.box[row]};
 }
 
 void ContactForces::add_shear(PairForce &force, double elastic, double viscous) const {
@@ -184,9 +194,7 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const CandidatePair
   if (resultant < least_resultant * region.pressure) {
     force.normal_undefined = true;
     // No direction to measure along: twice the deepest point stands for the thickness.
-    for (const Piece &piece : overlap_.pieces()) {
-      force.overlap = std::max(force.overlap, 2.0 * std::max(piece.depth_begin, piece.depth_end));
-    }
+    force.overlap = 2.0 * deepest(overlap_.pieces());
     memory.shear = 0.0;
     memory.state = ContactState::slip;
     return;
@@ -297,7 +305,8 @@ std::array<double, 3> mean_stress(const BlockSystem &system, const Candidates &c
   for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
     const BlockContact contact = candidates.block_contacts[c];
     if (forces[contact.pair].touching) {
-      const ContactPart part = contact_part(forces[contact.pair], contact.is_lower, system.trial_centroid[row]);
+      const ContactPart part =
+          contact_part(forces[contact.pair], contact.is_lower, system.trial_centroid[row]);
       for (std::size_t i = 0; i < 4; ++i) {
         dyad[i] += part.dyad[i];
       }

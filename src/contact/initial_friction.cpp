@@ -24,7 +24,7 @@ Vec2 acceleration_at(const RigidDof &v, const RigidDof &a, Vec2 arm) {
 } // namespace
 
 InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
-                                 ContactHistory &history)
+                           ContactHistory &history)
     : forces_(forces), history_(history), contact_counts_(system.num_rows(), 0.0) {
   for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
     const PairForce &force = forces.pairs()[k];

@@ -126,8 +126,8 @@ void Overlap::walk_envelope(Piece piece, std::size_t line, double s, double s_en
 }
 
 void Overlap::start_at_entry(std::size_t first_piece) {
-  // Sum from where the boundary comes in, the lowest leftmost such place if there are several: a choice that cutting
-  // or renumbering the block elsewhere cannot change.
+  // Sum from where the boundary comes in, the lowest leftmost such place if there are several: a choice that
+  // cutting or renumbering the block elsewhere cannot change.
   const auto begin = pieces_.begin() + static_cast<std::ptrdiff_t>(first_piece);
   const auto start = std::min_element(begin, pieces_.end(), [](const Piece &p, const Piece &q) {
     if (p.enters != q.enters) {
@@ -171,7 +171,8 @@ namespace {
 
 using Polygon = std::vector<Vec2>;
 
-/// The part of a convex polygon where distance(x) >= 0 for a linear function given by its values at the vertices.
+/// The part of a convex polygon where distance(x) >= 0 for a linear function given by its values at the
+/// vertices.
 template <class Distance> Polygon keep_positive(const Polygon &polygon, const Distance &distance) {
   Polygon kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -199,12 +200,14 @@ template <class Distance> double integrate_linear(const Polygon &polygon, const 
   return sum;
 }
 
-/// int over the region of the distance to the boundary of `block`: cut the region into the cells in which one edge
-/// line is nearest.
+/// int over the region of the distance to the boundary of `block`: cut the region into the cells in which one
+/// edge line is nearest.
 double integrate_distance(const Polygon &region, const ConvexView &block) {
   double sum = 0.0;
   for (std::size_t i = 0; i < block.vertex.size(); ++i) {
-    const auto depth = [&](std::size_t line, Vec2 x) { return dot(block.normal[line], block.vertex[line] - x); };
+    const auto depth = [&](std::size_t line, Vec2 x) {
+      return dot(block.normal[line], block.vertex[line] - x);
+    };
     Polygon cell = region;
     for (std::size_t j = 0; j < block.vertex.size() && cell.size() >= 3; ++j) {
       const auto margin = [&](Vec2 x) { return depth(j, x) - depth(i, x); };

@@ -17,7 +17,8 @@ double contact_frequency_bound(const BlockSystem &system, std::size_t row, doubl
       const Eigen::Vector3d b_n(n.x, n.y, cross(x, n));
       const Eigen::Vector3d b_t(t.x, t.y, cross(x, t));
       const double weight = 0.5 * system.edge_length[k];
-      stiffness += weight * (normal_stiffness * b_n * b_n.transpose() + tangential_stiffness * b_t * b_t.transpose());
+      stiffness +=
+          weight * (normal_stiffness * b_n * b_n.transpose() + tangential_stiffness * b_t * b_t.transpose());
     }
   }
   const BlockProperties &p = system.properties[row];

@@ -6,7 +6,9 @@
 
 namespace gcpdda {
 
-Scheme make_scheme(SchemeKind kind, double r, ContactTime contact_time) {
+namespace {
+
+Scheme coefficients(SchemeKind kind, double r, ContactTime contact_time) {
   Scheme s;
   switch (kind) {
   case SchemeKind::generalized_alpha:
@@ -52,6 +54,14 @@ Scheme make_scheme(SchemeKind kind, double r, ContactTime contact_time) {
   throw InternalError("unknown scheme");
 }
 
+} // namespace
+
+Scheme make_scheme(SchemeKind kind, double spectral_radius, ContactTime contact_time) {
+  Scheme s = coefficients(kind, spectral_radius, contact_time);
+  s.load_time = 1.0 - s.alpha_f;
+  return s;
+}
+
 double amplification(const Scheme &s, double w, double xi) {
   // State (d, dt v, dt^2 a); f dt^2/M = -w^2 d* - 2 xi w (dt v).
   const Eigen::RowVector3d trial(1.0, s.trial_velocity, s.trial_acceleration);
@@ -67,8 +77,8 @@ double amplification(const Scheme &s, double w, double xi) {
 }
 
 double stability_limit(const Scheme &scheme, double damping_ratio) {
-  // Two eigenvalues meet on the unit circle at W = 0 and at the limit, where they are sensitive to rounding as its
-  // square root: hence the step away from 0 and the bound on growth.
+  // Two eigenvalues meet on the unit circle at W = 0 and at the limit, where they are sensitive to rounding
+  // as its square root: hence the step away from 0 and the bound on growth.
   constexpr double first = 0.01;
   constexpr double step = 0.005;
   constexpr double growth = 1e-9;

@@ -101,8 +101,8 @@ bool is_convex(std::span<const Vec2> vertices) {
 
 double narrowest_width(std::span<const Vec2> vertices) {
   const std::size_t n = vertices.size();
-  // The edges of a convex polygon are those of its hull. Otherwise the hull's are among all pairs of vertices, and no
-  // direction is narrower than the narrowest.
+  // The edges of a convex polygon are those of its hull. Otherwise the hull's are among all pairs of
+  // vertices, and no direction is narrower than the narrowest.
   const std::size_t farthest = is_convex(vertices) ? 1 : n - 1;
   double narrowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < n; ++i) {

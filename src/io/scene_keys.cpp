@@ -33,7 +33,7 @@ constexpr Key all_keys[] = {
   {"run", Kind::table, required, any, "", "", "[run]", "How the run goes."},
   {"run.duration", Kind::number, required, above_to(0, 1e12), "", "", "2.0", "[s] Simulated time."},
   {"run.gravity", Kind::vector2, optional, from_to(-1e6, 1e6), "", "[0.0, -9.81]", "[0.0, -9.81]", "[m/s2] Acceleration of gravity."},
-  {"run.gravity_ramp", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.0", "[s] Time over which gravity rises smoothly from zero; only 0 in this version."},
+  {"run.gravity_ramp", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.0", "[s] Time over which gravity rises smoothly from zero."},
   {"run.time_step", Kind::number_or_auto, optional, above_to(0, 1e12), "", "\"auto\"", "1e-4", "[s] Time step, used as given, or \"auto\" for the largest one that meets the stability bound."},
   {"run.safety", Kind::number, optional, above_to(0, 1), "", "0.25", "0.25", "Fraction of the stability bound that \"auto\" takes."},
   {"run.scheme", Kind::choice, optional, any, "generalized-alpha newmark-dda central-difference explicit-generalized-alpha", "\"generalized-alpha\"", "\"generalized-alpha\"", "Time integration."},

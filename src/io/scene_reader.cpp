@@ -47,13 +47,11 @@ void check_available(const SceneSource &source, const Section &run, Fidelity fid
     fault(source, *run.given("fidelity"), "deformable blocks are not available in this version", "",
           "use \"rigid\"");
   }
-  for (const char *key : {"gravity_ramp", "local_damping"}) {
-    double value = 0.0;
-    run.read(key, value);
-    if (value != 0.0) {
-      fault(source, *run.given(key), run.subject(key) + " is not available in this version", "",
-            "leave it out or write 0");
-    }
+  double local_damping = 0.0;
+  run.read("local_damping", local_damping);
+  if (local_damping != 0.0) {
+    fault(source, *run.given("local_damping"), run.subject("local_damping") + " is not available in this version", "",
+          "leave it out or write 0");
   }
 }
 
@@ -62,6 +60,7 @@ RunSettings read_run(const SceneSource &source) {
   RunSettings settings;
   run.read("duration", settings.duration);
   run.read("gravity", settings.gravity);
+  run.read("gravity_ramp", settings.gravity_ramp);
   const toml::node *time_step = run.sound("time_step");
   if (time_step != nullptr && !time_step->is_string()) {
     settings.time_step = as_number(*time_step);

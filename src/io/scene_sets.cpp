@@ -61,12 +61,12 @@ std::optional<toml::table> parse(std::string_view text, const toml::source_path_
 // "block.'a b'.fixed" -> block, a b, fixed; nothing where a segment is empty or a quote stays open.
 std::optional<Path> split(std::string_view dotted) {
   Path path(1);
-  char quote = 0;
+  char quote = '\0';
   bool complete = false; // a quoted segment takes nothing more
   for (const char c : dotted) {
-    if (quote != 0) {
+    if (quote != '\0') {
       complete = c == quote;
-      quote = complete ? 0 : quote;
+      quote = complete ? '\0' : quote;
       if (!complete) {
         path.back() += c;
       }
@@ -85,7 +85,7 @@ std::optional<Path> split(std::string_view dotted) {
     }
   }
   constexpr std::size_t deepest = 16;
-  if (quote != 0 || path.back().empty() || path.size() > deepest) {
+  if (quote != '\0' || path.back().empty() || path.size() > deepest) {
     return std::nullopt;
   }
   return path;
@@ -121,16 +121,17 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
   std::string text(trimmed(value));
   if (is_bare_word(text)) {
     try {
-      (void)toml::parse("value = " + text);
+      (void)toml::parse(fmt::format("value = {}", text));
     } catch (const toml::parse_error &) {
       text = quoted(text);
     }
   }
   std::string keys;
   for (const std::string &segment : path) {
-    keys += (keys.empty() ? "" : ".") + quoted(segment);
+    keys += keys.empty() ? "" : ".";
+    keys += quoted(segment);
   }
-  auto tree = parse(keys + " = " + text, label, faults);
+  auto tree = parse(fmt::format("{} = {}", keys, text), label, faults);
   // A line break in the value could smuggle in a second assignment.
   const toml::table *level = tree ? &*tree : nullptr;
   for (std::size_t i = 0; level != nullptr && i < path.size(); ++i) {

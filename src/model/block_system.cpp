@@ -41,12 +41,14 @@ void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, cons
 }
 
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
-  std::apply([&](auto... field) { ((to.*field).push_back((from.*field)[row]), ...); }, BlockSystem::row_fields());
+  std::apply([&](auto... field) { ((to.*field).push_back((from.*field)[row]), ...); },
+             BlockSystem::row_fields());
   const auto begin = static_cast<std::ptrdiff_t>(from.vertex_begin[row]);
   const auto end = static_cast<std::ptrdiff_t>(from.vertex_begin[row + 1]);
   std::apply(
       [&](auto... field) {
-        ((to.*field).insert((to.*field).end(), (from.*field).begin() + begin, (from.*field).begin() + end), ...);
+        ((to.*field).insert((to.*field).end(), (from.*field).begin() + begin, (from.*field).begin() + end),
+         ...);
       },
       BlockSystem::shape_fields());
   to.vertex_begin.push_back(static_cast<std::uint32_t>(to.reference_vertex.size()));

@@ -69,7 +69,8 @@ private:
 };
 
 /// Union of the reach boxes of the blocks in each occupied cell.
-std::vector<Aabb> boxes_of_cells(const DomainMap &map, const BlockSystem &system, std::span<const Aabb> boxes) {
+std::vector<Aabb> boxes_of_cells(const DomainMap &map, const BlockSystem &system,
+                                 std::span<const Aabb> boxes) {
   std::map<std::int64_t, Aabb> by_cell;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     by_cell[map.grid.cell_of(system.centroid(row))].include(boxes[row]);
@@ -137,8 +138,9 @@ void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const 
   }
   std::vector<std::size_t> order(arrived.num_rows());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return arrived.properties[a].id < arrived.properties[b].id; });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return arrived.properties[a].id < arrived.properties[b].id;
+  });
 
   BlockSystem whole;
   const auto append_range = [&](std::size_t first, std::size_t last) {

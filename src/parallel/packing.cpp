@@ -26,7 +26,8 @@ template <class T> void take(std::span<const std::byte> &message, std::vector<T>
 void pack_row(const BlockSystem &system, std::size_t row, Bytes &message) {
   const std::uint64_t num_vertices = system.num_vertices(row);
   put(message, &num_vertices, 1);
-  std::apply([&](auto... field) { (put(message, &(system.*field)[row], 1), ...); }, BlockSystem::row_fields());
+  std::apply([&](auto... field) { (put(message, &(system.*field)[row], 1), ...); },
+             BlockSystem::row_fields());
   const std::size_t begin = system.vertex_begin[row];
   std::apply([&](auto... field) { (put(message, (system.*field).data() + begin, num_vertices), ...); },
              BlockSystem::shape_fields());

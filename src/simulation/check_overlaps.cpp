@@ -38,20 +38,23 @@ Diagnostics check_initial_overlaps(const Scene &scene) {
     const SceneBlock &higher = scene.blocks[static_cast<std::size_t>(b.id.value)];
     const double width = std::min(a.width, b.width);
     if (force.overlap > deepest_share * width) {
-      diagnostics.push_back({Severity::error, higher.where,
-                             fmt::format("blocks '{}' and '{}' overlap by {:.3g} m", lower.name, higher.name,
-                                         force.overlap),
-                             fmt::format("more than 5 % of the narrower block's width {:.3g} m", width),
-                             "move or trim one of them"});
+      diagnostics.push_back(
+          {Severity::error, higher.where,
+           fmt::format("blocks '{}' and '{}' overlap by {:.3g} m", lower.name, higher.name, force.overlap),
+           fmt::format("more than 5 % of the narrower block's width {:.3g} m", width),
+           "move or trim one of them"});
     } else if (force.overlap > deepest) {
       deepest = force.overlap;
       deepest_pair = fmt::format("'{}' and '{}'", lower.name, higher.name);
     }
   }
   if (deepest > 0.0 && diagnostics.empty()) {
-    diagnostics.push_back({Severity::info, {},
-                           fmt::format("the deepest initial overlap is {:.3g} m between blocks {}", deepest, deepest_pair),
-                           "initial overlaps are contacts", ""});
+    diagnostics.push_back(
+        {Severity::info,
+         {},
+         fmt::format("the deepest initial overlap is {:.3g} m between blocks {}", deepest, deepest_pair),
+         "initial overlaps are contacts",
+         ""});
   }
   return diagnostics;
 }

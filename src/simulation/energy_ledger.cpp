@@ -19,7 +19,8 @@ struct Terms {
   ExactSum open_shear_work; ///< from x*_n to the middle
 
   void agree(const Communicator &communicator) {
-    for (ExactSum *sum : {&kinetic, &normal, &stick, &gravity, &shear_work, &damping_work, &open_shear_work}) {
+    for (ExactSum *sum :
+         {&kinetic, &normal, &stick, &gravity, &shear_work, &damping_work, &open_shear_work}) {
       communicator.sum(sum->limbs());
     }
   }
@@ -64,15 +65,13 @@ Terms initial_terms(const Simulation &simulation) {
 Terms current_terms(Simulation &simulation) {
   Terms terms;
   const double time_step = simulation.plan().time_step;
-  const Vec2 gravity = simulation.scene().run.gravity;
   simulation.look_ahead([&](const BlockSystem &blocks) {
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
       const BlockProperties &block = blocks.properties[row];
       const BlockLedger &ledger = blocks.ledger[row];
       const RigidDof increment = blocks.trial[row] - blocks.trial_previous[row];
-      const Vec2 middle = 0.5 * (blocks.trial[row].u + blocks.trial_previous[row].u);
       terms.kinetic.add(kinetic_energy(block, (1.0 / time_step) * increment));
-      terms.gravity.add(-block.mass * dot(gravity, middle));
+      terms.gravity.add(-(ledger.gravity_work + 0.5 * dot(ledger.gravity_force, increment.u)));
       terms.shear_work.add(ledger.shear_work);
       terms.open_shear_work.add(0.5 * work(ledger.shear_force, increment));
       terms.damping_work.add(ledger.damping_work + 0.5 * work(ledger.damping_force, increment));

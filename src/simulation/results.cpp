@@ -151,7 +151,8 @@ std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
   for (std::size_t m = 0; m < monitors.size(); ++m) {
     monitor_of.emplace(monitors[m].block, m);
   }
-  const FrameData data = collect_rows(simulation, [&](std::int64_t block) { return monitor_of.contains(block); });
+  const FrameData data =
+      collect_rows(simulation, [&](std::int64_t block) { return monitor_of.contains(block); });
   std::vector<Found> mine;
   for (const FrameRow &row : data.rows) {
     mine.push_back({row.block,

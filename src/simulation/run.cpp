@@ -108,7 +108,8 @@ public:
     const double cpu_start = cpu_seconds();
     while (!simulation_.finished()) {
       simulation_.step();
-      if (simulation_.step_count() == std::min<std::int64_t>(steps_to_predict, simulation_.plan().num_steps)) {
+      if (simulation_.step_count() ==
+          std::min<std::int64_t>(steps_to_predict, simulation_.plan().num_steps)) {
         predict_duration(seconds_since(loop_start));
       }
       write_due();
@@ -123,29 +124,33 @@ private:
   static constexpr std::int64_t steps_to_predict = 20;
 
   void announce() {
-    const auto owned = counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_owned));
-    const auto work = counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.candidates().pairs.size()));
+    const auto owned =
+        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_owned));
+    const auto work =
+        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.candidates().pairs.size()));
     const StepBound &bound = simulation_.bound();
     const Scene &scene = simulation_.scene();
     for (const Diagnostic &note : simulation_.notes()) {
       log_->diagnostic(note);
     }
     const auto mobile = std::accumulate(owned.begin(), owned.end(), std::int64_t{0});
-    log_->line(fmt::format("gcpdda: {} rank{}, {} mobile and {} fixed blocks, {} to {} per rank, imbalance {:.3f} ({})",
-                           communicator_.size(), communicator_.size() == 1 ? "" : "s", mobile,
-                           simulation_.num_blocks() - mobile, *std::min_element(owned.begin(), owned.end()),
-                           *std::max_element(owned.begin(), owned.end()), imbalance_of(work),
-                           simulation_.partition().by_metis ? "METIS" : "space-filling curve"));
-    log_->line(fmt::format("step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
-                           "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
-                           simulation_.plan().time_step, simulation_.plan().num_steps, simulation_.plan().duration,
-                           bound.time_step, scene.run.safety, bound.limit, bound.omega_max));
+    log_->line(fmt::format(
+        "gcpdda: {} rank{}, {} mobile and {} fixed blocks, {} to {} per rank, imbalance {:.3f} ({})",
+        communicator_.size(), communicator_.size() == 1 ? "" : "s", mobile, simulation_.num_blocks() - mobile,
+        *std::min_element(owned.begin(), owned.end()), *std::max_element(owned.begin(), owned.end()),
+        imbalance_of(work), simulation_.partition().by_metis ? "METIS" : "space-filling curve"));
+    log_->line(fmt::format(
+        "step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
+        "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
+        simulation_.plan().time_step, simulation_.plan().num_steps, simulation_.plan().duration,
+        bound.time_step, scene.run.safety, bound.limit, bound.omega_max));
     for (const JointLaw &law : scene.joints.laws) {
-      log_->line(fmt::format("joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
-                             "cohesion {:g} Pa",
-                             law.name, law.normal_stiffness,
-                             law.allowed_overlap > 0.0 ? fmt::format(" for an overlap of {:g} m", law.allowed_overlap) : "",
-                             law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion));
+      log_->line(fmt::format(
+          "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
+          "cohesion {:g} Pa",
+          law.name, law.normal_stiffness,
+          law.allowed_overlap > 0.0 ? fmt::format(" for an overlap of {:g} m", law.allowed_overlap) : "",
+          law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion));
     }
     report_accepted_error(scene);
   }
@@ -156,15 +161,16 @@ private:
     for (const SceneBlock &block : scene.blocks) {
       const Material &material = scene.materials[static_cast<std::size_t>(block.material)];
       if (!block.fixed && material.youngs_modulus > 0.0) {
-        const double joint = stiffness_bound(scene.joints, block.material).normal *
-                             std::sqrt(signed_area(block.vertices));
+        const double joint =
+            stiffness_bound(scene.joints, block.material).normal * std::sqrt(signed_area(block.vertices));
         worst = std::max(worst, joint / (material.youngs_modulus + joint));
       }
     }
     if (worst > scene.run.accepted_error) {
-      log_->line(fmt::format("warning: all blocks are rigid, which leaves out up to {:.2g} of the joints' compliance; "
-                             "accepted are {:g} (run.accepted_error)",
-                             worst, scene.run.accepted_error));
+      log_->line(fmt::format(
+          "warning: all blocks are rigid, which leaves out up to {:.2g} of the joints' compliance; "
+          "accepted are {:g} (run.accepted_error)",
+          worst, scene.run.accepted_error));
     }
   }
 
@@ -181,11 +187,12 @@ private:
     const auto steps = static_cast<double>(simulation_.step_count());
     const double elapsed = seconds_since(loop_start);
     const double share = steps / static_cast<double>(simulation_.plan().num_steps);
-    log_->progress(fmt::format("{:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  remaining {:.0f} s  unbalanced {:.2e}  "
-                               "max speed {:.3g} m/s",
-                               100.0 * share, simulation_.time(), simulation_.step_count(),
-                               steps * static_cast<double>(simulation_.num_blocks()) / elapsed,
-                               elapsed * (1.0 - share) / share, energy_.unbalanced_ratio, energy_.max_speed));
+    log_->progress(fmt::format(
+        "{:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  remaining {:.0f} s  unbalanced {:.2e}  "
+        "max speed {:.3g} m/s",
+        100.0 * share, simulation_.time(), simulation_.step_count(),
+        steps * static_cast<double>(simulation_.num_blocks()) / elapsed, elapsed * (1.0 - share) / share,
+        energy_.unbalanced_ratio, energy_.max_speed));
   }
 
   void write_due() {
@@ -234,7 +241,10 @@ private:
   std::int64_t count_contacts() {
     std::int64_t count = 0;
     for (std::size_t k = 0; k < simulation_.candidates().pairs.size(); ++k) {
-      count += simulation_.contacts().pairs()[k].touching && simulation_.counts_here(simulation_.candidates().pairs[k]) ? 1 : 0;
+      count += simulation_.contacts().pairs()[k].touching &&
+                       simulation_.counts_here(simulation_.candidates().pairs[k])
+                   ? 1
+                   : 0;
     }
     return total(communicator_, count);
   }
@@ -255,16 +265,19 @@ private:
     const auto name = [&](BlockId id) {
       return simulation_.scene().blocks[static_cast<std::size_t>(id.value)].name;
     };
-    const std::string where = fmt::format("block '{}' at t = {:.9g} s", name(fault.block), simulation_.time());
+    const std::string where =
+        fmt::format("block '{}' at t = {:.9g} s", name(fault.block), simulation_.time());
     switch (fault.cause) {
     case Fault::Cause::too_deep:
-      return fmt::format("{}: overlaps block '{}' by {:.4g} m, deeper than half the narrowest width {:.4g} m, where the "
-                         "contact force reverses; try a larger joint.normal_stiffness or a smaller run.time_step",
-                         where, name(fault.other), fault.value, fault.limit);
+      return fmt::format(
+          "{}: overlaps block '{}' by {:.4g} m, deeper than half the narrowest width {:.4g} m, where the "
+          "contact force reverses; try a larger joint.normal_stiffness or a smaller run.time_step",
+          where, name(fault.other), fault.value, fault.limit);
     case Fault::Cause::too_fast:
-      return fmt::format("{}: moves {:.4g} m in one step, more than the narrowest block width {:.4g} m, and could tunnel "
-                         "through a block; try a smaller run.time_step",
-                         where, fault.value, fault.limit);
+      return fmt::format(
+          "{}: moves {:.4g} m in one step, more than the narrowest block width {:.4g} m, and could tunnel "
+          "through a block; try a smaller run.time_step",
+          where, fault.value, fault.limit);
     case Fault::Cause::not_finite:
       break;
     }
@@ -280,12 +293,13 @@ private:
     on_root(communicator_, [&] { write_summary(directory_, summary); });
     write_owners_of_blocks();
     for (const auto &[name, seconds] : summary.phases) {
-      log_->line(fmt::format("{:>8} {:9.3f} {:9.3f} {:9.3f} s (min, mean, max over ranks)", name, seconds[0], seconds[1],
-                             seconds[2]));
+      log_->line(fmt::format("{:>8} {:9.3f} {:9.3f} {:9.3f} s (min, mean, max over ranks)", name, seconds[0],
+                             seconds[1], seconds[2]));
     }
-    log_->line(fmt::format("{} steps, {} contacts at the end, largest overlap {:.3g} m, energy residual {:.3g} J/m, "
-                           "{:.3g} s in the step loop",
-                           summary.steps, summary.contacts, summary.max_overlap, summary.energy.residual, summary.wall_s));
+    log_->line(fmt::format(
+        "{} steps, {} contacts at the end, largest overlap {:.3g} m, energy residual {:.3g} J/m, "
+        "{:.3g} s in the step loop",
+        summary.steps, summary.contacts, summary.max_overlap, summary.energy.residual, summary.wall_s));
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());
     return failed ? 5 : 0;
@@ -321,8 +335,9 @@ private:
     summary.messages_per_step =
         static_cast<double>(total(communicator_, simulation_.ghosts().messages_sent())) / steps;
     for (std::size_t p = 0; p < phase_names.size(); ++p) {
-      const double seconds = static_cast<Phase>(p) == Phase::output ? output_seconds_
-                                                                     : simulation_.phases().seconds(static_cast<Phase>(p));
+      const double seconds = static_cast<Phase>(p) == Phase::output
+                                 ? output_seconds_
+                                 : simulation_.phases().seconds(static_cast<Phase>(p));
       summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
     }
     const auto add = [&](const char *name, std::int64_t value) {

@@ -9,8 +9,8 @@
 
 namespace gcpdda {
 
-/// The root's voice: lines to stderr and run.log; on a terminal a progress line that is overwritten. Silent on other
-/// ranks.
+/// The root's voice: lines to stderr and run.log; on a terminal a progress line that is overwritten. Silent
+/// on other ranks.
 class RunLog {
 public:
   RunLog(bool speaks, const std::filesystem::path &directory);

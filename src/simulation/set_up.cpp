@@ -28,8 +28,8 @@ Simulation::Simulation(const Communicator &communicator, Scene scene)
   find_initial_state();
 }
 
-// Everybody knows the whole list of blocks and keeps its own; cells are weighted first by blocks, then, once the
-// neighbourhoods are known, by counted contact work.
+// Everybody knows the whole list of blocks and keeps its own; cells are weighted first by blocks, then, once
+// the neighbourhoods are known, by counted contact work.
 void Simulation::distribute() {
   Aabb region;
   double smallest_mobile = std::numeric_limits<double>::infinity();
@@ -92,8 +92,8 @@ void Simulation::find_bound() {
   double omega_squared = 0.0;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const StiffnessBound stiffness = stiffness_bound(scene_.joints, blocks_.properties[row].material);
-    omega_squared =
-        std::max(omega_squared, contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential));
+    omega_squared = std::max(omega_squared,
+                             contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential));
   }
   communicator_.max(std::span(&omega_squared, 1));
   // A block that is alone can never touch.
@@ -120,7 +120,7 @@ void Simulation::find_bound() {
 void Simulation::accelerate_owned() {
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     RigidDof force = sum_contacts(blocks_, candidates_, contacts_.pairs(), row).force;
-    force.u += blocks_.properties[row].mass * scene_.run.gravity;
+    force.u += blocks_.properties[row].mass * gravity();
     blocks_.acceleration[row] = accelerate(blocks_.properties[row], force);
   }
 }
@@ -156,11 +156,12 @@ void Simulation::find_initial_friction() {
   }
   if (before > 0.0 && !(after < before)) {
     stick.reset();
-    notes_.push_back({Severity::info,
-                      {},
-                      "friction starts at zero",
-                      fmt::format("{} sweeps did not bring the initial stick forces nearer to equilibrium", num_sweeps),
-                      ""});
+    notes_.push_back(
+        {Severity::info,
+         {},
+         "friction starts at zero",
+         fmt::format("{} sweeps did not bring the initial stick forces nearer to equilibrium", num_sweeps),
+         ""});
   }
 }
 

@@ -11,6 +11,7 @@ void Simulation::step() {
   if (stale_) { // some block may use up half the skin in this step; all ranks agree
     refresh();
   }
+  load_time_ = time() + scheme_.load_time * plan_.time_step;
   predict_next();
   evaluate_contacts();
   gather_forces();
@@ -28,7 +29,16 @@ bool Simulation::counts_here(const CandidatePair &pair) const {
   return pair.lower.value < blocks_.num_owned || blocks_.is_fixed(pair.lower.value);
 }
 
-// Each block to the rank that owns its centroid, who is seen by whom, which pairs may touch: on a finished state.
+Vec2 Simulation::gravity() const {
+  if (load_time_ >= scene_.run.gravity_ramp) {
+    return scene_.run.gravity;
+  }
+  const double share = load_time_ / scene_.run.gravity_ramp;
+  return (share * share * (3.0 - 2.0 * share)) * scene_.run.gravity;
+}
+
+// Each block to the rank that owns its centroid, who is seen by whom, which pairs may touch: on a finished
+// state.
 void Simulation::refresh() {
   const auto scope = phases_.measure(Phase::refresh);
   std::vector<RegionRecord> memory;
@@ -50,8 +60,8 @@ void Simulation::refresh() {
   skin_ = std::max(base_skin_, 4.0 * reach);
 
   ghosts_.rebuild(map_, blocks_, reach_boxes(blocks_, skin_));
-  candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, skin_)), contacts_.parameters(),
-                                std::move(memory), history_);
+  candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, skin_)),
+                                contacts_.parameters(), std::move(memory), history_);
   pose(blocks_, 0, blocks_.num_rows());
   stale_ = false;
   if (step_count_ > 0) {
@@ -77,18 +87,23 @@ void Simulation::evaluate_contacts() {
   }
 }
 
-// Sum on each block in the order of its partners' ids; the ledger's works go on by the trapezoid over increments of x*.
+// Sum on each block in the order of its partners' ids; the ledger's works go on by the trapezoid over
+// increments of x*.
 void Simulation::gather_forces() {
   const auto scope = phases_.measure(Phase::forces);
   forces_.resize(blocks_.num_owned);
+  const Vec2 gravity_now = gravity();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const BlockContactSum sum = sum_contacts(blocks_, candidates_, contacts_.pairs(), row);
     forces_[row] = sum.force;
-    forces_[row].u += blocks_.properties[row].mass * scene_.run.gravity;
+    const Vec2 weight = blocks_.properties[row].mass * gravity_now;
+    forces_[row].u += weight;
     const RigidDof increment = blocks_.trial[row] - blocks_.trial_previous[row];
     BlockLedger &ledger = blocks_.ledger[row];
     ledger.shear_work += 0.5 * work(ledger.shear_force + sum.shear, increment);
     ledger.damping_work += 0.5 * work(ledger.damping_force + sum.damping, increment);
+    ledger.gravity_work += 0.5 * dot(ledger.gravity_force + weight, increment.u);
+    ledger.gravity_force = weight;
     ledger.shear_force = sum.shear;
     ledger.damping_force = sum.damping;
   }
@@ -105,7 +120,8 @@ void Simulation::report() {
     const CandidatePair &pair = candidates_.pairs[k];
     if (contacts_.pairs()[k].touching && counts_here(pair)) {
       ++counters_.contact_steps;
-      const bool higher_is_ghost = pair.higher.value >= blocks_.num_owned && !blocks_.is_fixed(pair.higher.value);
+      const bool higher_is_ghost =
+          pair.higher.value >= blocks_.num_owned && !blocks_.is_fixed(pair.higher.value);
       crossing += higher_is_ghost ? 1 : 0;
     }
   }

@@ -32,9 +32,10 @@ TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double 
     ++parts;
   }
   if (parts > most_parts) {
-    notes.push_back({Severity::error, {},
-                     fmt::format("run.duration = {:g} s and output.interval = {:g} s have no common step", run.duration,
-                                 output.interval),
+    notes.push_back({Severity::error,
+                     {},
+                     fmt::format("run.duration = {:g} s and output.interval = {:g} s have no common step",
+                                 run.duration, output.interval),
                      "the last frame must fall on the end of the run exactly",
                      "make the duration a multiple of the interval"});
     return {};
@@ -46,21 +47,30 @@ TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double 
   const bool automatic = run.time_step <= 0.0;
   const double wanted = automatic ? std::min(bound, unit) : run.time_step;
   const double count = steps_in(unit, wanted);
+  plan.unit = unit;
+  plan.steps_per_unit = std::llround(count);
   plan.time_step = unit / count;
   if (!automatic && is_whole(unit / wanted) && wanted <= unit * (1.0 + whole)) {
     plan.time_step = run.time_step;
   } else if (!automatic) {
-    notes.push_back({Severity::info, {},
-                     fmt::format("the time step is lowered from {:g} s to {:g} s", run.time_step, plan.time_step),
-                     "the given one does not divide the output interval", ""});
+    notes.push_back(
+        {Severity::info,
+         {},
+         fmt::format("the time step is lowered from {:g} s to {:g} s", run.time_step, plan.time_step),
+         "the given one does not divide the output interval",
+         ""});
   }
   if (plan.time_step > bound * (1.0 + whole)) {
-    notes.push_back({Severity::warning, {},
-                     fmt::format("the time step {:g} s is above the recommended {:g} s", plan.time_step, bound),
-                     "contacts may gain energy or pass through each other",
-                     "lower run.time_step or set it to \"auto\""});
+    notes.push_back(
+        {Severity::warning,
+         {},
+         fmt::format("the time step {:g} s is above the recommended {:g} s", plan.time_step, bound),
+         "contacts may gain energy or pass through each other",
+         "lower run.time_step or set it to \"auto\""});
   }
-  const auto steps = [&](double stretch) { return static_cast<std::int64_t>(std::llround(stretch / plan.time_step)); };
+  const auto steps = [&](double stretch) {
+    return static_cast<std::int64_t>(std::llround(stretch / plan.time_step));
+  };
   plan.num_steps = steps(run.duration);
   plan.steps_per_output = steps(output.interval);
   plan.steps_per_history = steps(output.history_interval);

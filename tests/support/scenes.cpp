@@ -54,7 +54,8 @@ std::string block_toml(const std::string &name, const std::vector<Vec2> &vertice
   for (const Vec2 v : vertices) {
     points += fmt::format("[{:.17g}, {:.17g}], ", v.x, v.y);
   }
-  return fmt::format("[[block]]\nname = \"{}\"\nmaterial = \"rock\"\nvertices = [{}]\n{}\n", name, points, extra);
+  return fmt::format("[[block]]\nname = \"{}\"\nmaterial = \"rock\"\nvertices = [{}]\n{}\n", name, points,
+                     extra);
 }
 
 std::vector<Vec2> placed(const std::vector<Vec2> &points, double angle, Vec2 offset) {

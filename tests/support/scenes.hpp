@@ -14,7 +14,8 @@ Scene scene_of(const std::string &toml, const std::vector<std::string> &sets = {
 Scene shipped_scene(const std::string &name, const std::vector<std::string> &sets = {});
 
 /// One [[block]] of material "rock"; `extra` holds more lines of its table.
-std::string block_toml(const std::string &name, const std::vector<Vec2> &vertices, const std::string &extra = "");
+std::string block_toml(const std::string &name, const std::vector<Vec2> &vertices,
+                       const std::string &extra = "");
 
 /// Points turned about the origin and moved.
 std::vector<Vec2> placed(const std::vector<Vec2> &points, double angle, Vec2 offset);
@@ -22,11 +23,12 @@ std::vector<Vec2> placed(const std::vector<Vec2> &points, double angle, Vec2 off
 /// An axis-parallel rectangle, counter-clockwise from its lower left corner.
 std::vector<Vec2> rectangle(Vec2 low, Vec2 high);
 
-/// A convex polygon of `num_vertices` on a circle, angles jittered; the same for the same seed on every machine.
+/// A convex polygon of `num_vertices` on a circle, angles jittered; the same for the same seed on every
+/// machine.
 std::vector<Vec2> random_polygon(unsigned seed, int num_vertices, double radius, Vec2 centre);
 
-/// Random convex blocks (3 to 8 vertices) loosely stacked in a box of fixed walls, falling and spinning: touches, slides
-/// and crosses subdomain corners.
+/// Random convex blocks (3 to 8 vertices) loosely stacked in a box of fixed walls, falling and spinning:
+/// touches, slides and crosses subdomain corners.
 std::string falling_pile_toml(int num_blocks, double duration);
 
 } // namespace gcpdda::testing

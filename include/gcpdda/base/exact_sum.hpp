@@ -1,9 +1,9 @@
 #pragma once
 
-// Sum of doubles that does not depend on their order: a fixed-point number of 70 digits of 32 bits that spans the whole
-// range of double. Each digit sits in a signed 64-bit limb, so 2^30 summands fit before a carry is due and limbs of
-// several ranks may be added as integers. Written sums are made this way, so that they are the same for any number of
-// ranks.
+// Sum of doubles that does not depend on their order: a fixed-point number of 70 digits of 32 bits that spans
+// the whole range of double. Each digit sits in a signed 64-bit limb, so 2^30 summands fit before a carry is
+// due and limbs of several ranks may be added as integers. Written sums are made this way, so that they are
+// the same for any number of ranks.
 
 #include <array>
 #include <cmath>
@@ -28,7 +28,8 @@ public:
     const bool negative = mantissa < 0;
     const auto magnitude = static_cast<Wide>(negative ? -mantissa : mantissa) << (shift % 32);
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto digit = static_cast<std::int64_t>(static_cast<std::uint64_t>(magnitude >> (32 * k)) & 0xffffffffU);
+      const auto digit =
+          static_cast<std::int64_t>(static_cast<std::uint64_t>(magnitude >> (32 * k)) & 0xffffffffU);
       limbs_[limb + k] += negative ? -digit : digit;
     }
   }
@@ -60,7 +61,8 @@ public:
   }
 
 private:
-  static constexpr int offset = 1152; ///< puts the last bit of the smallest subnormal, 2^-1126 as frexp sees it, at or above bit 0
+  static constexpr int offset =
+      1152; ///< puts the last bit of the smallest subnormal, 2^-1126 as frexp sees it, at or above bit 0
   std::array<std::int64_t, num_limbs> limbs_{};
 };
 

@@ -34,7 +34,8 @@ struct BlockContact {
 /// Which pairs may touch, as flat lists.
 struct Candidates {
   std::vector<CandidatePair> pairs; ///< with at least one owned block, by (lower id, higher id)
-  /// Contacts of owned row i: block_contacts[contact_begin[i] .. contact_begin[i + 1]), by the other block's id.
+  /// Contacts of owned row i: block_contacts[contact_begin[i] .. contact_begin[i + 1]), by the other block's
+  /// id.
   std::vector<std::uint32_t> contact_begin;
   std::vector<BlockContact> block_contacts;
 };
@@ -49,12 +50,14 @@ struct ContactParameters {
 /// Box of every row at t_n; a mobile block's is inflated by half the skin.
 std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin);
 
-/// All pairs with at least one owned mobile block whose boxes meet, by a background grid, as (row, row) with the lower
-/// id first, sorted by ids.
-std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &system, std::span<const Aabb> boxes);
+/// All pairs with at least one owned mobile block whose boxes meet, by a background grid, as (row, row) with
+/// the lower id first, sorted by ids.
+std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &system,
+                                                          std::span<const Aabb> boxes);
 
 /// The candidates of those pairs, and the memory of each taken from `memory` (any order, duplicates allowed).
-Candidates make_candidates(const BlockSystem &system, std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
+Candidates make_candidates(const BlockSystem &system,
+                           std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
                            ContactHistory &history);
 

@@ -2,23 +2,26 @@
 
 // Contact forces of all candidate pairs at the trial configuration.
 //
-// Two convex blocks have one contact region. With N the normal force on the block of lower id and P = int p ds,
-//     n_r = N/|N|,  t_r = perp(n_r),  x_r = int p x ds / P   (always in the hull of the patch; the line of action of a
+// Two convex blocks have one contact region. With N the normal force on the block of lower id and P = int p
+// ds,
+//     n_r = N/|N|,  t_r = perp(n_r),  x_r = int p x ds / P   (always in the hull of the patch; the line of
+//     action of a
 // resultant runs away when normals nearly cancel),  l = extent of the pieces along t_r.
 //
-// Friction is Coulomb with a stick spring. Its elongation is taken from successive TRIAL configurations of the two
-// blocks' material points now at x_r,
-//     du = (increment of A at x_r) - (increment of B at x_r),   F_t += k_t du.t_r,   k_t = ratio k_n max(l so far),
-// in the form increment of u + (I - R(-dtheta)) r, which never subtracts world positions: a block at rest then creeps
-// by 1e-15 and not 5e-12 m per 100 s. Velocities times dt would feed energy into a sticking block, and a k_t that
-// follows the current l gains energy in every cycle of opening. F_t is cut at cap = |N| tan(phi) + c l first; the
-// dashpot adds to it and the sum is cut again. A region's spring turns with t_r, dies with the region, and gets no
-// increment in the step of its birth.
+// Friction is Coulomb with a stick spring. Its elongation is taken from successive TRIAL configurations of
+// the two blocks' material points now at x_r,
+//     du = (increment of A at x_r) - (increment of B at x_r),   F_t += k_t du.t_r,   k_t = ratio k_n max(l so
+//     far),
+// in the form increment of u + (I - R(-dtheta)) r, which never subtracts world positions: a block at rest
+// then creeps by 1e-15 and not 5e-12 m per 100 s. Velocities times dt would feed energy into a sticking
+// block, and a k_t that follows the current l gains energy in every cycle of opening. F_t is cut at cap = |N|
+// tan(phi) + c l first; the dashpot adds to it and the sum is cut again. A region's spring turns with t_r,
+// dies with the region, and gets no increment in the step of its birth.
 //
-// The normal dashpot is distributed: on each piece with outward normal n of its own block and u = -n_r (lower block)
-// or n_r (higher), w = max(0, u.n), the traction q = max(-p, (c'/2) w (v_own - v_other).u) acts along u. It is linear
-// along the piece and cut exactly where p + q would turn into tension. Along n_r, not along the piece's normal: there
-// it would drag on the sunk leading side of a sliding block.
+// The normal dashpot is distributed: on each piece with outward normal n of its own block and u = -n_r (lower
+// block) or n_r (higher), w = max(0, u.n), the traction q = max(-p, (c'/2) w (v_own - v_other).u) acts along
+// u. It is linear along the piece and cut exactly where p + q would turn into tension. Along n_r, not along
+// the piece's normal: there it would drag on the sunk leading side of a sliding block.
 
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/overlap.hpp"
@@ -29,25 +32,25 @@
 
 namespace gcpdda {
 
-/// Force on the lower block of a pair and what is known about its contact; the higher block gets the opposite at the
-/// same points.
+/// Force on the lower block of a pair and what is known about its contact; the higher block gets the opposite
+/// at the same points.
 struct PairForce {
   bool touching = false;
-  bool normal_undefined = false;   ///< normals nearly cancel: no friction, no dashpot
-  Vec2 origin;                     ///< what dyad and moments are about
-  Vec2 force;                      ///< normal, friction and dashpot, N/m
-  std::array<double, 4> dyad{};    ///< int (x - origin) df: xx, xy, yx, yy, N
-  Vec2 shear_force;                ///< elastic part of friction in `force`
-  double shear_moment = 0.0;       ///< about origin
-  Vec2 damping_force;              ///< dashpots in `force`
+  bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
+  Vec2 origin;                   ///< what dyad and moments are about
+  Vec2 force;                    ///< normal, friction and dashpot, N/m
+  std::array<double, 4> dyad{};  ///< int (x - origin) df: xx, xy, yx, yy, N
+  Vec2 shear_force;              ///< elastic part of friction in `force`
+  double shear_moment = 0.0;     ///< about origin
+  Vec2 damping_force;            ///< dashpots in `force`
   double damping_moment = 0.0;
-  Vec2 point;                      ///< x_r
-  Vec2 normal;                     ///< n_r
-  double normal_force = 0.0;       ///< |N|
-  double shear = 0.0;              ///< friction and tangential dashpot along -t_r on the lower block
-  double cap = 0.0;                ///< N/m
-  double overlap = 0.0;            ///< thickness of the overlap along n_r, m
-  double extent_begin = 0.0;       ///< of the pieces along t_r, from x_r, m
+  Vec2 point;                ///< x_r
+  Vec2 normal;               ///< n_r
+  double normal_force = 0.0; ///< |N|
+  double shear = 0.0;        ///< friction and tangential dashpot along -t_r on the lower block
+  double cap = 0.0;          ///< N/m
+  double overlap = 0.0;      ///< thickness of the overlap along n_r, m
+  double extent_begin = 0.0; ///< of the pieces along t_r, from x_r, m
   double extent_end = 0.0;
 };
 
@@ -84,8 +87,8 @@ public:
 
   [[nodiscard]] const ContactParameters &parameters() const { return parameters_; }
 
-  /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory, which
-  /// moves on to this configuration.
+  /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory,
+  /// which moves on to this configuration.
   ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history);
 
   /// By pair, in candidate order.
@@ -95,7 +98,8 @@ public:
   void set_shear(std::size_t pair, double shear);
 
 private:
-  void evaluate_pair(const BlockSystem &system, const CandidatePair &pair, RegionMemory &memory, PairForce &force);
+  void evaluate_pair(const BlockSystem &system, const CandidatePair &pair, RegionMemory &memory,
+                     PairForce &force);
   void add_shear(PairForce &force, double elastic, double viscous) const;
 
   ContactParameters parameters_;

@@ -1,9 +1,10 @@
 #pragma once
 
-// Friction at t = 0. Depth and tilt of a resting block are the user's; the stick springs are ours. Starting them at zero
-// would let every resting block jump by about mu m g/k_t, so each touching region without relative tangential velocity
-// gets the stick force, cut at its cap, that brings its relative tangential acceleration to zero; a sliding region
-// starts on the cap. The unknowns couple through the blocks, hence damped Jacobi sweeps
+// Friction at t = 0. Depth and tilt of a resting block are the user's; the stick springs are ours. Starting
+// them at zero would let every resting block jump by about mu m g/k_t, so each touching region without
+// relative tangential velocity gets the stick force, cut at its cap, that brings its relative tangential
+// acceleration to zero; a sliding region starts on the cap. The unknowns couple through the blocks, hence
+// damped Jacobi sweeps
 //     F += a_t / (n_A w_A + n_B w_B),    w = b_t^T M^-1 b_t,    n = number of contacts of the block
 // (undamped sweeps diverge on a pyramid). Both ranks of a border contact sweep it from the same bits.
 
@@ -18,14 +19,14 @@ class InitialStick {
 public:
   /// Regions with friction among the evaluated pairs; sliding ones are put on their cap at once.
   InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
-                  ContactHistory &history);
+               ContactHistory &history);
 
   /// Frictional contacts of each row; correct for owned rows, to be copied to ghosts by the caller.
   [[nodiscard]] std::vector<double> &contact_counts() { return contact_counts_; }
   [[nodiscard]] bool empty() const { return regions_.empty(); }
 
-  /// Largest change of relative tangential acceleration (m/s2) that a full correction of one region, cut at its cap,
-  /// would still make. Accelerations of owned rows and ghosts stand in the system.
+  /// Largest change of relative tangential acceleration (m/s2) that a full correction of one region, cut at
+  /// its cap, would still make. Accelerations of owned rows and ghosts stand in the system.
   [[nodiscard]] double residual(const BlockSystem &system) const;
   /// One sweep over all sticking regions.
   void sweep(const BlockSystem &system);

@@ -9,8 +9,9 @@ namespace gcpdda {
 ///     omega^2 <= 2 lambda_max(M^-1 K),   K = sum over its whole boundary of
 ///                                            int (k_n b_n b_n^T + k_t b_t b_t^T) ds,
 ///
-/// b_n = T^T n, b_t = T^T t the generalised forces of unit tractions. The factor 2 is the neighbour's share: a two-body
-/// spring satisfies K_pair <= 2 blockdiag(K). It holds before the first contact and for every later one.
+/// b_n = T^T n, b_t = T^T t the generalised forces of unit tractions. The factor 2 is the neighbour's share:
+/// a two-body spring satisfies K_pair <= 2 blockdiag(K). It holds before the first contact and for every
+/// later one.
 ///
 /// @param normal_stiffness, tangential_stiffness  Pa/m
 double contact_frequency_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,

@@ -3,18 +3,18 @@
 // The generalized-alpha family (doi:10.1115/1.2900803), one step from (d, v, a) at t_n:
 //     d' = d + dt v + dt^2 [(1/2 - b) a + b a'],   v' = v + dt [(1 - g) a + g a']
 //     M [(1 - am) a' + am a] = F
-// with am = (2r - 1)/(r + 1), af = r/(r + 1), g = 1/2 - am + af, b = (1 - am + af)^2/4, r the spectral radius at
-// infinity. Blocks share no unknowns, so contact forces enter explicitly and all depends on WHERE they are taken. Every
-// member of the family takes them at a trial configuration
+// with am = (2r - 1)/(r + 1), af = r/(r + 1), g = 1/2 - am + af, b = (1 - am + af)^2/4, r the spectral radius
+// at infinity. Blocks share no unknowns, so contact forces enter explicitly and all depends on WHERE they are
+// taken. Every member of the family takes them at a trial configuration
 //     x* = x_n + c1 dt v_n + c2 dt^2 a_n.
 //
-// leapfrog (the default): c1 = 1 - af, c2 = (2r - 1)(1 - r)/(2 (1 + r)^2). These are the unique values for which the
-// trial configurations obey x*_{n+1} - 2 x*_n + x*_{n-1} = dt^2 M^-1 f(x*_n) exactly, for any non-linear f. Proof: with
-// a' = (f/M - am a)/(1 - am) the state after eliminating f is a linear recursion in (x*, v, a); asking that the
-// coefficients of a_n and a_{n-1} in the second difference vanish gives two equations for c1 and c2. So the contact
-// sees a symplectic, neutral scheme with limit W = 2, whatever r.
-// start: x* = x_n, the literal reading of "explicit contact". Energy grows by (1 - af) W^2/2 a step for every dt: it
-// is here to be measured, not used.
+// leapfrog (the default): c1 = 1 - af, c2 = (2r - 1)(1 - r)/(2 (1 + r)^2). These are the unique values for
+// which the trial configurations obey x*_{n+1} - 2 x*_n + x*_{n-1} = dt^2 M^-1 f(x*_n) exactly, for any
+// non-linear f. Proof: with a' = (f/M - am a)/(1 - am) the state after eliminating f is a linear recursion in
+// (x*, v, a); asking that the coefficients of a_n and a_{n-1} in the second difference vanish gives two
+// equations for c1 and c2. So the contact sees a symplectic, neutral scheme with limit W = 2, whatever r.
+// start: x* = x_n, the literal reading of "explicit contact". Energy grows by (1 - af) W^2/2 a step for every
+// dt: it is here to be measured, not used.
 
 #include "gcpdda/model/scene.hpp"
 
@@ -26,6 +26,7 @@ struct Scheme {
   double alpha_f = 0.0;
   double beta = 0.0;
   double gamma = 0.0;
+  double load_time = 0.0;          ///< loads are taken at t_n + load_time dt
   double trial_velocity = 0.0;     ///< c1
   double trial_acceleration = 0.0; ///< c2
 };
@@ -34,8 +35,8 @@ struct Scheme {
 /// @param contact_time     used by generalized_alpha
 Scheme make_scheme(SchemeKind kind, double spectral_radius, ContactTime contact_time);
 
-/// Spectral radius of the amplification matrix of one oscillator on a contact spring, W = omega dt, with a dashpot of
-/// ratio xi taken at v_n.
+/// Spectral radius of the amplification matrix of one oscillator on a contact spring, W = omega dt, with a
+/// dashpot of ratio xi taken at v_n.
 double amplification(const Scheme &scheme, double frequency, double damping_ratio);
 
 /// Largest W up to which no smaller W amplifies (growth per step <= 1e-9); 0 if every W does.

@@ -18,7 +18,7 @@ struct FrameRow {
   std::int32_t material = 0;
   std::uint8_t kind = 0; ///< 0 fixed, 1 rigid, 2 deformable
   std::int32_t num_vertices = 0;
-  Vec2 centroid;     ///< current, m; not written
+  Vec2 centroid; ///< current, m; not written
   Vec2 displacement;
   double rotation = 0.0;
   std::array<double, 3> velocity{};
@@ -148,12 +148,13 @@ struct RunSummary {
 /// Written to a temporary name and renamed. Root only.
 void write_summary(const std::filesystem::path &directory, const RunSummary &summary);
 
-/// Makes the folder of a run, root only. A folder that holds a run is refused with FileError unless `overwrite`,
-/// which removes only what a run writes. Writes scene.toml (the resolved text).
+/// Makes the folder of a run, root only. A folder that holds a run is refused with FileError unless
+/// `overwrite`, which removes only what a run writes. Writes scene.toml (the resolved text).
 void prepare_result_directory(const std::filesystem::path &directory, bool overwrite,
                               const std::string &resolved_scene);
 
-/// Root only: decomposition/owners_<step>.csv, `block,rank` in BlockId order; anything that depends on ranks lives there.
+/// Root only: decomposition/owners_<step>.csv, `block,rank` in BlockId order; anything that depends on ranks
+/// lives there.
 void write_owners(const std::filesystem::path &directory, std::int64_t step,
                   const std::vector<std::int32_t> &owner_of_block);
 

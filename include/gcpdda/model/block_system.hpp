@@ -15,8 +15,8 @@ namespace gcpdda {
 
 enum class BlockKind : std::uint8_t { fixed = 0, rigid = 1, deformable = 2 };
 
-/// Three degrees of freedom of a rigid block: translation of the centroid and rotation (m, rad), or their rates,
-/// or the forces that work on them (N/m, N).
+/// Three degrees of freedom of a rigid block: translation of the centroid and rotation (m, rad), or their
+/// rates, or the forces that work on them (N/m, N).
 struct RigidDof {
   Vec2 u;
   double r = 0.0;
@@ -52,20 +52,22 @@ struct BlockProperties {
   Vec2 centroid;        ///< at t = 0, m
 };
 
-/// What the energy ledger carries for one block: the dissipating forces of the last evaluation and their work so far
-/// over increments of the trial configuration.
+/// What the energy ledger carries for one block: forces of the last evaluation and their work so far over
+/// increments of the trial configuration.
 struct BlockLedger {
   RigidDof shear_force;   ///< elastic part of friction
   RigidDof damping_force; ///< dashpots
+  Vec2 gravity_force;
   double shear_work = 0.0;
   double damping_work = 0.0;
+  double gravity_work = 0.0;
 };
 
 /// The state of all blocks this rank sees, as arrays by field.
 ///
-/// Rows: [0, num_owned) owned, then num_ghosts ghosts (exact copies of other ranks' blocks), then num_fixed fixed
-/// blocks (the same on every rank, never exchanged). Each range is sorted by BlockId. Positions are kept as
-/// displacements from the centroid at t = 0, so that a distant origin costs no digits of the motion.
+/// Rows: [0, num_owned) owned, then num_ghosts ghosts (exact copies of other ranks' blocks), then num_fixed
+/// fixed blocks (the same on every rank, never exchanged). Each range is sorted by BlockId. Positions are
+/// kept as displacements from the centroid at t = 0, so that a distant origin costs no digits of the motion.
 struct BlockSystem {
   std::size_t num_owned = 0;
   std::size_t num_ghosts = 0;
@@ -81,8 +83,8 @@ struct BlockSystem {
   std::vector<RigidDof> refreshed;      ///< x - x_0 at the last refresh of the neighbourhood
   std::vector<BlockLedger> ledger;
 
-  // Shape in the block's own axes, flat; row i owns [vertex_begin[i], vertex_begin[i + 1]). Edge k runs from vertex k
-  // to the next one; its outward unit normal is stored, never recomputed from cut edges.
+  // Shape in the block's own axes, flat; row i owns [vertex_begin[i], vertex_begin[i + 1]). Edge k runs from
+  // vertex k to the next one; its outward unit normal is stored, never recomputed from cut edges.
   std::vector<std::uint32_t> vertex_begin{0};
   std::vector<Vec2> reference_vertex; ///< relative to the centroid
   std::vector<Vec2> reference_normal;
@@ -98,14 +100,19 @@ struct BlockSystem {
   [[nodiscard]] std::size_t num_mobile() const { return num_owned + num_ghosts; }
   [[nodiscard]] std::size_t first_fixed() const { return num_owned + num_ghosts; }
   [[nodiscard]] bool is_fixed(std::size_t row) const { return row >= first_fixed(); }
-  [[nodiscard]] std::size_t num_vertices(std::size_t row) const { return vertex_begin[row + 1] - vertex_begin[row]; }
+  [[nodiscard]] std::size_t num_vertices(std::size_t row) const {
+    return vertex_begin[row + 1] - vertex_begin[row];
+  }
 
-  template <class T> [[nodiscard]] std::span<const T> of_row(const std::vector<T> &per_vertex, std::size_t row) const {
+  template <class T>
+  [[nodiscard]] std::span<const T> of_row(const std::vector<T> &per_vertex, std::size_t row) const {
     return {per_vertex.data() + vertex_begin[row], num_vertices(row)};
   }
 
   /// Position of the centroid at t_n.
-  [[nodiscard]] Vec2 centroid(std::size_t row) const { return properties[row].centroid + displacement[row].u; }
+  [[nodiscard]] Vec2 centroid(std::size_t row) const {
+    return properties[row].centroid + displacement[row].u;
+  }
 
   /// Every field with one entry a row: the one list that packing, migration and reordering share.
   static constexpr auto row_fields() {
@@ -115,11 +122,13 @@ struct BlockSystem {
   }
   /// Every field with one entry a vertex that cannot be derived.
   static constexpr auto shape_fields() {
-    return std::make_tuple(&BlockSystem::reference_vertex, &BlockSystem::reference_normal, &BlockSystem::edge_length);
+    return std::make_tuple(&BlockSystem::reference_vertex, &BlockSystem::reference_normal,
+                           &BlockSystem::edge_length);
   }
 };
 
-/// Append the row of a scene's block at rest in its initial configuration. The ranges' counts are the caller's.
+/// Append the row of a scene's block at rest in its initial configuration. The ranges' counts are the
+/// caller's.
 void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material);
 
 /// Append a copy of another system's row. The ranges' counts are the caller's.

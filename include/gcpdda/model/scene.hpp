@@ -28,7 +28,8 @@ struct Material {
 struct RunSettings {
   double duration = 0.0; ///< s
   Vec2 gravity{0.0, -9.81};
-  double time_step = 0.0; ///< s; 0 means "auto"
+  double gravity_ramp = 0.0; ///< s, smooth rise of gravity from 0
+  double time_step = 0.0;    ///< s; 0 means "auto"
   double safety = 0.25;
   SchemeKind scheme = SchemeKind::generalized_alpha;
   double spectral_radius = 0.8;

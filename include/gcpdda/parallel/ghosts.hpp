@@ -2,12 +2,13 @@
 
 // Who is seen by whom.
 //
-// Requirement: if the reach boxes (box at the refresh, inflated by half the skin) of an owned block of rank p and of
-// an owned block of rank q meet, each rank holds a ghost of the other's block. Every rank therefore publishes, per
-// occupied background cell, the union of the reach boxes of the blocks whose centroid lies there, and a block goes to
-// every rank one of whose published boxes its own reach box meets. The union contains the partner's box, so the
-// requirement follows; testing a block's box against cells alone would miss blocks that stick out of their cell, and
-// one box per rank would let a single huge block inflate the whole halo.
+// Requirement: if the reach boxes (box at the refresh, inflated by half the skin) of an owned block of rank p
+// and of an owned block of rank q meet, each rank holds a ghost of the other's block. Every rank therefore
+// publishes, per occupied background cell, the union of the reach boxes of the blocks whose centroid lies
+// there, and a block goes to every rank one of whose published boxes its own reach box meets. The union
+// contains the partner's box, so the requirement follows; testing a block's box against cells alone would
+// miss blocks that stick out of their cell, and one box per rank would let a single huge block inflate the
+// whole halo.
 
 #include "gcpdda/model/block_system.hpp"
 #include "gcpdda/parallel/communicator.hpp"
@@ -24,7 +25,8 @@ class Ghosts {
 public:
   explicit Ghosts(const Communicator &communicator) : communicator_(communicator) {}
 
-  /// Send full copies of border blocks and append the received ones, sorted by id. The system holds no ghosts before.
+  /// Send full copies of border blocks and append the received ones, sorted by id. The system holds no ghosts
+  /// before.
   ///
   /// @param boxes  reach boxes of the owned rows
   void rebuild(const DomainMap &map, BlockSystem &system, std::span<const Aabb> boxes);
@@ -36,7 +38,8 @@ public:
   template <class T> void copy(std::vector<T> &per_row) {
     pack([&](std::size_t row, std::byte *to) { std::memcpy(to, &per_row[row], sizeof(T)); }, sizeof(T));
     transfer();
-    unpack([&](std::size_t row, const std::byte *from) { std::memcpy(&per_row[row], from, sizeof(T)); }, sizeof(T));
+    unpack([&](std::size_t row, const std::byte *from) { std::memcpy(&per_row[row], from, sizeof(T)); },
+           sizeof(T));
   }
 
   [[nodiscard]] std::int64_t messages_sent() const { return messages_sent_; }

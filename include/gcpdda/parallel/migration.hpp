@@ -10,11 +10,12 @@
 
 namespace gcpdda {
 
-/// Move every owned block to the rank whose cells hold its centroid at t_n; the memory of all its contacts goes with
-/// it (and stays here too, for partners that stay). Ghosts are dropped; owned rows come out sorted by id.
+/// Move every owned block to the rank whose cells hold its centroid at t_n; the memory of all its contacts
+/// goes with it (and stays here too, for partners that stay). Ghosts are dropped; owned rows come out sorted
+/// by id.
 ///
-/// A contact between blocks of two ranks has its memory on both, equal by construction, so wherever either block goes
-/// its new owner finds a copy: with the block, or already there.
+/// A contact between blocks of two ranks has its memory on both, equal by construction, so wherever either
+/// block goes its new owner finds a copy: with the block, or already there.
 ///
 /// @param memory  in: of all contacts this rank evaluated; out: plus what arrived
 /// @return number of blocks that left this rank

@@ -7,8 +7,9 @@
 
 namespace gcpdda {
 
-/// Rows of all blocks this rank writes: its owned ones, and the fixed ones of its id slab, whose reactions are summed in
-/// the order of the other blocks' ids. Collective. Forces and stresses belong to the last evaluation.
+/// Rows of all blocks this rank writes: its owned ones, and the fixed ones of its id slab, whose reactions
+/// are summed in the order of the other blocks' ids. Collective. Forces and stresses belong to the last
+/// evaluation.
 FrameData collect_frame(const Simulation &simulation);
 
 /// Touching regions this rank writes.

@@ -15,8 +15,8 @@ struct RunOptions {
   bool overwrite = false;
 };
 
-/// Overlaps of the initial configuration: an error for each pair deeper than 5 % of the narrower block's width (two
-/// fixed blocks excepted), an info with the deepest of the others. Not collective.
+/// Overlaps of the initial configuration: an error for each pair deeper than 5 % of the narrower block's
+/// width (two fixed blocks excepted), an info with the deepest of the others. Not collective.
 Diagnostics check_initial_overlaps(const Scene &scene);
 
 /// Run a valid scene to its end and write everything. Collective.

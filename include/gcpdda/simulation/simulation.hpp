@@ -19,7 +19,8 @@ namespace gcpdda {
 /// A scene that cannot be run (exit code 3); what it says goes to people.
 class SceneError : public std::runtime_error {
 public:
-  explicit SceneError(Diagnostics diagnostics) : std::runtime_error("bad scene"), diagnostics_(std::move(diagnostics)) {}
+  explicit SceneError(Diagnostics diagnostics)
+      : std::runtime_error("bad scene"), diagnostics_(std::move(diagnostics)) {}
   [[nodiscard]] const Diagnostics &diagnostics() const { return diagnostics_; }
 
 private:
@@ -28,9 +29,10 @@ private:
 
 /// Counts of this rank since the start.
 struct Counters {
-  std::int64_t evaluations = 0;         ///< candidate pairs looked at closely
-  std::int64_t contact_steps = 0;       ///< touching pairs summed over steps; each pair on one rank only
-  std::int64_t cross_rank_contacts = 0; ///< largest number of touching pairs with a ghost in one step, each on one rank
+  std::int64_t evaluations = 0;   ///< candidate pairs looked at closely
+  std::int64_t contact_steps = 0; ///< touching pairs summed over steps; each pair on one rank only
+  std::int64_t cross_rank_contacts =
+      0; ///< largest number of touching pairs with a ghost in one step, each on one rank
   std::int64_t normals_undefined = 0;
   std::int64_t migrations = 0; ///< blocks that left this rank, the first distribution not counted
   std::int64_t refreshes = 0;  ///< of the neighbourhood after the first
@@ -39,15 +41,15 @@ struct Counters {
 
 /// What limits the step.
 struct StepBound {
-  double omega_max = 0.0;      ///< rad/s, 0 where nothing can touch
-  double limit = 2.0;          ///< stable W of scheme and damping; 2 stands in where every W is unstable
+  double omega_max = 0.0; ///< rad/s, 0 where nothing can touch
+  double limit = 2.0;     ///< stable W of scheme and damping; 2 stands in where every W is unstable
   bool always_unstable = false;
-  double time_step = 0.0;      ///< safety * limit / omega_max, s
-  double damping_ratio = 0.0;  ///< modal ratio the limit was computed with
+  double time_step = 0.0;     ///< safety * limit / omega_max, s
+  double damping_ratio = 0.0; ///< modal ratio the limit was computed with
 };
 
-/// One run in memory: the state of this rank's blocks and the step. Construction distributes the blocks and finds the
-/// consistent initial state; all public members are collective unless const.
+/// One run in memory: the state of this rank's blocks and the step. Construction distributes the blocks and
+/// finds the consistent initial state; all public members are collective unless const.
 class Simulation {
 public:
   /// @param scene  valid, the same on all ranks; its contact laws have stiffnesses
@@ -85,8 +87,8 @@ public:
   [[nodiscard]] bool counts_here(const CandidatePair &pair) const;
   [[nodiscard]] std::int64_t num_blocks() const { return static_cast<std::int64_t>(scene_.blocks.size()); }
 
-  /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On return the
-  /// state is as before.
+  /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On
+  /// return the state is as before.
   template <class Look> void look_ahead(Look &&look) {
     if (stale_) {
       refresh();
@@ -103,6 +105,7 @@ public:
 private:
   void distribute();
   void find_bound();
+  [[nodiscard]] Vec2 gravity() const;
   void find_initial_state();
   void find_initial_friction();
   void accelerate_owned();
@@ -127,7 +130,8 @@ private:
   StepBound bound_;
   TimePlan plan_;
   std::int64_t step_count_ = 0;
-  double thinnest_ = 0.0; ///< narrowest width of any block, m
+  double load_time_ = 0.0; ///< when loads were last evaluated, s
+  double thinnest_ = 0.0;  ///< narrowest width of any block, m
   double base_skin_ = 0.0;
   double skin_ = 0.0;
   bool stale_ = true;

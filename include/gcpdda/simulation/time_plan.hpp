@@ -9,14 +9,18 @@ namespace gcpdda {
 
 /// The steps of a run. The step is constant, outputs fall on whole steps, times are counts times the step.
 struct TimePlan {
-  double time_step = 0.0;      ///< s
-  double duration = 0.0;       ///< s
+  double time_step = 0.0; ///< s
+  double duration = 0.0;  ///< s
+  double unit = 0.0;      ///< s, what every output time is a whole number of
+  std::int64_t steps_per_unit = 1;
   std::int64_t num_steps = 0;
   std::int64_t steps_per_output = 1;
   std::int64_t steps_per_history = 1;
 
   [[nodiscard]] double time(std::int64_t step) const {
-    return step == num_steps ? duration : static_cast<double>(step) * time_step;
+    // Rounded once: output times come out as written in the scene.
+    return step == num_steps ? duration
+                             : static_cast<double>(step) * unit / static_cast<double>(steps_per_unit);
   }
   [[nodiscard]] bool output_due(std::int64_t step) const {
     return step % steps_per_output == 0 || step == num_steps;
@@ -26,11 +30,12 @@ struct TimePlan {
   }
 };
 
-/// Choose the step: the scene's, lowered once if it does not divide the output intervals; or the largest that divides
-/// them and meets the bound.
+/// Choose the step: the scene's, lowered once if it does not divide the output intervals; or the largest that
+/// divides them and meets the bound.
 ///
 /// @param bound  largest recommended step (s), infinite where nothing can touch
-/// @param notes  gets a warning when the scene's step lies above the bound, an info when it was lowered, an error
+/// @param notes  gets a warning when the scene's step lies above the bound, an info when it was lowered, an
+/// error
 ///               when duration and intervals have no common step
 TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double bound, Diagnostics &notes);
 
