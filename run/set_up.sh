@@ -1,0 +1,40 @@
+# Sourced by run/demo.sh and tests/run.sh: install what is missing, configure, build.
+
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+# Containers forbid the kernel calls behind Open MPI's single-copy messages; more ranks than cores must not spin.
+export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_mpi_yield_when_idle=1 OMP_NUM_THREADS=1
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$top/build
+
+# Packages of run/packages.txt that are not installed.
+missing_packages() {
+  local package
+  while read -r package; do
+    [ -n "$package" ] || continue
+    dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q '^install ok installed$' || echo "$package"
+  done <"$top/run/packages.txt"
+}
+
+install_packages() {
+  local missing as_root=
+  missing=$(missing_packages)
+  [ -n "$missing" ] || return 0
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || {
+      echo "these packages are missing and need root or sudo to install:" $missing >&2
+      return 1
+    }
+    as_root=sudo
+  fi
+  echo "installing:" $missing
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get update -qq
+  # shellcheck disable=SC2086
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
+}
+
+# build_targets TARGET...: Release; only what changed is built again.
+build_targets() {
+  [ -f "$build/build.ninja" ] || cmake -S "$top" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release
+  cmake --build "$build" --target "$@"
+}
