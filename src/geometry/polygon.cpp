@@ -89,10 +89,15 @@ bool is_convex(std::span<const Vec2> vertices) {
   // A vertex placed on a straight edge by another program's rounding sits up to about 1e-12 edge lengths off
   // it; such a dent is far below any overlap and the lower envelope does not mind it.
   constexpr double dent = 1e-11;
+  double largest = 0.0;
+  for (const Vec2 p : vertices) {
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+  }
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * largest;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 in = vertices[(i + 1) % n] - vertices[i];
     const Vec2 out = vertices[(i + 2) % n] - vertices[(i + 1) % n];
-    if (cross(in, out) < -dent * norm(in) * norm(out)) {
+    if (cross(in, out) < -dent * norm(in) * norm(out) - rounding * (norm(in) + norm(out))) {
       return false;
     }
   }

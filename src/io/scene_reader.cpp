@@ -50,8 +50,8 @@ void check_available(const SceneSource &source, const Section &run, Fidelity fid
   double local_damping = 0.0;
   run.read("local_damping", local_damping);
   if (local_damping != 0.0) {
-    fault(source, *run.given("local_damping"), run.subject("local_damping") + " is not available in this version", "",
-          "leave it out or write 0");
+    fault(source, *run.given("local_damping"),
+          run.subject("local_damping") + " is not available in this version", "", "leave it out or write 0");
   }
 }
 

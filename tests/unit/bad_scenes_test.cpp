@@ -294,11 +294,12 @@ file = "blocks.h5"
      {R"(3:3: error: 'wall' is not available in this version, leave it out)",
       R"(4:3: error: 'pyramid' is not available in this version, leave it out)",
       R"(5:2: error: 'blocks' is not available in this version, leave it out)"}},
-    {"GravityRamp", 2, R"(duration = 2.0
-gravity_ramp = 0.5
+    {"LocalDamping", 2, R"(duration = 2.0
 local_damping = 0.1)",
-     {R"(3:16: error: 'gravity_ramp' in [run] is not available in this version, leave it out or write 0)",
-      R"(4:17: error: 'local_damping' in [run] is not available in this version, leave it out or write 0)"}},
+     {R"(3:17: error: 'local_damping' in [run] is not available in this version, leave it out or write 0)"}},
+    {"GravityRampNegative", 2, R"(duration = 2.0
+gravity_ramp = -1)",
+     {R"(3:16: error: 'gravity_ramp' in [run] is -1, it must be at least 0 and at most 1e+12, for example gravity_ramp = 0.0)"}},
     {"RunDeformable", 2, R"(duration = 2.0
 fidelity = "deformable")",
      {R"(3:12: error: deformable blocks are not available in this version, use "rigid")"}},
@@ -402,7 +403,7 @@ density = inf
 [run]
 scheme = "newmark-dda"
 contact_time = "start"
-gravity_ramp = 1
+local_damping = 0.1
 )";
   const std::vector<std::string> expected{
       "s.toml:2:9: error: no block is named 'slidr', did you mean 'slider'?",
@@ -427,7 +428,7 @@ gravity_ramp = 1
       "s.toml:19:1: error: 'duration' in [run] is missing, it is required, for example duration = 2.0",
       "s.toml:21:16: error: 'contact_time' in [run] has no meaning for this scheme, it belongs to "
       "generalized-alpha, leave it out",
-      "s.toml:22:16: error: 'gravity_ramp' in [run] is not available in this version, leave it out or write "
+      "s.toml:22:17: error: 'local_damping' in [run] is not available in this version, leave it out or write "
       "0"};
   EXPECT_EQ(messages(text), expected);
 }

@@ -20,7 +20,7 @@ const std::string full_scene = R"(# every key of this version
 [run]
 duration = 2
 gravity = [1, -9.5]
-gravity_ramp = 0
+gravity_ramp = 0.5
 time_step = 1e-4
 safety = 0.2
 scheme = "explicit-generalized-alpha"
@@ -103,6 +103,7 @@ std::vector<std::string> faults(const Sets &sets) {
 void expect_same(const Scene &a, const Scene &b) {
   EXPECT_EQ(a.run.duration, b.run.duration);
   EXPECT_EQ(a.run.gravity, b.run.gravity);
+  EXPECT_EQ(a.run.gravity_ramp, b.run.gravity_ramp);
   EXPECT_EQ(a.run.time_step, b.run.time_step);
   EXPECT_EQ(a.run.safety, b.run.safety);
   EXPECT_EQ(a.run.scheme, b.run.scheme);
@@ -155,6 +156,7 @@ TEST(SceneReader, ReadsRunAndOutput) {
   EXPECT_EQ(scene.stem, "small.scene");
   EXPECT_EQ(scene.run.duration, 2.0);
   EXPECT_EQ(scene.run.gravity, (Vec2{1.0, -9.5}));
+  EXPECT_EQ(scene.run.gravity_ramp, 0.5);
   EXPECT_EQ(scene.run.time_step, 1e-4);
   EXPECT_EQ(scene.run.safety, 0.2);
   EXPECT_EQ(scene.run.scheme, SchemeKind::explicit_generalized_alpha);

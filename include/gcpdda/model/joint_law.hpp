@@ -11,7 +11,7 @@ namespace gcpdda {
 struct JointLaw {
   std::string name;
   double normal_stiffness = 0.0; ///< k_n = 2 p_n/H, Pa/m; 0 until an allowed overlap has been resolved
-  double allowed_overlap = 0.0;  ///< m; 0 where normal_stiffness is given
+  double allowed_overlap = 0.0;  ///< share of the block size; 0 where normal_stiffness is given
   double tangential_ratio = 0.5; ///< k_t per length over k_n
   double tan_friction = 0.0;     ///< tan of the friction angle
   double cohesion = 0.0;         ///< Pa
