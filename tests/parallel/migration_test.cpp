@@ -1,0 +1,234 @@
+// Blocks on random walks over the ranks. Every rank walks the whole system along and knows what it must own.
+
+#include "gcpdda/parallel/migration.hpp"
+
+#include "gcpdda/contact/candidates.hpp"
+#include "gcpdda/parallel/ghosts.hpp"
+#include "random_blocks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+namespace gcpdda {
+namespace {
+
+using testing::bits_of_row;
+using testing::hashed;
+
+constexpr std::size_t num_mobile = 60;
+constexpr std::size_t num_fixed = 3;
+constexpr double region = 20.0;
+
+using Pair = std::pair<std::int64_t, std::int64_t>;
+
+/// Contacts of a step by rule: a ring of partners near and far in id, and the fixed blocks; each lives for a
+/// while, again and again.
+std::vector<Pair> touching_pairs(int step) {
+  std::vector<Pair> pairs;
+  const auto n = static_cast<std::int64_t>(num_mobile);
+  for (std::int64_t a = 0; a < n; ++a) {
+    for (const std::int64_t b : {a + 1, a + 7, a + 31, n + a % static_cast<std::int64_t>(num_fixed)}) {
+      const bool lives = hashed(a, b, step / 10) < 0.6;
+      if (lives && b < n + static_cast<std::int64_t>(num_fixed)) {
+        pairs.emplace_back(a, b);
+      }
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+/// What a step does to the memory of a pair, old or new: depends on all that went before.
+RegionMemory evaluated(RegionMemory memory, const Pair &pair, int step) {
+  memory.shear = 1.25 * memory.shear + hashed(pair.first, pair.second, step);
+  memory.longest = std::max(memory.longest, hashed(pair.second, pair.first, step));
+  memory.slip += 1e-3 * memory.longest;
+  memory.state = hashed(pair.first, step, 9) < 0.5 ? ContactState::stick : ContactState::slip;
+  return memory;
+}
+
+bool operator==(const RegionMemory &a, const RegionMemory &b) {
+  return a.shear == b.shear && a.longest == b.longest && a.slip == b.slip && a.state == b.state;
+}
+
+using Memories = std::map<Pair, RegionMemory>;
+
+/// The memories of the pairs that touch in this step; `held` says which of them are kept here.
+template <class Held> Memories next_memories(const Memories &before, int step, Held &&held) {
+  Memories after;
+  for (const Pair &pair : touching_pairs(step)) {
+    if (held(pair)) {
+      const auto old = before.find(pair);
+      after[pair] = evaluated(old == before.end() ? RegionMemory{} : old->second, pair, step);
+    }
+  }
+  return after;
+}
+
+/// The walk of the whole system and of this rank's part of it.
+class Walk {
+public:
+  Walk(const Communicator &world, DomainMap map)
+      : world_(world), map_(std::move(map)),
+        whole_(testing::random_system(11, num_mobile, num_fixed, region)), ghosts_(world) {
+    mine_ = testing::part_of(whole_, map_, world.rank());
+    own_.assign(num_mobile + num_fixed, false);
+    note_owned();
+  }
+
+  void step(int step) {
+    move(step);
+    all_ = next_memories(all_, step, [](const Pair &) { return true; });
+    held_ = next_memories(held_, step, [&](const Pair &pair) { return touches_owned(pair); });
+    std::vector<RegionRecord> memory;
+    for (const auto &[pair, region_memory] : held_) {
+      memory.push_back({BlockId{pair.first}, BlockId{pair.second}, region_memory});
+    }
+    std::int64_t leaving = 0;
+    for (std::size_t id = 0; id < num_mobile; ++id) {
+      leaving += own_[id] && map_.rank_of(whole_.centroid(id)) != world_.rank() ? 1 : 0;
+    }
+    EXPECT_EQ(migrate(world_, map_, mine_, memory), leaving);
+    num_moved_ += leaving;
+    expect_what_is_due();
+    note_owned();
+    take(memory);
+    if (step % 3 == 0) { // ghosts of the time between must not hinder the next move
+      ghosts_.rebuild(map_, mine_, reach_boxes(mine_, 0.4));
+    }
+  }
+
+  [[nodiscard]] std::int64_t num_moved() const { return num_moved_; }
+
+private:
+  [[nodiscard]] bool touches_owned(const Pair &pair) const {
+    return own_[static_cast<std::size_t>(pair.first)] || own_[static_cast<std::size_t>(pair.second)];
+  }
+
+  // Short hops mostly, a jump now and then; some leave the grid.
+  void move(int step) {
+    for (std::size_t id = 0; id < num_mobile; ++id) {
+      const auto k = static_cast<std::int64_t>(id);
+      const double hop = hashed(k, step, 0) < 0.1 ? region : 0.1 * region;
+      whole_.displacement[id].u += {hop * (hashed(k, step, 1) - 0.5), hop * (hashed(k, step, 2) - 0.5)};
+      const Vec2 strayed = whole_.centroid(id) - Vec2{0.5 * region, 0.5 * region};
+      if (norm(strayed) > region) {
+        whole_.displacement[id].u -= strayed;
+      }
+      whole_.acceleration[id].r = hashed(k, step, 3);
+      whole_.ledger[id].shear_work += hashed(k, step, 4);
+    }
+    for (std::size_t row = 0; row < mine_.num_owned; ++row) {
+      const auto id = static_cast<std::size_t>(mine_.properties[row].id.value);
+      mine_.displacement[row] = whole_.displacement[id];
+      mine_.acceleration[row] = whole_.acceleration[id];
+      mine_.ledger[row] = whole_.ledger[id];
+    }
+  }
+
+  // Exactly the blocks in this rank's cells, by id, nothing else, bit by bit; fixed blocks stay.
+  void expect_what_is_due() {
+    const BlockSystem due = testing::part_of(whole_, map_, world_.rank());
+    EXPECT_EQ(mine_.num_owned, due.num_owned);
+    EXPECT_EQ(mine_.num_ghosts, 0U);
+    EXPECT_EQ(mine_.num_fixed, num_fixed);
+    EXPECT_EQ(mine_.num_rows(), due.num_rows());
+    for (std::size_t row = 0; row < std::min(mine_.num_rows(), due.num_rows()); ++row) {
+      EXPECT_EQ(bits_of_row(mine_, row), bits_of_row(due, row)) << "row " << row;
+    }
+  }
+
+  void note_owned() {
+    std::fill(own_.begin(), own_.end(), false);
+    for (std::size_t row = 0; row < mine_.num_owned; ++row) {
+      own_[static_cast<std::size_t>(mine_.properties[row].id.value)] = true;
+    }
+  }
+
+  // Every contact of an owned block is remembered here; copies agree. The rest is forgotten, as the candidates
+  // do.
+  void take(const std::vector<RegionRecord> &memory) {
+    held_.clear();
+    for (const RegionRecord &record : memory) {
+      const Pair pair{record.lower.value, record.higher.value};
+      const auto due = all_.find(pair);
+      EXPECT_TRUE(due != all_.end() && record.memory == due->second)
+          << "contact " << pair.first << ", " << pair.second;
+      if (touches_owned(pair)) {
+        held_[pair] = record.memory;
+      }
+    }
+    for (const auto &[pair, due] : all_) {
+      if (touches_owned(pair)) {
+        EXPECT_EQ(held_.count(pair), 1U) << "contact " << pair.first << ", " << pair.second << " is forgotten";
+      }
+    }
+  }
+
+  Communicator world_;
+  DomainMap map_;
+  BlockSystem whole_; ///< row is id
+  BlockSystem mine_;
+  Ghosts ghosts_;
+  std::vector<bool> own_;
+  Memories all_;
+  Memories held_;
+  std::int64_t num_moved_ = 0;
+};
+
+void walk(const DomainMap &map, int num_steps) {
+  const Communicator world = Communicator::world();
+  Walk walk(world, map);
+  for (int step = 0; step < num_steps; ++step) {
+    SCOPED_TRACE("step " + std::to_string(step));
+    walk.step(step);
+  }
+  std::int64_t moved = walk.num_moved();
+  world.sum(std::span(&moved, 1));
+  EXPECT_EQ(moved >= 1000, world.size() > 1) << moved << " migrations";
+}
+
+TEST(Migration, LosesNothingAcrossAQuilt) {
+  const int num_ranks = Communicator::world().size();
+  const CellGrid grid = CellGrid::over({{0.0, 0.0}, {region, region}}, 36);
+  walk(testing::map_of(grid, [&](int i, int j) { return (i + 3 * j) % num_ranks; }), 200);
+}
+
+TEST(Migration, LosesNothingBetweenStripsOneOfThemEmpty) {
+  const int num_ranks = Communicator::world().size();
+  const CellGrid grid = CellGrid::over({{0.0, 0.0}, {region, region}}, 400);
+  walk(testing::map_of(grid,
+                       [&](int i, int) {
+                         const int strip = i * num_ranks / grid.columns;
+                         return num_ranks > 2 && strip == 1 ? 2 : strip;
+                       }),
+       200);
+}
+
+// A new map is all that rebalancing needs.
+TEST(Migration, ANewMapMovesEverything) {
+  const Communicator world = Communicator::world();
+  const CellGrid grid = CellGrid::over({{0.0, 0.0}, {region, region}}, 36);
+  const BlockSystem whole = testing::random_system(12, num_mobile, num_fixed, region);
+  const auto owner = [&](int shift) {
+    return testing::map_of(grid, [&, shift](int i, int j) { return (i + j + shift) % world.size(); });
+  };
+  BlockSystem mine = testing::part_of(whole, owner(0), world.rank());
+  for (int shift = 1; shift <= world.size(); ++shift) {
+    const auto before = static_cast<std::int64_t>(mine.num_owned);
+    std::vector<RegionRecord> memory;
+    EXPECT_EQ(migrate(world, owner(shift), mine, memory), world.size() > 1 ? before : 0);
+    EXPECT_TRUE(memory.empty());
+  }
+  const BlockSystem due = testing::part_of(whole, owner(0), world.rank());
+  EXPECT_EQ(mine.num_rows(), due.num_rows());
+  for (std::size_t row = 0; row < std::min(mine.num_rows(), due.num_rows()); ++row) {
+    EXPECT_EQ(bits_of_row(mine, row), bits_of_row(due, row));
+  }
+}
+
+} // namespace
+} // namespace gcpdda

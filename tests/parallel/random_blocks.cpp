@@ -1,0 +1,116 @@
+#include "random_blocks.hpp"
+
+#include "support/scenes.hpp"
+
+#include <cmath>
+#include <tuple>
+
+namespace gcpdda::testing {
+
+namespace {
+
+template <class T> void put_words(std::vector<std::uint64_t> &words, const T &value) {
+  static_assert(sizeof(T) % sizeof(std::uint64_t) == 0);
+  std::uint64_t raw[sizeof(T) / sizeof(std::uint64_t)];
+  std::memcpy(raw, &value, sizeof(T));
+  words.insert(words.end(), std::begin(raw), std::end(raw));
+}
+
+// By field: it has padding. A new field must be added here, which the size reminds of.
+void put_words(std::vector<std::uint64_t> &words, const BlockProperties &p) {
+  static_assert(sizeof(BlockProperties) == 72);
+  for (const std::int64_t whole : {p.id.value, std::int64_t{p.material}, static_cast<std::int64_t>(p.kind)}) {
+    words.push_back(static_cast<std::uint64_t>(whole));
+  }
+  for (const double real : {p.area, p.mass, p.inertia, p.radius, p.width, p.centroid.x, p.centroid.y}) {
+    words.push_back(std::bit_cast<std::uint64_t>(real));
+  }
+}
+
+template <class T> void fill_with_any_bits(T &value, std::mt19937_64 &random) {
+  static_assert(sizeof(T) % sizeof(std::uint64_t) == 0);
+  std::uint64_t raw[sizeof(T) / sizeof(std::uint64_t)];
+  for (std::uint64_t &word : raw) {
+    word = random();
+  }
+  std::memcpy(static_cast<void *>(&value), raw, sizeof(T));
+}
+
+double uniform(std::mt19937_64 &random, double low, double high) {
+  return low + (high - low) * (static_cast<double>(random() >> 11U) * 0x1p-53);
+}
+
+} // namespace
+
+std::vector<std::uint64_t> bits_of_row(const BlockSystem &system, std::size_t row) {
+  std::vector<std::uint64_t> words;
+  std::apply([&](auto... field) { (put_words(words, (system.*field)[row]), ...); },
+             BlockSystem::row_fields());
+  for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
+    std::apply([&](auto... field) { (put_words(words, (system.*field)[k]), ...); },
+               BlockSystem::shape_fields());
+  }
+  return words;
+}
+
+RigidDof any_bits(std::mt19937_64 &random) {
+  RigidDof dof;
+  fill_with_any_bits(dof, random);
+  return dof;
+}
+
+BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double region) {
+  std::mt19937_64 random(seed);
+  BlockSystem system;
+  const Material material{"rock", 2600.0, 0.0, 0.0};
+  for (int k = 0; k < num_mobile + num_fixed; ++k) {
+    const double radius = k == 0 ? 0.7 * region : region * 0.005 * std::pow(100.0, uniform(random, 0.0, 0.7));
+    const Vec2 centre{uniform(random, 0.0, region), uniform(random, 0.0, region)};
+    const int num_vertices = 3 + static_cast<int>(random() % 7);
+    SceneBlock block;
+    block.vertices = random_polygon(static_cast<unsigned>(random()), num_vertices, radius, centre);
+    block.fixed = k >= num_mobile;
+    append_block(system, BlockId{k}, block, material);
+    const auto row = static_cast<std::size_t>(k);
+    if (block.fixed) {
+      ++system.num_fixed;
+      continue;
+    }
+    ++system.num_owned;
+    const auto moved = [&] {
+      return RigidDof{{uniform(random, -0.1, 0.1) * region, uniform(random, -0.1, 0.1) * region},
+                      uniform(random, -3.0, 3.0)};
+    };
+    system.displacement[row] = moved();
+    system.trial[row] = moved();
+    for (auto field : {&BlockSystem::velocity, &BlockSystem::acceleration, &BlockSystem::trial_previous,
+                       &BlockSystem::refreshed}) {
+      (system.*field)[row] = any_bits(random);
+    }
+    fill_with_any_bits(system.ledger[row], random);
+  }
+  return system;
+}
+
+BlockSystem part_of(const BlockSystem &whole, const DomainMap &map, int rank) {
+  BlockSystem part;
+  for (std::size_t row = 0; row < whole.num_rows(); ++row) {
+    if (whole.is_fixed(row) || map.rank_of(whole.centroid(row)) == rank) {
+      append_row(part, whole, row);
+      ++(whole.is_fixed(row) ? part.num_fixed : part.num_owned);
+    }
+  }
+  return part;
+}
+
+DomainMap map_of(const CellGrid &grid, const std::function<int(int column, int row)> &owner) {
+  DomainMap map{grid, {}};
+  for (std::int32_t j = 0; j < grid.rows; ++j) {
+    for (std::int32_t i = 0; i < grid.columns; ++i) {
+      map.owner.push_back(owner(i, j));
+    }
+  }
+  return map;
+}
+
+} // namespace gcpdda::testing
