@@ -205,7 +205,7 @@ TEST(Migration, LosesNothingBetweenStripsOneOfThemEmpty) {
                          const int strip = i * num_ranks / grid.columns;
                          return num_ranks > 2 && strip == 1 ? 2 : strip;
                        }),
-       200);
+       450);
 }
 
 // A new map is all that rebalancing needs.

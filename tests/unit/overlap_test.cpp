@@ -305,7 +305,7 @@ TEST(Locality, CuttingEnlargingAndRenumberingChangeNoBit) {
   for (int trial = 0; trial < 3000; ++trial) {
     const auto seed = static_cast<unsigned>(engine());
     const double angle = uniform(engine, 0.0, 2.0 * std::numbers::pi);
-    const double distance = uniform(engine, 1.3, 1.8);
+    const double distance = uniform(engine, 1.6, 1.95);
     const Shape a = shape_of(random_polygon(seed, 8 + static_cast<int>(engine() % 8), 1.0, {}));
     const Shape b = shape_of(random_polygon(seed + 1, 3 + static_cast<int>(engine() % 10), 1.0,
                                             distance * Vec2{std::cos(angle), std::sin(angle)}));

@@ -1,0 +1,241 @@
+// Energy of the contact field, and its behaviour along paths: conservation, continuity, degenerate cases.
+
+#include "support/blocks.hpp"
+#include "support/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace gcpdda {
+namespace {
+
+using namespace testing;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double degree = std::numbers::pi / 180.0;
+
+double energy_of(const Shape &a, const Shape &b) {
+  return overlap_energy(a.view(), b.view());
+}
+
+double perimeter_of_region(const Shape &a, const Shape &b) {
+  Overlap overlap;
+  overlap.find(a.view(), b.view(), PotentialKind::exact);
+  double sum = 0.0;
+  for (const Piece &piece : overlap.pieces()) {
+    sum += piece.length;
+  }
+  return sum;
+}
+
+// A square sunk flush by d into a wide plane: int y dy over the plane's depth, plus in the square the
+// distance to its bottom, cut off by two corners of 45 degrees: d^2/2 l - 2 d^3/6.
+TEST(OverlapEnergy, OfAFlushJoint) {
+  const double depth = 0.2;
+  const Shape square = shape_of(rectangle({0.0, 0.0}, {1.0, 1.0}));
+  const Shape plane = shape_of(rectangle({-5.0, -5.0}, {6.0, depth}));
+  const double exact = depth * depth - depth * depth * depth / 3.0;
+  EXPECT_NEAR(energy_of(square, plane), exact, 10.0 * epsilon);
+  EXPECT_NEAR(energy_of(plane, square), exact, 10.0 * epsilon);
+  EXPECT_EQ(energy_of(square, moved(square, 0.0, {}, {3.0, 0.0})), 0.0);
+}
+
+// Central differences: truncation h^2 W'''/6 with |W'''| of the order of the number of edges, rounding
+// epsilon W/h; h = 1e-5 makes both about 1e-10.
+TEST(OverlapEnergy, ItsSlopeIsTheForce) {
+  std::mt19937 engine(11);
+  constexpr double h = 1e-5;
+  int touching = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const auto seed = static_cast<unsigned>(engine());
+    const double angle = uniform(engine, 0.0, 2.0 * std::numbers::pi);
+    const double distance = uniform(engine, 0.8, 1.9);
+    const Shape a = shape_of(random_polygon(seed, 3 + static_cast<int>(engine() % 6), 1.0, {}));
+    const Shape b = shape_of(random_polygon(seed + 1, 3 + static_cast<int>(engine() % 6), 1.0,
+                                            distance * Vec2{std::cos(angle), std::sin(angle)}));
+    const RegionIntegrals region = contact_of(a, b);
+    touching += region.pressure > 0.0 ? 1 : 0;
+    const auto slope = [&](double turn, Vec2 by) {
+      return (energy_of(moved(a, h * turn, {}, h * by), b) - energy_of(moved(a, -h * turn, {}, -h * by), b)) /
+             (2.0 * h);
+    };
+    ASSERT_NEAR(slope(0.0, {1.0, 0.0}), -region.force.x, 1e-9) << "trial " << trial;
+    ASSERT_NEAR(slope(0.0, {0.0, 1.0}), -region.force.y, 1e-9) << "trial " << trial;
+    ASSERT_NEAR(slope(1.0, {}), -torque_about(region, {}), 1e-9) << "trial " << trial;
+  }
+  EXPECT_GT(touching, 250);
+}
+
+struct PathWork {
+  double net = 0.0;
+  double total = 0.0;
+};
+
+/// Work on the first block along a closed path: a corner of 80 degrees circles with radius 0.05 around the
+/// corner of another, swinging by 10 degrees, always in contact. Trapezoid in the force.
+PathWork work_on_closed_path(PotentialKind potential, int steps) {
+  const Shape wedge = shape_of({{0.0, 0.0}, {1.0, 1.2}, {0.0, 2.0}, {-1.0, 1.2}});
+  const Shape lower = shape_of({{0.0, 0.12}, {-1.0, -1.0}, {0.0, -2.0}, {1.0, -1.1}});
+  PathWork work;
+  RegionIntegrals last;
+  Vec2 last_offset;
+  double last_turn = 0.0;
+  for (int k = 0; k <= steps; ++k) {
+    const double phase = 2.0 * std::numbers::pi * k / steps;
+    const Vec2 offset = 0.05 * Vec2{std::cos(phase), std::sin(phase)};
+    const double turn = 10.0 * degree * std::sin(2.0 * phase + 1.0);
+    const RegionIntegrals now = contact_of(moved(wedge, turn, {}, offset), lower, potential);
+    if (k > 0) {
+      // Turning about the moving vertex `offset`, where the torques are taken.
+      const double increment =
+          0.5 * (dot(last.force + now.force, offset - last_offset) +
+                 (torque_about(last, last_offset) + torque_about(now, offset)) * (turn - last_turn));
+      work.net += increment;
+      work.total += std::abs(increment);
+    }
+    last = now;
+    last_offset = offset;
+    last_turn = turn;
+  }
+  return work;
+}
+
+// A6, convex and rigid. The trapezoid's own error falls as steps^-2.
+TEST(OverlapEnergy, ClosedPathDoesNoNetWork) {
+  const PathWork coarse = work_on_closed_path(PotentialKind::exact, 2000);
+  const PathWork fine = work_on_closed_path(PotentialKind::exact, 20000);
+  EXPECT_LE(std::abs(fine.net) / fine.total, 1e-6);
+  EXPECT_LE(std::abs(fine.net), 0.05 * std::abs(coarse.net) + 1e-12) << "the rest is truncation";
+}
+
+// Reading the potential at vertices alone is not conservative: several percent, whatever the steps.
+TEST(OverlapEnergy, LinearPotentialDoesNetWork) {
+  const PathWork coarse = work_on_closed_path(PotentialKind::linear, 2000);
+  const PathWork fine = work_on_closed_path(PotentialKind::linear, 20000);
+  EXPECT_GE(std::abs(fine.net) / fine.total, 0.01);
+  EXPECT_NEAR(fine.net, coarse.net, 0.01 * std::abs(fine.net)) << "it is no truncation";
+}
+
+// B8. Moving by s changes a depth by at most s along the region's perimeter, and where the perimeter itself
+// changes the depth is at most s: |change of force| <= 2 s (perimeter), plus rounding.
+struct Path {
+  const char *name;
+  Shape moving;
+  Shape still;
+  Vec2 direction; ///< unit
+  double turn;    ///< angle per length along the path
+};
+
+std::vector<Path> critical_paths() {
+  const Shape square = shape_of(rectangle({-0.5, -0.5}, {0.5, 0.5}));
+  const Shape below = shape_of(rectangle({-0.5, -1.5}, {0.5, -0.5}));
+  const Shape diamond = moved(square, 45.0 * degree, {}, {});
+  const double corner = std::sqrt(0.5);
+  const Shape tip = shape_of({{0.0, 0.0}, {std::tan(2.5 * degree), 1.0}, {-std::tan(2.5 * degree), 1.0}});
+  const Shape other_tip = moved(tip, 180.0 * degree, {}, {});
+  const Shape split = shape_of({{-0.5, -0.5},
+                                {-0.25, -0.5},
+                                {0.0, -0.5},
+                                {0.5, -0.5},
+                                {0.5, 0.0},
+                                {0.5, 0.5},
+                                {-0.5, 0.5},
+                                {-0.5, 0.25}});
+  const Vec2 aside = (1.0 / std::sqrt(5.0)) * Vec2{1.0, 2.0};
+  return {
+      {"vertex on vertex, head-on", moved(diamond, 0.0, {}, {0.0, 2.0 * corner}), diamond, {0.0, -1.0}, 0.0},
+      {"past vertex on vertex",
+       moved(diamond, 0.0, {}, {0.0, 2.0 * corner - 0.02}),
+       diamond,
+       {1.0, 0.0},
+       0.0},
+      {"vertex on vertex, turning",
+       moved(diamond, 0.0, {}, {0.0, 2.0 * corner - 0.02}),
+       diamond,
+       {1.0, 0.0},
+       2.0},
+      {"face on face", square, below, {0.0, -1.0}, 0.0},
+      {"face on face, turning", moved(square, 0.0, {}, {0.0, -0.01}), below, {0.0, -1.0}, 1.0},
+      {"along coincident faces", square, below, {1.0, 0.0}, 0.0},
+      {"corner of coincident faces", moved(square, 0.0, {}, {1.0, 0.0}), below, aside, 0.0},
+      {"T junctions", split, below, {0.0, -1.0}, 0.5},
+      {"T junctions on both", split, moved(split, 180.0 * degree, {}, {0.0, -1.0}), {0.0, -1.0}, 0.0},
+      {"needle tips head-on", tip, other_tip, {0.0, -1.0}, 0.0},
+      {"needle tips passing", moved(tip, 0.0, {}, {0.0, -0.05}), other_tip, {1.0, 0.0}, 0.0},
+      {"needle into a face", tip, moved(square, 0.0, {}, {0.0, -0.5}), {0.0, -1.0}, 1.0},
+      {"needle into a corner", tip, moved(diamond, 0.0, {}, {0.0, -corner}), {0.0, -1.0}, 1.0},
+  };
+}
+
+TEST(Overlap, ForceIsContinuousThroughDegenerateConfigurations) {
+  for (const Path &path : critical_paths()) {
+    const auto at = [&](double s) { return moved(path.moving, path.turn * s, {}, s * path.direction); };
+    // Both sides of the critical configuration at s = 0, ever closer, and a sweep through it.
+    std::vector<double> stations;
+    for (int k = 2; k <= 17; ++k) {
+      stations.push_back(std::pow(10.0, -k));
+      stations.push_back(-std::pow(10.0, -k));
+    }
+    for (int k = -200; k <= 200; ++k) {
+      stations.push_back(1e-4 * k);
+    }
+    std::sort(stations.begin(), stations.end());
+    double largest = 0.0;
+    for (std::size_t k = 0; k + 1 < stations.size(); ++k) {
+      const Shape begin = at(stations[k]);
+      const Shape end = at(stations[k + 1]);
+      const RegionIntegrals f0 = contact_of(begin, path.still);
+      const RegionIntegrals f1 = contact_of(end, path.still);
+      ASSERT_TRUE(std::isfinite(norm(f1.force)) && std::isfinite(f1.pressure)) << path.name;
+      // A point of the moving block is at most 2 from the centre of turning.
+      const double step = (1.0 + 2.0 * std::abs(path.turn)) * (stations[k + 1] - stations[k]);
+      const double perimeter =
+          std::max(perimeter_of_region(begin, path.still), perimeter_of_region(end, path.still));
+      const double bound = 2.0 * (step + 16.0 * epsilon) * (perimeter + step);
+      ASSERT_LE(norm(f1.force - f0.force), bound) << path.name << " at " << stations[k];
+      ASSERT_LE(std::abs(f1.pressure - f0.pressure), bound) << path.name << " at " << stations[k];
+      largest = std::max(largest, f1.pressure);
+      // Momentum: the force found from the other side is the opposite one, to 1e-14 of the pressure.
+      const RegionIntegrals other = contact_of(path.still, end);
+      ASSERT_LE(norm(f1.force + other.force), 1e-14 * f1.pressure) << path.name;
+      ASSERT_LE(std::abs(torque_about(f1, {}) + torque_about(other, {})), 1e-14 * f1.pressure) << path.name;
+    }
+    EXPECT_GT(largest, 0.0) << path.name << " never touches";
+  }
+}
+
+// Vertices placed on straight edges add lines that coincide with others: they may cost rounding, no more.
+TEST(Overlap, CollinearVerticesChangeNothing) {
+  std::mt19937 engine(12);
+  for (int trial = 0; trial < 500; ++trial) {
+    const auto seed = static_cast<unsigned>(engine());
+    const Vec2 centre{uniform(engine, 0.5, 1.8), uniform(engine, -0.5, 0.5)};
+    const Shape a = shape_of(random_polygon(seed, 5, 1.0, {}));
+    const Shape b = shape_of(random_polygon(seed + 1, 4, 1.0, centre));
+    const auto split = [&](const Shape &shape) {
+      std::vector<Vec2> vertices;
+      for (std::size_t i = 0; i < shape.vertex.size(); ++i) {
+        const Vec2 p = shape.vertex[i];
+        const Vec2 q = shape.vertex[(i + 1) % shape.vertex.size()];
+        vertices.push_back(p);
+        vertices.push_back(p + uniform(engine, 0.1, 0.9) * (q - p));
+      }
+      return shape_of(vertices);
+    };
+    const RegionIntegrals plain = contact_of(a, b);
+    const RegionIntegrals with = contact_of(split(a), split(b));
+    // A vertex off its edge by one epsilon tilts the short lines by up to ten.
+    constexpr double tolerance = 100.0 * epsilon;
+    ASSERT_NEAR(norm(with.force - plain.force), 0.0, tolerance) << trial;
+    ASSERT_NEAR(with.pressure, plain.pressure, tolerance) << trial;
+    ASSERT_NEAR(torque_about(with, {}), torque_about(plain, {}), 2.0 * tolerance) << trial;
+    ASSERT_NEAR(energy_of(split(a), split(b)), energy_of(a, b), tolerance) << trial;
+  }
+}
+
+} // namespace
+} // namespace gcpdda
