@@ -6,19 +6,8 @@
 
 namespace gcpdda {
 
-namespace {
-
-/// Normals of a region cancel when the resultant falls below this share of the total pressure.
-constexpr double least_resultant = 0.1;
-
-/// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
-Vec2 increment_at(const TrialIncrement &step, Vec2 r) {
-  return step.u +
-         Vec2{step.one_minus_cosine * r.x - step.sine * r.y, step.sine * r.x + step.one_minus_cosine * r.y};
-}
-
 /// Relative velocity of two blocks as a field: v(x) = at_origin + spin perp(x - origin).
-struct RelativeVelocity {
+struct ContactForces::RelativeVelocity {
   Vec2 at_origin;
   double spin = 0.0;
 
@@ -31,6 +20,17 @@ struct RelativeVelocity {
   }
   [[nodiscard]] Vec2 at(Vec2 from_origin) const { return at_origin + spin * perp(from_origin); }
 };
+
+namespace {
+
+/// Normals of a region cancel when the resultant falls below this share of the total pressure.
+constexpr double least_resultant = 0.1;
+
+/// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
+Vec2 increment_at(const TrialIncrement &step, Vec2 r) {
+  return step.u +
+         Vec2{step.one_minus_cosine * r.x - step.sine * r.y, step.sine * r.x + step.one_minus_cosine * r.y};
+}
 
 /// int q ds and int q s ds of q = max(-p, d) over [0, length], p >= 0 and d linear with the given end values.
 struct TractionIntegral {
@@ -104,16 +104,18 @@ void add_force(PairForce &force, Vec2 at, Vec2 f) {
   force.dyad[3] += arm.y * f.y;
 }
 
+} // namespace
+
 /// The dashpot along n_r, piece by piece.
-void add_normal_dashpot(const Overlap &overlap, const CandidatePair &pair, const RelativeVelocity &velocity,
-                        PairForce &force) {
-  const std::span<const Piece> pieces = overlap.pieces();
+void ContactForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
+                                       PairForce &force) const {
+  const std::span<const Piece> pieces = overlap_.pieces();
   double total = 0.0;
   Vec2 moment;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece &piece = pieces[i];
     const double facing =
-        i < overlap.num_first() ? -dot(force.normal, piece.normal) : dot(force.normal, piece.normal);
+        i < overlap_.num_first() ? -dot(force.normal, piece.normal) : dot(force.normal, piece.normal);
     if (facing <= 0.0) {
       continue;
     }
@@ -136,8 +138,6 @@ void add_normal_dashpot(const Overlap &overlap, const CandidatePair &pair, const
   force.dyad[2] += moment.y * n.x;
   force.dyad[3] += moment.y * n.y;
 }
-
-} // namespace
 
 ConvexView view_of(const BlockSystem &system, std::size_t row) {
   return {system.of_row(system.vertex, row), system.of_row(system.normal, row),
@@ -167,19 +167,15 @@ void ContactForces::set_shear(std::size_t pair, double shear) {
   force.shear_moment = cross(force.point - force.origin, force.shear_force);
 }
 
-void ContactForces::evaluate_pair(const BlockSystem &system, const CandidatePair &pair, RegionMemory &memory,
-                                  PairForce &force) {
-  const std::size_t a = pair.lower.value;
-  const std::size_t b = pair.higher.value;
+bool ContactForces::find_region(const BlockSystem &system, const CandidatePair &pair, PairForce &force) {
   force = {};
-  if (!overlap_.find(view_of(system, a), view_of(system, b), parameters_.potential)) {
-    memory = {};
-    return;
+  if (!overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
+                     parameters_.potential)) {
+    return false;
   }
   const RegionIntegrals region = overlap_.integrate();
   if (!(region.pressure > 0.0)) {
-    memory = {};
-    return;
+    return false;
   }
   force.touching = true;
   force.origin = region.origin;
@@ -190,49 +186,66 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const CandidatePair
   force.point = region.origin + (1.0 / region.pressure) * region.pressure_moment;
   const double resultant = norm(region.force);
   force.normal_force = pair.half_stiffness * resultant;
-  const bool born = memory.state == ContactState::open;
   if (resultant < least_resultant * region.pressure) {
     force.normal_undefined = true;
     // No direction to measure along: twice the deepest point stands for the thickness.
     force.overlap = 2.0 * deepest(overlap_.pieces());
+  } else {
+    force.normal = (1.0 / resultant) * region.force;
+    measure_region(overlap_.pieces(), force);
+  }
+  return true;
+}
+
+void ContactForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
+                                 const RelativeVelocity &velocity, RegionMemory &memory, PairForce &force) {
+  const bool born = memory.state == ContactState::open;
+  const double extent = force.extent_end - force.extent_begin;
+  memory.longest = std::max(memory.longest, extent);
+  force.cap = force.normal_force * pair.tan_friction + pair.cohesion * extent;
+  memory.state = force.cap > 0.0 ? ContactState::stick : ContactState::slip;
+  if (force.cap <= 0.0) {
+    memory.shear = 0.0;
+    return;
+  }
+  const Vec2 tangent = perp(force.normal);
+  const double stiffness = pair.tangential_stiffness * memory.longest;
+  if (!born) {
+    const std::size_t a = pair.lower.value;
+    const std::size_t b = pair.higher.value;
+    const Vec2 slide = increment_at(increments_[a], force.point - system.trial_centroid[a]) -
+                       increment_at(increments_[b], force.point - system.trial_centroid[b]);
+    memory.shear += stiffness * dot(slide, tangent);
+  }
+  if (std::abs(memory.shear) > force.cap) {
+    memory.slip += (std::abs(memory.shear) - force.cap) / stiffness;
+    memory.shear = std::copysign(force.cap, memory.shear);
+    memory.state = ContactState::slip;
+  }
+  double viscous = 0.0;
+  if (parameters_.damping_ratio > 0.0) {
+    const double drag = 2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) *
+                        dot(velocity.at(force.point - force.origin), tangent);
+    viscous = std::clamp(memory.shear + drag, -force.cap, force.cap) - memory.shear;
+  }
+  add_shear(force, memory.shear, viscous);
+}
+
+void ContactForces::evaluate_pair(const BlockSystem &system, const CandidatePair &pair, RegionMemory &memory,
+                                  PairForce &force) {
+  if (!find_region(system, pair, force)) {
+    memory = {};
+    return;
+  }
+  if (force.normal_undefined) {
     memory.shear = 0.0;
     memory.state = ContactState::slip;
     return;
   }
-  force.normal = (1.0 / resultant) * region.force;
-  measure_region(overlap_.pieces(), force);
-
   const RelativeVelocity velocity(system, pair, force.origin);
-  const double extent = force.extent_end - force.extent_begin;
-  memory.longest = std::max(memory.longest, extent);
-  memory.state = ContactState::stick;
-  force.cap = force.normal_force * pair.tan_friction + pair.cohesion * extent;
-  if (force.cap > 0.0) {
-    const Vec2 tangent = perp(force.normal);
-    const double stiffness = pair.tangential_stiffness * memory.longest;
-    if (!born) {
-      const Vec2 slide = increment_at(increments_[a], force.point - system.trial_centroid[a]) -
-                         increment_at(increments_[b], force.point - system.trial_centroid[b]);
-      memory.shear += stiffness * dot(slide, tangent);
-    }
-    if (std::abs(memory.shear) > force.cap) {
-      memory.slip += (std::abs(memory.shear) - force.cap) / stiffness;
-      memory.shear = std::copysign(force.cap, memory.shear);
-      memory.state = ContactState::slip;
-    }
-    double viscous = 0.0;
-    if (parameters_.damping_ratio > 0.0) {
-      const double drag = 2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) *
-                          dot(velocity.at(force.point - force.origin), tangent);
-      viscous = std::clamp(memory.shear + drag, -force.cap, force.cap) - memory.shear;
-    }
-    add_shear(force, memory.shear, viscous);
-  } else {
-    memory.shear = 0.0;
-    memory.state = ContactState::slip;
-  }
+  add_friction(system, pair, velocity, memory, force);
   if (pair.damping > 0.0) {
-    add_normal_dashpot(overlap_, pair, velocity, force);
+    add_normal_dashpot(pair, velocity, force);
   }
 }
 

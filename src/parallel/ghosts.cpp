@@ -76,6 +76,7 @@ std::vector<Aabb> boxes_of_cells(const DomainMap &map, const BlockSystem &system
     by_cell[map.grid.cell_of(system.centroid(row))].include(boxes[row]);
   }
   std::vector<Aabb> published;
+  published.reserve(by_cell.size());
   for (const auto &[cell, box] : by_cell) {
     published.push_back(box);
   }
@@ -120,6 +121,31 @@ std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communic
   return rows;
 }
 
+namespace {
+
+/// Ghosts as they arrived, with the rank each came from.
+struct Arrivals {
+  BlockSystem blocks;
+  std::vector<int> sender;
+
+  explicit Arrivals(const std::vector<Bytes> &received) {
+    for (std::size_t r = 0; r < received.size(); ++r) {
+      unpack_rows(received[r], blocks);
+      sender.resize(blocks.num_rows(), static_cast<int>(r));
+    }
+  }
+  [[nodiscard]] std::vector<std::size_t> by_id() const {
+    std::vector<std::size_t> order(blocks.num_rows());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return blocks.properties[a].id < blocks.properties[b].id;
+    });
+    return order;
+  }
+};
+
+} // namespace
+
 void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const Aabb> boxes) {
   expect(system.num_ghosts == 0, "ghosts are rebuilt from owned blocks alone");
   const auto rows = border_rows(communicator_, map, system, boxes);
@@ -129,43 +155,32 @@ void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const 
       pack_row(system, row, messages[r]);
     }
   }
-  BlockSystem arrived;
-  std::vector<int> sender;
   const std::vector<Bytes> received = communicator_.all_to_all(messages);
-  for (std::size_t r = 0; r < received.size(); ++r) {
-    unpack_rows(received[r], arrived);
-    sender.resize(arrived.num_rows(), static_cast<int>(r));
-  }
-  std::vector<std::size_t> order(arrived.num_rows());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return arrived.properties[a].id < arrived.properties[b].id;
-  });
-
-  BlockSystem whole;
-  const auto append_range = [&](std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row) {
-      append_row(whole, system, row);
-    }
-  };
-  append_range(0, system.num_owned);
   neighbours_.clear();
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (!rows[r].empty() || !received[r].empty()) {
       neighbours_.push_back({static_cast<int>(r), rows[r], {}, {}, {}});
     }
   }
-  // Senders pack in order of id, so walking the ghosts by id meets each sender's rows in message order.
-  for (const std::size_t ghost : order) {
-    const auto neighbour = std::find_if(neighbours_.begin(), neighbours_.end(),
-                                        [&](const Neighbour &n) { return n.rank == sender[ghost]; });
-    neighbour->receive_rows.push_back(static_cast<std::uint32_t>(whole.num_rows()));
-    append_row(whole, arrived, ghost);
-  }
-  append_range(system.num_owned, system.num_rows());
+
+  BlockSystem whole;
   whole.num_owned = system.num_owned;
-  whole.num_ghosts = order.size();
   whole.num_fixed = system.num_fixed;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    append_row(whole, system, row);
+  }
+  // Senders pack in order of id, so walking the ghosts by id meets each sender's rows in message order.
+  const Arrivals arrivals(received);
+  for (const std::size_t ghost : arrivals.by_id()) {
+    const auto neighbour = std::find_if(neighbours_.begin(), neighbours_.end(),
+                                        [&](const Neighbour &n) { return n.rank == arrivals.sender[ghost]; });
+    neighbour->receive_rows.push_back(static_cast<std::uint32_t>(whole.num_rows()));
+    append_row(whole, arrivals.blocks, ghost);
+    ++whole.num_ghosts;
+  }
+  for (std::size_t row = system.num_owned; row < system.num_rows(); ++row) {
+    append_row(whole, system, row);
+  }
   system = std::move(whole);
 }
 

@@ -149,7 +149,9 @@ private:
           "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
           "cohesion {:g} Pa",
           law.name, law.normal_stiffness,
-          law.allowed_overlap > 0.0 ? fmt::format(" for an allowed overlap of {:g} block sizes", law.allowed_overlap) : "",
+          law.allowed_overlap > 0.0
+              ? fmt::format(" for an allowed overlap of {:g} block sizes", law.allowed_overlap)
+              : "",
           law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion));
     }
     report_accepted_error(scene);

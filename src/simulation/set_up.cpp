@@ -31,6 +31,20 @@ Simulation::Simulation(const Communicator &communicator, Scene scene)
 // Everybody knows the whole list of blocks and keeps its own; cells are weighted first by blocks, then, once
 // the neighbourhoods are known, by counted contact work.
 void Simulation::distribute() {
+  lay_grid();
+  std::vector<std::int64_t> weights(static_cast<std::size_t>(map_.grid.num_cells()), 0);
+  for (const SceneBlock &block : scene_.blocks) {
+    if (!block.fixed) {
+      ++weights[static_cast<std::size_t>(map_.grid.cell_of(polygon_moments(block.vertices).centroid))];
+    }
+  }
+  map_ = partition_cells(map_.grid, weights, communicator_.size(), &partition_);
+  take_blocks();
+  map_ = partition_cells(map_.grid, count_contact_work(), communicator_.size(), &partition_);
+}
+
+// Cells of about half a mean block: fine enough to balance, coarse enough that most blocks stay in theirs.
+void Simulation::lay_grid() {
   Aabb region;
   double smallest_mobile = std::numeric_limits<double>::infinity();
   thinnest_ = std::numeric_limits<double>::infinity();
@@ -45,18 +59,10 @@ void Simulation::distribute() {
   }
   constexpr double skin_per_size = 0.1;
   base_skin_ = num_mobile > 0 ? skin_per_size * std::sqrt(smallest_mobile) : 0.0;
+  map_.grid = CellGrid::over(region, std::max(std::int64_t{64} * communicator_.size(), 2 * num_mobile));
+}
 
-  // Cells of about half a mean block: fine enough to balance, coarse enough that most blocks stay in theirs.
-  const std::int64_t num_cells = std::max<std::int64_t>(64 * communicator_.size(), 2 * num_mobile);
-  map_.grid = CellGrid::over(region, num_cells);
-  std::vector<std::int64_t> weights(static_cast<std::size_t>(map_.grid.num_cells()), 0);
-  for (const SceneBlock &block : scene_.blocks) {
-    if (!block.fixed) {
-      ++weights[static_cast<std::size_t>(map_.grid.cell_of(polygon_moments(block.vertices).centroid))];
-    }
-  }
-  map_ = partition_cells(map_.grid, weights, communicator_.size(), &partition_);
-
+void Simulation::take_blocks() {
   for (const bool fixed : {false, true}) {
     for (std::size_t k = 0; k < scene_.blocks.size(); ++k) {
       const SceneBlock &block = scene_.blocks[k];
@@ -69,23 +75,27 @@ void Simulation::distribute() {
       }
     }
   }
+}
 
-  // Neighbourhoods of the initial configuration count the work of every cell.
-  skin_ = base_skin_;
-  ghosts_.rebuild(map_, blocks_, reach_boxes(blocks_, skin_));
-  weights.assign(weights.size(), 0);
+// By cell: one for each block and two for each of its candidate pairs in the initial configuration.
+std::vector<std::int64_t> Simulation::count_contact_work() {
+  std::vector<std::int64_t> weights(static_cast<std::size_t>(map_.grid.num_cells()), 0);
+  const auto add = [&](std::size_t row, std::int64_t weight) {
+    weights[static_cast<std::size_t>(map_.grid.cell_of(blocks_.centroid(row)))] += weight;
+  };
+  ghosts_.rebuild(map_, blocks_, reach_boxes(blocks_, base_skin_));
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    ++weights[static_cast<std::size_t>(map_.grid.cell_of(blocks_.centroid(row)))];
+    add(row, 1);
   }
-  for (const auto &[lower, higher] : find_pairs(blocks_, reach_boxes(blocks_, skin_))) {
+  for (const auto &[lower, higher] : find_pairs(blocks_, reach_boxes(blocks_, base_skin_))) {
     for (const BlockIndex end : {lower, higher}) {
       if (end.value < blocks_.num_owned) {
-        weights[static_cast<std::size_t>(map_.grid.cell_of(blocks_.centroid(end.value)))] += 2;
+        add(end.value, 2);
       }
     }
   }
   communicator_.sum(weights);
-  map_ = partition_cells(map_.grid, weights, communicator_.size(), &partition_);
+  return weights;
 }
 
 void Simulation::find_bound() {

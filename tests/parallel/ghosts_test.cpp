@@ -44,9 +44,8 @@ std::vector<Pattern> patterns(int num_ranks) {
     add("random", [=](int i, int j) { return static_cast<int>(testing::hashed(i, j, 5) * num_ranks); });
     add("strips", [=](int i, int) { return i * num_ranks / cells.columns; });
     add("alternating rows", [=](int, int j) { return j % num_ranks; });
-    add("first rank empty", [=](int i, int j) {
-      return num_ranks == 1 ? 0 : 1 + (i + j) % std::max(1, num_ranks - 1);
-    });
+    add("first rank empty",
+        [=](int i, int j) { return num_ranks == 1 ? 0 : 1 + (i + j) % std::max(1, num_ranks - 1); });
   }
   all.push_back({"all on the last rank", map_of(single, [=](int, int) { return num_ranks - 1; })});
   return all;

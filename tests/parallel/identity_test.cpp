@@ -38,8 +38,8 @@ interval = {1}
 block = "brick3_2"
 )",
                                  duration, duration / 2.0);
-  toml += testing::block_toml(
-      "floor", testing::rectangle({-2.0, -1.0}, {columns + 3.0, squeeze}), "fixed = true");
+  toml += testing::block_toml("floor", testing::rectangle({-2.0, -1.0}, {columns + 3.0, squeeze}),
+                              "fixed = true");
   std::mt19937 random(4);
   const auto speed = [&](double most) { return most * (static_cast<double>(random()) / 2147483648.0 - 1.0); };
   for (int row = 0; row < rows; ++row) {
@@ -82,9 +82,9 @@ private:
       ADD_FAILURE() << difference;
     }
     // These facts of the summary do not depend on the ranks either.
-    for (const char *fact : {"blocks", "fixed_blocks", "steps", "time", "time_step", "contacts",
-                             "contact_steps", "max_overlap", "energy", "refreshes", "normals_undefined",
-                             "verdict", "message"}) {
+    for (const char *fact :
+         {"blocks", "fixed_blocks", "steps", "time", "time_step", "contacts", "contact_steps", "max_overlap",
+          "energy", "refreshes", "normals_undefined", "verdict", "message"}) {
       EXPECT_EQ(summary_text(together(), fact), summary_text(alone(), fact)) << fact;
     }
     EXPECT_EQ(summary_number(together(), "ranks"), world_.size());
@@ -111,7 +111,7 @@ std::set<std::string> ranks_with_blocks(const fs::path &run) {
 }
 
 TEST(Identity, OfAFallingPile) {
-  const TwoRuns runs(testing::scene_of(testing::falling_pile_toml(160, 1.0)));
+  const TwoRuns runs(testing::scene_of(testing::falling_pile_toml(160, 0.9)));
   EXPECT_GE(runs.counted("refreshes"), 1);
   EXPECT_GE(runs.counted("contacts"), 100);
   EXPECT_EQ(ranks_with_blocks(runs.together()).size(), static_cast<std::size_t>(runs.world().size()));
@@ -128,6 +128,89 @@ TEST(Identity, OfAShakenWall) {
   if (runs.world().size() > 1) {
     EXPECT_GE(runs.counted("migrations"), 1);
     EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+}
+
+// Sixteen columns: only a few contacts can lie between ranks. Friction is lowered so that they slide, and
+// leave their cells.
+TEST(Identity, OfAToppledSlope) {
+  const TwoRuns runs(testing::shipped_scene(
+      "goodman_bray", {"run.duration=2.5", "run.gravity_ramp=0.2", "joint.default.friction_angle_deg=20",
+                       "output.interval=0.5", "output.history_interval=0.25"}));
+  EXPECT_GE(runs.counted("refreshes"), 10);
+  EXPECT_GE(runs.counted("contacts"), 16);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("migrations"), 1);
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 2);
+  }
+}
+
+// As it ships, under the consistent initial friction, whose sweeps cross the ranks.
+TEST(Identity, OfAStandingSlope) {
+  const TwoRuns runs(testing::shipped_scene(
+      "goodman_bray", {"run.duration=0.2", "run.gravity_ramp=0", "output.interval=0.1"}));
+  EXPECT_GE(runs.counted("contacts"), 20);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 1);
+  }
+}
+
+// More ranks than blocks: those without work take part in everything all the same.
+TEST(Identity, OfThreeBlocksOnAnyNumberOfRanks) {
+  std::string toml = "[run]\nduration = 0.5\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600.0\n"
+                     "[joint.default]\nnormal_stiffness = 2e8\n[output]\ninterval = 0.1\n"
+                     "[[monitor]]\nblock = \"c\"\n";
+  // a and c close in on b, and each comes from the other side of a border wherever it runs.
+  toml += testing::block_toml("a", testing::random_polygon(1, 5, 0.6, {-1.4, 0.7}), "velocity = [3, 0, 1]");
+  toml += testing::block_toml("floor", testing::rectangle({-6.0, -1.0}, {6.0, 0.0}), "fixed = true");
+  toml += testing::block_toml("b", testing::random_polygon(2, 6, 0.6, {0.0, 0.8}), "velocity = [0, 0, -2]");
+  toml += testing::block_toml("c", testing::random_polygon(3, 4, 0.6, {1.4, 0.7}), "velocity = [-3, 0, 4]");
+  const TwoRuns runs(testing::scene_of(toml));
+  const int num_ranks = runs.world().size();
+  const auto occupied = static_cast<int>(ranks_with_blocks(runs.together()).size());
+  EXPECT_LE(occupied, 3);
+  EXPECT_GE(occupied, std::min(num_ranks, 2));
+  EXPECT_EQ(occupied<num_ranks, num_ranks> 3);
+  EXPECT_GE(runs.counted("contact_steps"), 100);
+  EXPECT_GE(runs.counted("refreshes"), 1);
+  if (num_ranks > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 1);
+  }
+}
+
+// What else steers a run: each setting that takes another way through the step.
+TEST(Identity, OfEverySchemeAndSetting) {
+  const std::string toml = shaken_wall_toml(8, 8, 0.02);
+  for (const std::vector<std::string> &sets : std::vector<std::vector<std::string>>{
+           {"run.scheme=newmark-dda"},
+           {"run.scheme=central-difference", "run.potential=linear"},
+           {"run.scheme=explicit-generalized-alpha", "run.spectral_radius=0.5"},
+           {"run.contact_time=start", "run.initial_friction=zero"},
+           {"run.contact_time=predictor-end", "output.contacts=false"},
+           {"run.gravity_ramp=0.01", "run.contact_damping=0", "output.history_interval=0.005"},
+           {"run.time_step=2e-3", "joint.default.normal_stiffness=2e7", "joint.default.cohesion=1e4"}}) {
+    SCOPED_TRACE(sets.front());
+    const TwoRuns runs(testing::scene_of(toml, sets));
+    EXPECT_GE(runs.counted("contacts"), 30);
+    if (runs.world().size() > 1) {
+      EXPECT_GE(runs.counted("cross_rank_contacts"), 8);
+    }
+  }
+}
+
+// The comparison is not blind: another friction angle is another run.
+TEST(Identity, IsNotAnsweredByEverything) {
+  const Communicator world = Communicator::world();
+  const testing::SharedFolder folder(world);
+  const testing::CapturedLog log;
+  const std::string toml = shaken_wall_toml(6, 6, 0.02);
+  for (const char *angle : {"30", "30.0001"}) {
+    const Scene scene = testing::scene_of(toml, {std::string("joint.default.friction_angle_deg=") + angle});
+    EXPECT_EQ(run_scene(world, scene, {folder.path(angle), false}), 0);
+  }
+  world.barrier();
+  if (world.is_root()) {
+    EXPECT_FALSE(compare_runs(folder.path("30"), folder.path("30.0001")).empty());
   }
 }
 

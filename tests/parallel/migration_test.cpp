@@ -148,8 +148,8 @@ private:
     }
   }
 
-  // Every contact of an owned block is remembered here; copies agree. The rest is forgotten, as the candidates
-  // do.
+  // Every contact of an owned block is remembered here; copies agree. The rest is forgotten, as the
+  // candidates do.
   void take(const std::vector<RegionRecord> &memory) {
     held_.clear();
     for (const RegionRecord &record : memory) {
@@ -163,7 +163,8 @@ private:
     }
     for (const auto &[pair, due] : all_) {
       if (touches_owned(pair)) {
-        EXPECT_EQ(held_.count(pair), 1U) << "contact " << pair.first << ", " << pair.second << " is forgotten";
+        EXPECT_EQ(held_.count(pair), 1U)
+            << "contact " << pair.first << ", " << pair.second << " is forgotten";
       }
     }
   }

@@ -302,7 +302,7 @@ TEST(Locality, CuttingEnlargingAndRenumberingChangeNoBit) {
   std::mt19937 engine(3);
   int cut = 0;
   int enlarged = 0;
-  for (int trial = 0; trial < 3000; ++trial) {
+  for (int trial = 0; trial < 6000; ++trial) {
     const auto seed = static_cast<unsigned>(engine());
     const double angle = uniform(engine, 0.0, 2.0 * std::numbers::pi);
     const double distance = uniform(engine, 1.6, 1.95);
@@ -337,7 +337,7 @@ TEST(Locality, CuttingEnlargingAndRenumberingChangeNoBit) {
     ASSERT_FALSE(HasFailure()) << "trial " << trial;
   }
   EXPECT_GT(cut, 300);
-  EXPECT_GT(enlarged, 300);
+  EXPECT_GT(enlarged, 100);
 }
 
 } // namespace

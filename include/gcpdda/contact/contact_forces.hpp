@@ -98,8 +98,16 @@ public:
   void set_shear(std::size_t pair, double shear);
 
 private:
+  struct RelativeVelocity;
+
   void evaluate_pair(const BlockSystem &system, const CandidatePair &pair, RegionMemory &memory,
                      PairForce &force);
+  /// Normal force, direction and size of the overlap; false if the blocks do not touch.
+  bool find_region(const BlockSystem &system, const CandidatePair &pair, PairForce &force);
+  void add_friction(const BlockSystem &system, const CandidatePair &pair, const RelativeVelocity &velocity,
+                    RegionMemory &memory, PairForce &force);
+  void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
+                          PairForce &force) const;
   void add_shear(PairForce &force, double elastic, double viscous) const;
 
   ContactParameters parameters_;

@@ -26,7 +26,8 @@ struct JointLaws {
   std::int32_t num_materials = 0;
 
   [[nodiscard]] std::int32_t between(std::int32_t a, std::int32_t b) const {
-    return of_material[static_cast<std::size_t>(a * num_materials + b)];
+    return of_material[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +
+                       static_cast<std::size_t>(b)];
   }
 };
 

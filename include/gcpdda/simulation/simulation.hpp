@@ -104,6 +104,9 @@ public:
 
 private:
   void distribute();
+  void lay_grid();
+  void take_blocks();
+  [[nodiscard]] std::vector<std::int64_t> count_contact_work();
   void find_bound();
   [[nodiscard]] Vec2 gravity() const;
   void find_initial_state();

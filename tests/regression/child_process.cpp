@@ -1,0 +1,123 @@
+#include "child_process.hpp"
+
+#include "support/run_facts.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <fcntl.h>
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+extern char **environ;
+
+namespace gcpdda::testing {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> clean_environment(const std::vector<std::string> &added) {
+  std::vector<std::string> variables;
+  for (char **variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text(*variable);
+    bool of_launcher = false;
+    for (const char *prefix : {"OMPI_", "PMIX_", "PMI_", "ORTE_", "OPAL_", "SLURM_"}) {
+      of_launcher = of_launcher || text.starts_with(prefix);
+    }
+    if (!of_launcher) {
+      variables.emplace_back(text);
+    }
+  }
+  for (const char *needed :
+       {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_mpi_yield_when_idle=1",
+        "OMPI_MCA_btl_vader_single_copy_mechanism=none", "OMP_NUM_THREADS=1"}) {
+    variables.emplace_back(needed);
+  }
+  variables.insert(variables.end(), added.begin(), added.end());
+  return variables;
+}
+
+std::vector<char *> pointers(std::vector<std::string> &texts) {
+  std::vector<char *> list;
+  for (std::string &text : texts) {
+    list.push_back(text.data());
+  }
+  list.push_back(nullptr);
+  return list;
+}
+
+/// Status of a child that ends in time; otherwise its whole group is killed.
+int wait_for(pid_t child) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      kill(-child, SIGKILL);
+      waitpid(child, &status, 0);
+      return 1000;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+} // namespace
+
+WorkFolder::WorkFolder() {
+  std::string name = (fs::temp_directory_path() / "gcpdda_regression_XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) {
+    throw std::runtime_error("no temporary folder");
+  }
+  path_ = name;
+}
+
+void WorkFolder::write(const std::string &name, const std::string &text) const {
+  std::ofstream file(path_ / name, std::ios::binary);
+  file << text;
+}
+
+Outcome run_program(const std::vector<std::string> &words, const fs::path &folder,
+                    const std::vector<std::string> &environment) {
+  const WorkFolder streams;
+  std::vector<std::string> arguments = words;
+  std::vector<std::string> variables = clean_environment(environment);
+  const std::vector<char *> argv = pointers(arguments);
+  const std::vector<char *> envp = pointers(variables);
+  const std::string out = streams / "out";
+  const std::string err = streams / "err";
+  const pid_t child = fork();
+  if (child == 0) {
+    setpgid(0, 0);
+    const int in = open("/dev/null", O_RDONLY);
+    const int to_out = open(out.c_str(), O_CREAT | O_WRONLY, 0600);
+    const int to_err = open(err.c_str(), O_CREAT | O_WRONLY, 0600);
+    if (chdir(folder.c_str()) == 0 && dup2(in, 0) == 0 && dup2(to_out, 1) == 1 && dup2(to_err, 2) == 2) {
+      execvpe(argv[0], argv.data(), envp.data());
+    }
+    _exit(127);
+  }
+  if (child < 0) {
+    throw std::runtime_error("cannot fork");
+  }
+  Outcome outcome;
+  outcome.exit_code = wait_for(child);
+  outcome.out = file_text(out);
+  outcome.err = file_text(err);
+  return outcome;
+}
+
+Outcome run_gcpdda(int ranks, const std::vector<std::string> &arguments, const WorkFolder &folder) {
+  std::vector<std::string> words;
+  if (ranks > 0) {
+    words = {GCPDDA_MPIEXEC, "-n", std::to_string(ranks), "--oversubscribe", "--bind-to", "none"};
+  }
+  words.emplace_back(GCPDDA_EXECUTABLE);
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return run_program(words, folder.path());
+}
+
+} // namespace gcpdda::testing

@@ -1,0 +1,118 @@
+// B1, B2 and C3: blocks at rest on their joints.
+
+#include "problem.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gcpdda::testing {
+namespace {
+
+constexpr double weight = rock_density * earth_gravity; ///< of a unit square, N/m
+
+std::string floor_toml() {
+  return block_toml("floor", rectangle({-4.0, -2.0}, {5.0, 0.0}), "fixed = true");
+}
+
+// Soft on purpose: the depth is 2.5 % of the block, so that the correction (1 - d/2L) counts. Round-off once
+// the oscillation has been damped out.
+TEST(Rest, OverlapOfASquareOnAPlane) {
+  for (const double k_n : {1e6, 1e9}) {
+    Simulation simulation(Communicator::self(),
+                          scene_of(head({.duration = 40.0, .normal_stiffness = k_n, .damping = 0.3}) + floor_toml() +
+                                   block_toml("square", rectangle({0.0, 0.0}, {1.0, 1.0}))));
+    run(simulation);
+    // k_n L d (1 - d/(2L)) = m g
+    expect_value(fmt::format("B1 k_n={:g}: overlap at rest, m", k_n), 1.0 - std::sqrt(1.0 - 2.0 * weight / k_n),
+                 -displacement_of(simulation, 1).u.y, 1e-10);
+  }
+}
+
+// omega^2 = (k_n L/m)(1 - d/L) for small amplitudes; verification.md asks for the leading term up to O(d/L).
+TEST(Rest, PeriodOfASquareOnAPlane) {
+  for (const double k_n : {1e7, 1e9}) {
+    const double depth = 1.0 - std::sqrt(1.0 - 2.0 * weight / k_n);
+    const double period = 2.0 * std::numbers::pi * std::sqrt(rock_density / k_n);
+    constexpr int num_periods = 20;
+    constexpr int steps_per_period = 1000;
+    Simulation simulation(
+        Communicator::self(),
+        scene_of(head({.duration = 1.1 * num_periods * period,
+                       .time_step = period / steps_per_period,
+                       .normal_stiffness = k_n,
+                       .damping = 0.0}) +
+                 floor_toml() +
+                 block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
+                            fmt::format("velocity = [0.0, {:.17g}, 0.0]", 1e-3 * depth * std::sqrt(k_n / rock_density)))));
+    // The square starts upwards through its rest position; the 20th return in that direction ends 20 periods.
+    int returns = 0;
+    double end = 0.0;
+    while (returns < num_periods && !simulation.finished()) {
+      const double before = displacement_of(simulation, 1).u.y;
+      const double time = simulation.time();
+      simulation.step();
+      const double after = displacement_of(simulation, 1).u.y;
+      if (before < 0.0 && after >= 0.0) {
+        ++returns;
+        end = time + simulation.plan().time_step * before / (before - after);
+      }
+    }
+    ASSERT_EQ(returns, num_periods);
+    const double measured = end / num_periods;
+    expect_value(fmt::format("B1 k_n={:g}, d/L={:.1e}: period, s", k_n, depth), period, measured, 1.0 * depth);
+    // Truncation: the leapfrog's period is short by W^2/24 = 1.6e-6, the amplitude adds 1e-6 d/L.
+    expect_value(fmt::format("B1 k_n={:g}: period with the depth's share, s", k_n), period / std::sqrt(1.0 - depth),
+                 measured, 3e-6);
+  }
+}
+
+// p_n h^2 tan t (1 + sin t)/H with p_n/H = k_n/2: an exact integral. The depth is a difference of coordinates
+// of 1 m, good to 1e-16 m of 1e-2 m.
+TEST(Rest, SymmetricWedgeOnAPlane) {
+  constexpr double k_n = 1e9;
+  constexpr double depth = 0.01;
+  for (const double half_angle : {2.5, 15.0, 30.0, 45.0, 60.0}) {
+    const double half_width = std::tan(half_angle * degree);
+    Simulation simulation(Communicator::self(),
+                          scene_of(head({.gravity = {}, .normal_stiffness = k_n}) +
+                                   block_toml("floor", rectangle({-9.0, -4.0}, {9.0, 0.0}), "fixed = true") +
+                                   block_toml("wedge", {{0.0, -depth}, {half_width, 1.0 - depth}, {-half_width, 1.0 - depth}})));
+    const RigidDof force = simulation.forces()[row_of(simulation, 1)];
+    expect_value(fmt::format("B2 wedge of half-angle {} degrees, 10 mm deep: force, N/m", half_angle),
+                 0.5 * k_n * depth * depth * half_width * (1.0 + std::sin(half_angle * degree)), force.u.y, 1e-12);
+    EXPECT_LE(std::abs(force.u.x) + std::abs(force.r), 1e-12 * force.u.y);
+  }
+}
+
+// Equal faces: k_n L d (1 - d/L) = weight above; the floor is wider: (1 - d/(2L)). Damping of slow modes by
+// joints is weak, hence the ramp of gravity and the long run; then round-off of differences of 1 m.
+TEST(Rest, JointsOfAColumn) {
+  constexpr int num_blocks = 10;
+  constexpr double k_n = 5e7;
+  std::string toml = head({.duration = 60.0,
+                           .normal_stiffness = k_n,
+                           .friction_deg = 30.0,
+                           .damping = 0.3,
+                           .run_keys = "gravity_ramp = 2.0"}) +
+                     floor_toml();
+  for (int k = 0; k < num_blocks; ++k) {
+    toml += block_toml(fmt::format("b{}", k), rectangle({0.0, k + 0.0}, {1.0, k + 1.0}));
+  }
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  run(simulation);
+  double worst = 0.0;
+  for (int joint = 0; joint < num_blocks; ++joint) {
+    const double head_over_stiffness = (num_blocks - joint) * weight / k_n;
+    const double expected = joint == 0 ? 1.0 - std::sqrt(1.0 - 2.0 * head_over_stiffness)
+                                       : 0.5 * (1.0 - std::sqrt(1.0 - 4.0 * head_over_stiffness));
+    const double below = joint == 0 ? 0.0 : displacement_of(simulation, joint).u.y;
+    const double overlap = below - displacement_of(simulation, joint + 1).u.y;
+    worst = std::max(worst, std::abs(overlap / expected - 1.0));
+  }
+  expect_below("C3 column of 10 blocks: largest relative error of a joint's overlap", 1e-9, worst);
+}
+
+} // namespace
+} // namespace gcpdda::testing
