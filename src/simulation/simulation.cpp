@@ -50,14 +50,15 @@ void Simulation::refresh() {
   }
   const std::int64_t left = migrate(communicator_, map_, blocks_, memory);
 
-  // A step may be longer than the usual skin: the skin then grows until half of it outlasts two steps.
+  // Fast blocks would use up the usual skin at once: it grows so that half of it outlasts several steps.
+  constexpr double steps_in_skin = 16.0;
   double reach = 0.0;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     reach = std::max(reach, motion_bound(blocks_, row, plan_.time_step));
     blocks_.refreshed[row] = blocks_.displacement[row];
   }
   communicator_.max(std::span(&reach, 1));
-  skin_ = std::max(base_skin_, 4.0 * reach);
+  skin_ = std::max(base_skin_, steps_in_skin * reach);
 
   ghosts_.rebuild(map_, blocks_, reach_boxes(blocks_, skin_));
   candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, skin_)),

@@ -30,7 +30,8 @@ struct Outcome {
 };
 
 /// Start a program in a folder and wait for it. It sees this process's environment without what MPI
-/// launchers left in it, plus `environment` ("NAME=value"). After two minutes it is killed, children included.
+/// launchers left in it, plus `environment` ("NAME=value"). After two minutes it is killed, children
+/// included.
 Outcome run_program(const std::vector<std::string> &words, const std::filesystem::path &folder,
                     const std::vector<std::string> &environment = {});
 

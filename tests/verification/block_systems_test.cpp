@@ -36,7 +36,8 @@ TEST(BlockSystems, WedgeOnASlopeStays) {
   ASSERT_EQ(simulation.blocks().num_owned, 32U);
   run_until(simulation, 20.0);
   const std::vector<RigidDof> rest = simulation.blocks().displacement;
-  expect_below("B5 wedge of 32 blocks, xi = 0.3: settlement after 20 s, m", 0.02, max_difference(rest, std::vector<RigidDof>(rest.size())));
+  expect_below("B5 wedge of 32 blocks, xi = 0.3: settlement after 20 s, m", 0.02,
+               max_difference(rest, std::vector<RigidDof>(rest.size())));
   expect_below("B5 wedge of 32 blocks, xi = 0.3: speed after 20 s, m/s", 1e-10, max_speed(simulation));
   run(simulation);
   expect_below("B5 wedge of 32 blocks, xi = 0.3: motion from 20 to 24 s, m", 1e-11,
@@ -60,8 +61,9 @@ TEST(BlockSystems, WedgeOnASlopeSettlesWithLittleDamping) {
 }
 
 TEST(BlockSystems, WedgeOnASlopeSlidesWhenFrictionIsTooLow) {
-  Simulation simulation(Communicator::self(),
-                        shipped_scene("stacked_wedge", {"joint.default.friction_angle_deg=24.0", "run.duration=3.0"}));
+  Simulation simulation(
+      Communicator::self(),
+      shipped_scene("stacked_wedge", {"joint.default.friction_angle_deg=24.0", "run.duration=3.0"}));
   run(simulation);
   // The whole wedge as one block: s = g (sin 26.5 - tan 24 cos 26.5) t^2/2 = 2.12 m; its rows also shear.
   expect_above("B5 wedge of 32 blocks at friction 24 degrees: motion in 3 s, m", 2.0,
@@ -74,10 +76,11 @@ struct SlopeResult {
 };
 
 SlopeResult goodman_bray(double friction_deg) {
-  Simulation simulation(Communicator::self(),
-                        shipped_scene("goodman_bray", {fmt::format("joint.default.friction_angle_deg={}", friction_deg),
-                                                       "run.gravity_ramp=3.0", "run.contact_damping=0.3",
-                                                       "run.duration=10.0"}));
+  Simulation simulation(
+      Communicator::self(),
+      shipped_scene("goodman_bray",
+                    {fmt::format("joint.default.friction_angle_deg={}", friction_deg), "run.gravity_ramp=3.0",
+                     "run.contact_damping=0.3", "run.duration=10.0"}));
   SlopeResult result;
   constexpr double fallen = 20.0;
   while (!simulation.finished() && result.turned < fallen) {
@@ -96,12 +99,15 @@ SlopeResult goodman_bray(double friction_deg) {
 TEST(BlockSystems, TopplingSlopeOfGoodmanAndBray) {
   for (const double friction : {39.5, 38.5}) {
     const SlopeResult stands = goodman_bray(friction);
-    expect_below(fmt::format("C2 friction {} degrees stands: largest rotation in 10 s, degrees", friction), 1.0, stands.turned);
-    expect_below(fmt::format("C2 friction {} degrees stands: speed after 10 s, m/s", friction), 1e-3, stands.speed);
+    expect_below(fmt::format("C2 friction {} degrees stands: largest rotation in 10 s, degrees", friction),
+                 1.0, stands.turned);
+    expect_below(fmt::format("C2 friction {} degrees stands: speed after 10 s, m/s", friction), 1e-3,
+                 stands.speed);
   }
   for (const double friction : {37.0, 38.0}) {
     const SlopeResult topples = goodman_bray(friction);
-    expect_above(fmt::format("C2 friction {} degrees topples: largest rotation, degrees", friction), 5.0, topples.turned);
+    expect_above(fmt::format("C2 friction {} degrees topples: largest rotation, degrees", friction), 5.0,
+                 topples.turned);
   }
 }
 

@@ -40,18 +40,20 @@ TEST(Bounce, EqualSquaresExchangeVelocities) {
     const double gap = (5.0 + static_cast<double>(phase) / num_phases) * speed * dt;
     Simulation simulation(
         Communicator::self(),
-        scene_of(head({.duration = 80 * dt, .time_step = dt, .gravity = {}, .damping = 0.0}) +
-                 block_toml("moving", rectangle({-1.0 - gap, 0.0}, {-gap, 1.0}), "velocity = [1.0, 0.0, 0.0]") +
-                 block_toml("resting", rectangle({0.0, 0.0}, {1.0, 1.0}))));
+        scene_of(
+            head({.duration = 80 * dt, .time_step = dt, .gravity = {}, .damping = 0.0}) +
+            block_toml("moving", rectangle({-1.0 - gap, 0.0}, {-gap, 1.0}), "velocity = [1.0, 0.0, 0.0]") +
+            block_toml("resting", rectangle({0.0, 0.0}, {1.0, 1.0}))));
     run(simulation);
     EXPECT_FALSE(touching(simulation));
-    error = std::max({error, norm(trial_velocity(simulation, 0)), norm(trial_velocity(simulation, 1) - Vec2{speed, 0.0})});
+    error = std::max(
+        {error, norm(trial_velocity(simulation, 0)), norm(trial_velocity(simulation, 1) - Vec2{speed, 0.0})});
   }
   expect_below("A6 head-on equal squares, W = 0.1, 12 phases: error of the exchanged velocity", 2e-3, error);
 }
 
-/// A block 3 m thick with a face of 1 m flies between two walls, `flight` steps from one to the other. (With this shape the
-/// tilt that rounding brings in stays bounded from bounce to bounce; a square's could grow.)
+/// A block 3 m thick with a face of 1 m flies between two walls, `flight` steps from one to the other. (With
+/// this shape the tilt that rounding brings in stays bounded from bounce to bounce; a square's could grow.)
 Simulation between_walls(double w, double flight, double duration_steps) {
   constexpr double thickness = 3.0;
   const double dt = w / std::sqrt(stiffness / (rock_density * thickness));
@@ -62,7 +64,8 @@ Simulation between_walls(double w, double flight, double duration_steps) {
       scene_of(head({.duration = duration_steps * dt, .time_step = dt, .gravity = {}, .damping = 0.0}) +
                block_toml("left", rectangle({-2.5 - half, -2.0}, {-1.5 - half, 2.0}), "fixed = true") +
                block_toml("right", rectangle({1.5 + half, -2.0}, {2.5 + half, 2.0}), "fixed = true") +
-               block_toml("flyer", rectangle({-1.5, -0.5}, {1.5, 0.5}), fmt::format("velocity = [{}, 0.0, 0.0]", speed))));
+               block_toml("flyer", rectangle({-1.5, -0.5}, {1.5, 0.5}),
+                          fmt::format("velocity = [{}, 0.0, 0.0]", speed))));
 }
 
 /// Energy over the initial one after `bounces` impacts.

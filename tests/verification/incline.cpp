@@ -41,8 +41,8 @@ Vec2 Incline::downhill() const {
 }
 
 double Incline::acceleration() const {
-  return earth_gravity * (std::sin(slope_deg * degree) -
-                          std::tan(friction_deg * degree) * std::cos(slope_deg * degree));
+  return earth_gravity *
+         (std::sin(slope_deg * degree) - std::tan(friction_deg * degree) * std::cos(slope_deg * degree));
 }
 
 std::vector<Vec2> Incline::in_world(const std::vector<Vec2> &points) const {

@@ -30,8 +30,9 @@ TEST(Incline, DistanceFromSlidingEquilibrium) {
                        Case{30, 25, 0.943386}, Case{45, 30, 2.931802}}) {
     const Incline incline{.slope_deg = c.slope, .friction_deg = c.friction};
     EXPECT_NEAR(incline.acceleration(), c.acceleration, 1e-6);
-    expect_below(fmt::format("B3 (i) th={} phi={}, start in depth and tilt: error of s(2 s)", c.slope, c.friction),
-                 1e-8, slid_error(incline, incline.toml(incline.sliding_square(), {.duration = duration})));
+    expect_below(
+        fmt::format("B3 (i) th={} phi={}, start in depth and tilt: error of s(2 s)", c.slope, c.friction),
+        1e-8, slid_error(incline, incline.toml(incline.sliding_square(), {.duration = duration})));
   }
 }
 
@@ -48,8 +49,9 @@ TEST(Incline, ShippedScene) {
 TEST(Incline, AccelerationAfterFlatStart) {
   for (const double friction : {0.0, 10.0, 15.0}) {
     const Incline incline{.friction_deg = friction};
-    Simulation simulation(Communicator::self(),
-                          scene_of(incline.toml(incline.flat_square(incline.static_depth()), {.duration = duration})));
+    Simulation simulation(
+        Communicator::self(),
+        scene_of(incline.toml(incline.flat_square(incline.static_depth()), {.duration = duration})));
     run_until(simulation, 1.0);
     const Vec2 before = velocity_of(simulation, 1).u;
     run(simulation);
@@ -65,11 +67,14 @@ TEST(Incline, DistanceAfterFlatStart) {
   std::vector<double> error;
   for (const double k_n : stiffness) {
     const Incline incline{.normal_stiffness = k_n};
-    error.push_back(slid_error(incline, incline.toml(incline.flat_square(incline.static_depth()), {.duration = duration})));
-    expect_below(fmt::format("B3 (iii) k_n={:g}, flat start: error of s(2 s)", k_n), k_n < 1e9 ? 4e-3 : 1e-3, error.back());
+    error.push_back(slid_error(
+        incline, incline.toml(incline.flat_square(incline.static_depth()), {.duration = duration})));
+    expect_below(fmt::format("B3 (iii) k_n={:g}, flat start: error of s(2 s)", k_n), k_n < 1e9 ? 4e-3 : 1e-3,
+                 error.back());
   }
   const double slope = log_slope(stiffness, error);
-  expect_below(fmt::format("B3 (iii) exponent of k_n is {:.4f}: distance to -1/2", slope), 0.1, std::abs(slope + 0.5));
+  expect_below(fmt::format("B3 (iii) exponent of k_n is {:.4f}: distance to -1/2", slope), 0.1,
+               std::abs(slope + 0.5));
 }
 
 /// Largest difference of the slider's histories, step by step.
@@ -103,8 +108,9 @@ TEST(Incline, FarPartOfThePlaneDoesNotMatter) {
                history_difference(usual, on(rectangle({-0.5, -1.0}, {8.0, 0.0}))));
   expect_below("A7 plane 100 times larger below the same surface: difference of histories, m", 1e-12,
                history_difference(usual, on({{-5.0, 0.0}, {-500.0, -200.0}, {2000.0, -200.0}, {20.0, 0.0}})));
-  expect_below("A7 plane with a far corner cut off: difference of histories, m", 1e-12,
-               history_difference(usual, on({{-5.0, -1.0}, {-4.0, -2.0}, {20.0, -2.0}, {20.0, 0.0}, {-5.0, 0.0}})));
+  expect_below(
+      "A7 plane with a far corner cut off: difference of histories, m", 1e-12,
+      history_difference(usual, on({{-5.0, -1.0}, {-4.0, -2.0}, {20.0, -2.0}, {20.0, 0.0}, {-5.0, 0.0}})));
 }
 
 } // namespace

@@ -1,4 +1,5 @@
-// A1 to A3: stability limits, order and exactness of the time integration, measured on runs of the whole code.
+// A1 to A3: stability limits, order and exactness of the time integration, measured on runs of the whole
+// code.
 
 #include "problem.hpp"
 
@@ -10,8 +11,8 @@
 namespace gcpdda::testing {
 namespace {
 
-// A unit square flush on a wide plane is an oscillator: force k_n d (1 - d/2) at depth d, so about the depth d_0
-// that carries its weight omega^2 = k_n (1 - d_0)/m. It may rock, but slower by the square root of 2.
+// A unit square flush on a wide plane is an oscillator: force k_n d (1 - d/2) at depth d, so about the depth
+// d_0 that carries its weight omega^2 = k_n (1 - d_0)/m. It may rock, but slower by the square root of 2.
 constexpr double stiffness = 1e9;
 const double depth = 1.0 - std::sqrt(1.0 - 2.0 * rock_density * earth_gravity / stiffness);
 const double omega = std::sqrt(stiffness * (1.0 - depth) / rock_density);
@@ -19,14 +20,13 @@ const double omega = std::sqrt(stiffness * (1.0 - depth) / rock_density);
 /// The square at its depth, thrown up so that it oscillates with an amplitude of `share` depths.
 Scene oscillator(double w, int num_steps, double share, const std::string &contact_time = "leapfrog") {
   const double dt = w / omega;
-  const std::string scene =
-      head({.duration = num_steps * dt,
-            .time_step = dt,
-            .damping = 0.0,
-            .run_keys = fmt::format("contact_time = \"{}\"", contact_time)}) +
-      block_toml("plane", rectangle({-3.0, -2.0}, {4.0, 0.0}), "fixed = true") +
-      block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
-                 fmt::format("velocity = [0.0, {:.17g}, 0.0]", share * depth * omega));
+  const std::string scene = head({.duration = num_steps * dt,
+                                  .time_step = dt,
+                                  .damping = 0.0,
+                                  .run_keys = fmt::format("contact_time = \"{}\"", contact_time)}) +
+                            block_toml("plane", rectangle({-3.0, -2.0}, {4.0, 0.0}), "fixed = true") +
+                            block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
+                                       fmt::format("velocity = [0.0, {:.17g}, 0.0]", share * depth * omega));
   return scene_of(scene);
 }
 
@@ -35,8 +35,8 @@ double amplitude(const Simulation &simulation) {
   return std::hypot(displacement_of(simulation, 1).u.y, velocity_of(simulation, 1).u.y / omega) / depth;
 }
 
-// At W = 1.96 the trial configurations of a neutral leapfrog may swing by 1/sqrt(1 - W^2/4) = 5 times the
-// exact amplitude, and no more however long; at W = 2.04 each step multiplies them by -1.4908.
+// Below the limit the scheme is neutral: its amplitude is the exact one times at most 1/sqrt(1 - W^2/4) = 5
+// at W = 1.96, however long the run. At W = 2.04 each step multiplies it by -1.4908.
 TEST(Stability, LeapfrogLimitIsTwo) {
   constexpr double start = 1e-4;
   Simulation stable(Communicator::self(), oscillator(1.96, 20000, start));
@@ -48,8 +48,8 @@ TEST(Stability, LeapfrogLimitIsTwo) {
     largest = std::max(largest, amplitude(stable) / start);
   }
   expect_below("A1 leapfrog at 0.98 of W = 2, 20000 steps: largest amplitude over the exact one", 5.1, late);
-  expect_below("A1 leapfrog at 0.98 of W = 2: amplitude of steps 1000..20000 over that of steps 0..1000", 1.01,
-               late / early);
+  expect_below("A1 leapfrog at 0.98 of W = 2: amplitude of steps 1000..20000 over that of steps 0..1000",
+               1.01, late / early);
 
   constexpr double w = 2.04;
   constexpr double tiny = 1e-8;
@@ -61,7 +61,8 @@ TEST(Stability, LeapfrogLimitIsTwo) {
   }
   const double half_trace = 0.5 * w * w - 1.0;
   // Truncation: the depth changes the frequency by 1e-4 at most.
-  expect_value("A1 leapfrog at 1.02 of W = 2: growth a step", half_trace + std::sqrt(half_trace * half_trace - 1.0),
+  expect_value("A1 leapfrog at 1.02 of W = 2: growth a step",
+               half_trace + std::sqrt(half_trace * half_trace - 1.0),
                std::pow(history[29] / history[14], 1.0 / 15.0), 1e-3);
   expect_above("A1 leapfrog at 1.02 of W = 2, 40 steps: amplitude over the first", 1e4, history[39]);
 }
@@ -103,14 +104,15 @@ TEST(Order, ObliqueCollision) {
   constexpr double duration = 1.0;
   const std::vector<Vec2> square = rectangle({-0.5, -0.5}, {0.5, 0.5});
   const auto outcome = [&](int num_steps) {
-    Simulation simulation(Communicator::self(),
-                          scene_of(head({.duration = duration,
-                                         .time_step = duration / num_steps,
-                                         .gravity = {},
-                                         .normal_stiffness = 1e7,
-                                         .damping = 0.0}) +
-                                   block_toml("a", placed(square, 0.3, {-0.85, 0.0}), "velocity = [1.0, 0.1, 0.0]") +
-                                   block_toml("b", placed(square, -0.5, {0.85, 0.25}), "velocity = [-1.0, 0.0, 0.2]")));
+    Simulation simulation(
+        Communicator::self(),
+        scene_of(head({.duration = duration,
+                       .time_step = duration / num_steps,
+                       .gravity = {},
+                       .normal_stiffness = 1e7,
+                       .damping = 0.0}) +
+                 block_toml("a", placed(square, 0.3, {-0.85, 0.0}), "velocity = [1.0, 0.1, 0.0]") +
+                 block_toml("b", placed(square, -0.5, {0.85, 0.25}), "velocity = [-1.0, 0.0, 0.2]")));
     run(simulation);
     EXPECT_GT(simulation.counters().contact_steps, 0);
     return std::pair(velocity_of(simulation, 0), velocity_of(simulation, 1));
@@ -136,21 +138,22 @@ TEST(Order, ConstantAccelerationIsExact) {
   constexpr int num_steps = 10000;
   constexpr double duration = 3.0;
   for (const double radius : {0.0, 0.5, 0.8, 1.0}) {
-    Simulation simulation(Communicator::self(),
-                          scene_of(head({.duration = duration,
-                                         .time_step = duration / num_steps,
-                                         .run_keys = fmt::format("spectral_radius = {}", radius)}) +
-                                   block_toml("stone", rectangle({0.0, 0.0}, {1.0, 2.0}), "velocity = [7.0, 20.0, 3.0]")));
+    Simulation simulation(
+        Communicator::self(),
+        scene_of(head({.duration = duration,
+                       .time_step = duration / num_steps,
+                       .run_keys = fmt::format("spectral_radius = {}", radius)}) +
+                 block_toml("stone", rectangle({0.0, 0.0}, {1.0, 2.0}), "velocity = [7.0, 20.0, 3.0]")));
     double error = 0.0;
     while (!simulation.finished()) {
       simulation.step();
       const double t = simulation.time();
       const RigidDof d = displacement_of(simulation, 0);
-      error = std::max({error, std::abs(d.u.x - 7.0 * t), std::abs(d.u.y - (20.0 - 0.5 * earth_gravity * t) * t),
-                        std::abs(d.r - 3.0 * t)});
+      error = std::max({error, std::abs(d.u.x - 7.0 * t),
+                        std::abs(d.u.y - (20.0 - 0.5 * earth_gravity * t) * t), std::abs(d.r - 3.0 * t)});
     }
-    expect_below(fmt::format("A3 free flight, spectral radius {}: error of path and turn over 21 m", radius), 1e-12,
-                 error / (7.0 * duration));
+    expect_below(fmt::format("A3 free flight, spectral radius {}: error of path and turn over 21 m", radius),
+                 1e-12, error / (7.0 * duration));
   }
 }
 

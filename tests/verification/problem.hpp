@@ -1,6 +1,7 @@
 #pragma once
 
-// What the verification problems share: a one-rock scene text, runs in memory, and the line each check prints.
+// What the verification problems share: a one-rock scene text, runs in memory, and the line each check
+// prints.
 
 #include "gcpdda/simulation/simulation.hpp"
 #include "support/scenes.hpp"

@@ -21,12 +21,12 @@ std::string floor_toml() {
 TEST(Rest, OverlapOfASquareOnAPlane) {
   for (const double k_n : {1e6, 1e9}) {
     Simulation simulation(Communicator::self(),
-                          scene_of(head({.duration = 40.0, .normal_stiffness = k_n, .damping = 0.3}) + floor_toml() +
-                                   block_toml("square", rectangle({0.0, 0.0}, {1.0, 1.0}))));
+                          scene_of(head({.duration = 40.0, .normal_stiffness = k_n, .damping = 0.3}) +
+                                   floor_toml() + block_toml("square", rectangle({0.0, 0.0}, {1.0, 1.0}))));
     run(simulation);
     // k_n L d (1 - d/(2L)) = m g
-    expect_value(fmt::format("B1 k_n={:g}: overlap at rest, m", k_n), 1.0 - std::sqrt(1.0 - 2.0 * weight / k_n),
-                 -displacement_of(simulation, 1).u.y, 1e-10);
+    expect_value(fmt::format("B1 k_n={:g}: overlap at rest, m", k_n),
+                 1.0 - std::sqrt(1.0 - 2.0 * weight / k_n), -displacement_of(simulation, 1).u.y, 1e-10);
   }
 }
 
@@ -37,15 +37,15 @@ TEST(Rest, PeriodOfASquareOnAPlane) {
     const double period = 2.0 * std::numbers::pi * std::sqrt(rock_density / k_n);
     constexpr int num_periods = 20;
     constexpr int steps_per_period = 1000;
-    Simulation simulation(
-        Communicator::self(),
-        scene_of(head({.duration = 1.1 * num_periods * period,
-                       .time_step = period / steps_per_period,
-                       .normal_stiffness = k_n,
-                       .damping = 0.0}) +
-                 floor_toml() +
-                 block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
-                            fmt::format("velocity = [0.0, {:.17g}, 0.0]", 1e-3 * depth * std::sqrt(k_n / rock_density)))));
+    Simulation simulation(Communicator::self(),
+                          scene_of(head({.duration = 1.1 * num_periods * period,
+                                         .time_step = period / steps_per_period,
+                                         .normal_stiffness = k_n,
+                                         .damping = 0.0}) +
+                                   floor_toml() +
+                                   block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
+                                              fmt::format("velocity = [0.0, {:.17g}, 0.0]",
+                                                          1e-3 * depth * std::sqrt(k_n / rock_density)))));
     // The square starts upwards through its rest position; the 20th return in that direction ends 20 periods.
     int returns = 0;
     double end = 0.0;
@@ -61,10 +61,11 @@ TEST(Rest, PeriodOfASquareOnAPlane) {
     }
     ASSERT_EQ(returns, num_periods);
     const double measured = end / num_periods;
-    expect_value(fmt::format("B1 k_n={:g}, d/L={:.1e}: period, s", k_n, depth), period, measured, 1.0 * depth);
+    expect_value(fmt::format("B1 k_n={:g}, d/L={:.1e}: period, s", k_n, depth), period, measured,
+                 1.0 * depth);
     // Truncation: the leapfrog's period is short by W^2/24 = 1.6e-6, the amplitude adds 1e-6 d/L.
-    expect_value(fmt::format("B1 k_n={:g}: period with the depth's share, s", k_n), period / std::sqrt(1.0 - depth),
-                 measured, 3e-6);
+    expect_value(fmt::format("B1 k_n={:g}: period with the depth's share, s", k_n),
+                 period / std::sqrt(1.0 - depth), measured, 3e-6);
   }
 }
 
@@ -75,13 +76,16 @@ TEST(Rest, SymmetricWedgeOnAPlane) {
   constexpr double depth = 0.01;
   for (const double half_angle : {2.5, 15.0, 30.0, 45.0, 60.0}) {
     const double half_width = std::tan(half_angle * degree);
-    Simulation simulation(Communicator::self(),
-                          scene_of(head({.gravity = {}, .normal_stiffness = k_n}) +
-                                   block_toml("floor", rectangle({-9.0, -4.0}, {9.0, 0.0}), "fixed = true") +
-                                   block_toml("wedge", {{0.0, -depth}, {half_width, 1.0 - depth}, {-half_width, 1.0 - depth}})));
+    Simulation simulation(
+        Communicator::self(),
+        scene_of(
+            head({.gravity = {}, .normal_stiffness = k_n}) +
+            block_toml("floor", rectangle({-9.0, -4.0}, {9.0, 0.0}), "fixed = true") +
+            block_toml("wedge", {{0.0, -depth}, {half_width, 1.0 - depth}, {-half_width, 1.0 - depth}})));
     const RigidDof force = simulation.forces()[row_of(simulation, 1)];
     expect_value(fmt::format("B2 wedge of half-angle {} degrees, 10 mm deep: force, N/m", half_angle),
-                 0.5 * k_n * depth * depth * half_width * (1.0 + std::sin(half_angle * degree)), force.u.y, 1e-12);
+                 0.5 * k_n * depth * depth * half_width * (1.0 + std::sin(half_angle * degree)), force.u.y,
+                 1e-12);
     EXPECT_LE(std::abs(force.u.x) + std::abs(force.r), 1e-12 * force.u.y);
   }
 }

@@ -41,8 +41,8 @@ TEST(StaticIncline, StaysWhereItIs) {
                           scene_of(incline.toml(incline.flat_square(0.0), {.duration = settling + watch})));
     const double largest = c.x + 1.0;
     const double limit = 1e-12 + 4.0 * (std::nextafter(largest, 2.0 * largest) - largest);
-    expect_below(fmt::format("B4 th={} phi={} at x={} m: motion from 60 to 160 s", c.slope, c.friction, c.x), limit,
-                 drift(simulation));
+    expect_below(fmt::format("B4 th={} phi={} at x={} m: motion from 60 to 160 s", c.slope, c.friction, c.x),
+                 limit, drift(simulation));
   }
 }
 
@@ -59,12 +59,13 @@ TEST(StaticIncline, AnotherBlockFarAwayChangesNoBit) {
   while (!a.finished()) {
     a.step();
     b.step();
-    const bool same = displacement_of(a, 1) == displacement_of(b, 1) && velocity_of(a, 1) == velocity_of(b, 1);
+    const bool same =
+        displacement_of(a, 1) == displacement_of(b, 1) && velocity_of(a, 1) == velocity_of(b, 1);
     different += same ? 0 : 1;
   }
   ASSERT_GT(b.counters().refreshes, a.counters().refreshes);
-  expect_below(fmt::format("B4 another block far away: steps with a different bit of {}", a.step_count()), 0.0,
-               static_cast<double>(different));
+  expect_below(fmt::format("B4 another block far away: steps with a different bit of {}", a.step_count()),
+               0.0, static_cast<double>(different));
 }
 
 } // namespace

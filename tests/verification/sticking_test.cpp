@@ -21,11 +21,16 @@ TEST(Sticking, EnergyOfATangentialOscillationIsBounded) {
   const double weight = rock_density * earth_gravity;
   const double depth = 1.0 - std::sqrt(1.0 - 2.0 * weight / k_n);
   // A contact that moves at t = 0 starts on its cap otherwise.
-  Simulation simulation(
-      Communicator::self(),
-      scene_of(head({.duration = num_steps * dt, .time_step = dt, .normal_stiffness = k_n, .friction_deg = 35.0, .damping = 0.0, .run_keys = "initial_friction = \"zero\""}) +
-               block_toml("plane", rectangle({-3.0, -2.0}, {4.0, 0.0}), "fixed = true") +
-               block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}), "velocity = [1e-3, 0.0, 0.0]")));
+  Simulation simulation(Communicator::self(),
+                        scene_of(head({.duration = num_steps * dt,
+                                       .time_step = dt,
+                                       .normal_stiffness = k_n,
+                                       .friction_deg = 35.0,
+                                       .damping = 0.0,
+                                       .run_keys = "initial_friction = \"zero\""}) +
+                                 block_toml("plane", rectangle({-3.0, -2.0}, {4.0, 0.0}), "fixed = true") +
+                                 block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
+                                            "velocity = [1e-3, 0.0, 0.0]")));
   EnergyLedger ledger(simulation);
   const double supplied = 0.5 * rock_density * 1e-6;
   double first = 0.0;

@@ -70,7 +70,8 @@ Outcome collide(const std::string &toml) {
     last = force;
     out.max_force = std::max(out.max_force, norm(force));
     out.momentum = std::max(out.momentum, norm(momentum() - before) / scale);
-    out.finite = out.finite && std::isfinite(force.x) && std::isfinite(force.y) && std::isfinite(momentum().x);
+    out.finite =
+        out.finite && std::isfinite(force.x) && std::isfinite(force.y) && std::isfinite(momentum().x);
   }
   EXPECT_FALSE(simulation.fault().has_value());
   out.jump = jump / out.max_force;
@@ -82,13 +83,10 @@ Outcome collide(const std::string &toml) {
 /// Two copies of a shape, tips `gap` apart, fly at each other at 0.1 m/s each.
 Outcome tip_to_tip(const std::vector<Vec2> &shape, double offset, double tilt, double friction) {
   constexpr double gap = 0.001;
-  return collide(head({.duration = 0.2,
-                       .time_step = 2e-6,
-                       .gravity = {},
-                       .friction_deg = friction,
-                       .damping = 0.0}) +
-                 block_toml("right", placed(shape, tilt, {0.5 * gap, offset}), "velocity = [-0.1, 0.0, 0.0]") +
-                 block_toml("left", placed(mirrored(shape), 0.0, {-0.5 * gap, 0.0}), "velocity = [0.1, 0.0, 0.0]"));
+  return collide(
+      head({.duration = 0.2, .time_step = 2e-6, .gravity = {}, .friction_deg = friction, .damping = 0.0}) +
+      block_toml("right", placed(shape, tilt, {0.5 * gap, offset}), "velocity = [-0.1, 0.0, 0.0]") +
+      block_toml("left", placed(mirrored(shape), 0.0, {-0.5 * gap, 0.0}), "velocity = [0.1, 0.0, 0.0]"));
 }
 
 // The force starts from zero and follows the overlap: at this dt the largest change in a step is a small
@@ -132,10 +130,10 @@ TEST(Tips, EdgesInOneLine) {
   const std::string start = head({.duration = 0.5, .time_step = 5e-5, .friction_deg = 30.0});
   const std::string floor = block_toml("floor", rectangle({-3.0, -2.0}, {3.0, 0.0}), "fixed = true");
   for (const double shift : {0.0, 0.5, 1.0}) {
-    Simulation simulation(Communicator::self(), scene_of(start + floor +
-                                                         block_toml("left", rectangle({-1.0, 0.0}, {0.0, 1.0})) +
-                                                         block_toml("right", rectangle({0.0, 0.0}, {1.0, 1.0})) +
-                                                         block_toml("top", rectangle({shift - 1.0, 1.0}, {shift, 2.0}))));
+    Simulation simulation(Communicator::self(),
+                          scene_of(start + floor + block_toml("left", rectangle({-1.0, 0.0}, {0.0, 1.0})) +
+                                   block_toml("right", rectangle({0.0, 0.0}, {1.0, 1.0})) +
+                                   block_toml("top", rectangle({shift - 1.0, 1.0}, {shift, 2.0}))));
     run(simulation);
     double largest = 0.0;
     for (const RigidDof &d : simulation.blocks().displacement) {
@@ -143,7 +141,8 @@ TEST(Tips, EdgesInOneLine) {
       largest = std::max({largest, norm(d.u), std::abs(d.r)});
     }
     // Twice the closure of the joints below: 5.1e-5 m and 2.6e-5 m.
-    expect_below(fmt::format("B8 three squares flush, the upper one shifted by {}: motion, m", shift), 2e-4, largest);
+    expect_below(fmt::format("B8 three squares flush, the upper one shifted by {}: motion, m", shift), 2e-4,
+                 largest);
   }
 }
 

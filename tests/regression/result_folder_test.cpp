@@ -1,0 +1,263 @@
+// The files a run leaves: names, columns, keys, first and last times; and the same bytes for any ranks when
+// started as users start it.
+
+#include "gcpdda/io/run_comparison.hpp"
+
+#include "child_process.hpp"
+#include "sample_scenes.hpp"
+#include "support/run_facts.hpp"
+#include "support/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <set>
+
+namespace gcpdda {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::count_of;
+using testing::file_text;
+using testing::lines_of;
+using testing::Outcome;
+using testing::run_gcpdda;
+using testing::summary_number;
+using testing::summary_text;
+using testing::WorkFolder;
+
+std::vector<double> first_column(const fs::path &history) {
+  std::vector<double> times;
+  for (const std::string &line : lines_of(file_text(history))) {
+    if (!line.starts_with("time")) {
+      times.push_back(std::stod(line.substr(0, line.find(','))));
+    }
+  }
+  return times;
+}
+
+/// Two runs of the small scene, shared by the tests of its files: 4 outputs and 8 history rows in 0.1 s.
+class ResultFolder : public ::testing::Test {
+protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<WorkFolder>();
+    folder_->write("scene.toml", testing::small_scene());
+    outcome_ = run_gcpdda(3, {"run", "scene.toml", "--out", "out"}, *folder_);
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+  void SetUp() override { ASSERT_EQ(outcome_.exit_code, 0) << outcome_.err; }
+  static fs::path out() { return *folder_ / "out"; }
+
+  static std::unique_ptr<WorkFolder> folder_;
+  static Outcome outcome_;
+};
+
+std::unique_ptr<WorkFolder> ResultFolder::folder_;
+Outcome ResultFolder::outcome_;
+
+TEST_F(ResultFolder, HoldsTheFilesOfTheContractAndNoOthers) {
+  std::set<std::string> expected{"decomposition",
+                                 "decomposition/owners_0.csv",
+                                 "frames",
+                                 "frames/topology_000000.h5",
+                                 "history",
+                                 "history/energy.csv",
+                                 "history/floor.csv",
+                                 "history/slider.csv",
+                                 "run.hdf.series",
+                                 "run.log",
+                                 "run.xdmf",
+                                 "scene.toml",
+                                 "summary.json"};
+  expected.insert(fmt::format("decomposition/owners_{:.0f}.csv", summary_number(out(), "steps")));
+  for (int index = 0; index <= 4; ++index) {
+    expected.insert(fmt::format("frames/frame_{:06}.hdf", index));
+    expected.insert(fmt::format("frames/contacts_{:06}.hdf", index));
+  }
+  const std::vector<std::string> found = testing::listing(out());
+  EXPECT_EQ(std::set<std::string>(found.begin(), found.end()), expected);
+}
+
+TEST_F(ResultFolder, HasHistoriesWithTheirColumns) {
+  for (const char *name : {"slider", "floor"}) {
+    const auto lines = lines_of(file_text(out() / "history" / (std::string(name) + ".csv")));
+    EXPECT_EQ(lines.at(0), "time[s],x[m],y[m],rotation[rad],vx[m/s],vy[m/s],omega[rad/s],sxx[Pa],syy[Pa],"
+                           "sxy[Pa],fx[N/m],fy[N/m]");
+    EXPECT_EQ(lines.size(), 10U) << "header, t = 0 and 8 rows";
+    for (const std::string &line : lines) {
+      EXPECT_EQ(count_of(line, ","), 11) << line;
+    }
+  }
+  const auto energy = lines_of(file_text(out() / "history/energy.csv"));
+  EXPECT_EQ(energy.at(0),
+            "time[s],kinetic[J/m],strain[J/m],contact_normal[J/m],contact_stick[J/m],gravity[J/m],"
+            "friction_loss[J/m],damping_loss[J/m],boundary_work[J/m],residual[J/m],"
+            "unbalanced_ratio[-],max_speed[m/s]");
+  EXPECT_EQ(energy.size(), 10U);
+  for (const std::string &line : energy) {
+    EXPECT_EQ(count_of(line, ","), 11) << line;
+  }
+}
+
+TEST_F(ResultFolder, TellsAtZeroWhatTheSceneSays) {
+  const std::string slider = lines_of(file_text(out() / "history/slider.csv")).at(1);
+  EXPECT_TRUE(slider.starts_with("0,0.5,0.5,0,1.5,0,0,")) << slider;
+  const FrameContent frame = read_frame(out() / "frames/frame_000000.hdf");
+  EXPECT_EQ(frame.time, 0.0);
+  EXPECT_EQ(frame.block, (std::vector<std::int64_t>{0, 1, 2})) << "rows in BlockId order";
+  EXPECT_EQ(frame.kind, (std::vector<std::uint8_t>{0, 1, 1}));
+  EXPECT_EQ(frame.offsets, (std::vector<std::int64_t>{0, 4, 8, 12}));
+  EXPECT_EQ(frame.velocity[1][0], 1.5);
+}
+
+TEST_F(ResultFolder, EndsAtTheDurationExactly) {
+  const double last = 0.1;
+  EXPECT_EQ(summary_number(out(), "time"), last);
+  EXPECT_EQ(read_frame(out() / "frames/frame_000004.hdf").time, last);
+  EXPECT_EQ(read_contact_frame(out() / "frames/contacts_000004.hdf").time, last);
+  for (const char *name : {"slider", "floor", "energy"}) {
+    const std::vector<double> times = first_column(out() / "history" / (std::string(name) + ".csv"));
+    EXPECT_EQ(times.front(), 0.0);
+    EXPECT_EQ(times.back(), last);
+    for (std::size_t row = 0; row < times.size(); ++row) {
+      EXPECT_NEAR(times[row], 0.0125 * static_cast<double>(row), 1e-15);
+    }
+  }
+}
+
+TEST_F(ResultFolder, HasASummaryOfAllKeys) {
+  const std::string text = file_text(out() / "summary.json");
+  for (const char *key : {"ranks",
+                          "blocks",
+                          "fixed_blocks",
+                          "steps",
+                          "time",
+                          "time_step",
+                          "time_step_min",
+                          "contacts",
+                          "contact_steps",
+                          "evaluations_per_rank",
+                          "wall_s",
+                          "cpu_s",
+                          "setup_wall_s",
+                          "output_wall_s",
+                          "total_wall_s",
+                          "max_overlap",
+                          "energy",
+                          "imbalance",
+                          "bytes_sent_per_step",
+                          "messages_per_step",
+                          "phases",
+                          "verdict",
+                          "message"}) {
+    EXPECT_EQ(count_of(text, fmt::format("\"{}\": ", key)), 1) << key;
+  }
+  EXPECT_EQ(summary_number(out(), "ranks"), 3);
+  EXPECT_EQ(summary_number(out(), "blocks"), 2);
+  EXPECT_EQ(summary_number(out(), "fixed_blocks"), 1);
+  EXPECT_EQ(summary_number(out(), "contacts"), 2) << "slider and tower on the floor";
+  EXPECT_EQ(count_of(summary_text(out(), "evaluations_per_rank"), ","), 2) << "one number a rank";
+  EXPECT_GT(summary_number(out(), "max_overlap"), 0.0);
+  // The row of energies is the last one of the history.
+  const std::string row = lines_of(file_text(out() / "history/energy.csv")).back();
+  const auto comma = row.find(',');
+  EXPECT_EQ(summary_number(out(), "kinetic"), std::stod(row.substr(comma + 1)));
+}
+
+TEST_F(ResultFolder, HasASeriesOfAllFrames) {
+  const std::string series = file_text(out() / "run.hdf.series");
+  EXPECT_EQ(count_of(series, "\"file-series-version\": \"1.0\""), 1) << series;
+  EXPECT_EQ(count_of(series, "\"name\""), 5) << series;
+  for (int index = 0; index <= 4; ++index) {
+    EXPECT_EQ(count_of(series, fmt::format("\"name\": \"frames/frame_{:06}.hdf\", \"time\": ", index)), 1);
+  }
+  const std::string key = "\"time\": ";
+  EXPECT_EQ(std::stod(series.substr(series.rfind(key) + key.size())), 0.1);
+}
+
+TEST_F(ResultFolder, HasTheOwnerOfEveryMobileBlock) {
+  const auto lines = lines_of(file_text(out() / "decomposition/owners_0.csv"));
+  ASSERT_EQ(lines.size(), 4U);
+  EXPECT_EQ(lines[0], "block,rank");
+  EXPECT_EQ(lines[1], "0,-1") << "the floor is everybody's";
+  for (const std::size_t block : {1U, 2U}) {
+    const int rank = std::stoi(lines[block + 1].substr(lines[block + 1].find(',') + 1));
+    EXPECT_GE(rank, 0);
+    EXPECT_LT(rank, 3);
+  }
+}
+
+// Output at times that are not multiples of each other: the last row and frame are extra, not shifted.
+TEST(Times, OfAnIntervalThatDoesNotDivideTheDuration) {
+  const WorkFolder folder;
+  folder.write("scene.toml", testing::small_scene());
+  const Outcome outcome = run_gcpdda(0,
+                                     {"run", "scene.toml", "--out", "out", "--set", "output.interval=0.04",
+                                      "--set", "output.history_interval=0.02", "--set", "run.duration=0.11"},
+                                     folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const fs::path out = folder / "out";
+  EXPECT_EQ(first_column(out / "history/energy.csv"),
+            (std::vector<double>{0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.11}));
+  for (const auto &[index, time] : {std::pair(1, 0.04), std::pair(2, 0.08), std::pair(3, 0.11)}) {
+    EXPECT_EQ(read_frame(out / fmt::format("frames/frame_{:06}.hdf", index)).time, time);
+  }
+  EXPECT_FALSE(fs::exists(out / "frames/frame_000004.hdf"));
+}
+
+TEST(Times, AGivenStepThatDoesNotFitIsLoweredOnce) {
+  const WorkFolder folder;
+  folder.write("scene.toml", testing::small_scene());
+  const Outcome outcome =
+      run_gcpdda(0, {"run", "scene.toml", "--out", "out", "--set", "run.time_step=9e-4"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_of(outcome.err, "info: the time step is lowered from 0.0009 s to "), 1) << outcome.err;
+  const double step = summary_number(folder / "out", "time_step");
+  EXPECT_LE(step, 9e-4);
+  EXPECT_NEAR(step * summary_number(folder / "out", "steps"), 0.1, 1e-15);
+}
+
+TEST(Times, AGivenStepAboveTheBoundIsUsedWithAWarning) {
+  const WorkFolder folder;
+  folder.write("scene.toml", testing::small_scene());
+  const Outcome outcome =
+      run_gcpdda(0, {"run", "scene.toml", "--out", "out", "--set", "run.time_step=2.5e-3"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_of(outcome.err, "warning: the time step 0.0025 s is above the recommended "), 1)
+      << outcome.err;
+  EXPECT_EQ(summary_number(folder / "out", "time_step"), 2.5e-3);
+  EXPECT_EQ(summary_number(folder / "out", "steps"), 40);
+}
+
+TEST(Contacts, AreLeftOutOnRequest) {
+  const WorkFolder folder;
+  folder.write("scene.toml", testing::small_scene());
+  const Outcome outcome =
+      run_gcpdda(0, {"run", "scene.toml", "--out", "out", "--set", "output.contacts=false"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const std::string &name : testing::listing(folder / "out/frames")) {
+    EXPECT_FALSE(name.starts_with("contacts")) << name;
+  }
+}
+
+// As users start it. How it crosses ranks is asserted by the tests in tests/parallel; here the way through
+// mpirun, the reader and the command line is added.
+TEST(Identity, OfRunsStartedByMpirun) {
+  const WorkFolder folder;
+  folder.write("pile.toml", testing::falling_pile_toml(40, 0.4));
+  for (const int ranks : {0, 1, 2, 3}) {
+    const Outcome outcome =
+        run_gcpdda(ranks, {"run", "pile.toml", "--out", fmt::format("on{}", ranks)}, folder);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(summary_number(folder / fmt::format("on{}", ranks), "ranks"), std::max(1, ranks));
+    EXPECT_EQ(compare_runs(folder / "on0", folder / fmt::format("on{}", ranks)), std::vector<std::string>())
+        << ranks << " ranks";
+  }
+  EXPECT_GE(summary_number(folder / "on3", "cross_rank_contacts"), 1);
+  EXPECT_GE(summary_number(folder / "on3", "migrations"), 1);
+  EXPECT_GE(summary_number(folder / "on3", "refreshes"), 1);
+}
+
+} // namespace
+} // namespace gcpdda
