@@ -17,24 +17,24 @@ struct Inside {
   bool leaves = false;      ///< the stretch ends before the edge does
 };
 
-/// Where all lines alpha + beta s are positive on [0, length]; an empty stretch has begin >= end.
+/// Where all lines alpha + beta s are positive on [0, length]; an empty stretch has begin >= end. Most lines
+/// cut nothing off, which their values at the ends tell without a division.
 Inside positive_stretch(std::span<const double> alpha, std::span<const double> beta, double length) {
   Inside in{0.0, length, none, false};
   for (std::size_t j = 0; j < alpha.size(); ++j) {
     if (beta[j] > 0.0) {
-      const double root = -alpha[j] / beta[j];
-      if (root > in.begin || (root == in.begin && in.entry != none && beta[j] < beta[in.entry])) {
-        in.begin = root;
-        in.entry = j;
-      }
-    } else if (beta[j] < 0.0) {
-      const double root = -alpha[j] / beta[j];
-      if (root < in.end) {
-        in.end = root;
-        in.leaves = true;
+      if (alpha[j] < 0.0) {
+        const double root = -alpha[j] / beta[j];
+        if (root > in.begin || (root == in.begin && in.entry != none && beta[j] < beta[in.entry])) {
+          in.begin = root;
+          in.entry = j;
+        }
       }
     } else if (alpha[j] <= 0.0) {
       in.end = 0.0;
+    } else if (alpha[j] + beta[j] * in.end < 0.0) {
+      in.end = std::min(in.end, -alpha[j] / beta[j]);
+      in.leaves = true;
     }
     if (in.begin >= in.end) {
       break;
@@ -102,18 +102,18 @@ void Overlap::walk_envelope(Piece piece, std::size_t line, double s, double s_en
   while (true) {
     std::size_t next = none;
     double s_next = s_end;
+    double lowest = alpha_[line] + beta_[line] * s_next;
     for (std::size_t j = 0; j < alpha_.size(); ++j) {
-      if (beta_[j] < beta_[line]) {
-        const double crossing = (alpha_[j] - alpha_[line]) / (beta_[line] - beta_[j]);
-        if (crossing < s_next || (crossing == s_next && next != none && beta_[j] < beta_[next])) {
-          s_next = crossing;
-          next = j;
-        }
+      // A line of smaller slope that is lower at s_next crosses before it.
+      if (beta_[j] < beta_[line] && alpha_[j] + beta_[j] * s_next < lowest) {
+        s_next = std::max(s, (alpha_[j] - alpha_[line]) / (beta_[line] - beta_[j]));
+        lowest = alpha_[line] + beta_[line] * s_next;
+        next = j;
       }
     }
     if (s_next > s) {
       piece.length = s_next - s;
-      piece.depth_end = std::max(0.0, alpha_[line] + beta_[line] * s_next);
+      piece.depth_end = std::max(0.0, lowest);
       pieces_.push_back(piece);
       piece = {piece.end(), piece.normal, 0.0, piece.depth_end, 0.0, false};
       s = s_next;

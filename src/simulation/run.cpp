@@ -189,12 +189,14 @@ private:
     const auto steps = static_cast<double>(simulation_.step_count());
     const double elapsed = seconds_since(loop_start);
     const double share = steps / static_cast<double>(simulation_.plan().num_steps);
-    log_->progress(fmt::format(
-        "{:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  remaining {:.0f} s  unbalanced {:.2e}  "
-        "max speed {:.3g} m/s",
-        100.0 * share, simulation_.time(), simulation_.step_count(),
-        steps * static_cast<double>(simulation_.num_blocks()) / elapsed, elapsed * (1.0 - share) / share,
-        energy_.unbalanced_ratio, energy_.max_speed));
+    constexpr std::size_t bar_length = 20;
+    const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_length));
+    log_->progress(
+        fmt::format("[{:.<{}}] {:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  remaining {:.0f} s  "
+                    "unbalanced {:.1e}  max speed {:.3g} m/s",
+                    std::string(filled, '='), bar_length, 100.0 * share, simulation_.time(),
+                    simulation_.step_count(), steps * static_cast<double>(simulation_.num_blocks()) / elapsed,
+                    elapsed * (1.0 - share) / share, energy_.unbalanced_ratio, energy_.max_speed));
   }
 
   void write_due() {
@@ -294,9 +296,9 @@ private:
     fill(summary);
     on_root(communicator_, [&] { write_summary(directory_, summary); });
     write_owners_of_blocks();
+    log_->line("wall seconds   min      mean       max over ranks");
     for (const auto &[name, seconds] : summary.phases) {
-      log_->line(fmt::format("{:>8} {:9.3f} {:9.3f} {:9.3f} s (min, mean, max over ranks)", name, seconds[0],
-                             seconds[1], seconds[2]));
+      log_->line(fmt::format("{:>8} {:9.3f} {:9.3f} {:9.3f}", name, seconds[0], seconds[1], seconds[2]));
     }
     log_->line(fmt::format(
         "{} steps, {} contacts at the end, largest overlap {:.3g} m, energy residual {:.3g} J/m, "

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -80,6 +81,13 @@ TEST(Friction, CutsAtTheCapAndCountsTheSlip) {
   const PairForce &back = bench.move(0, {{-0.5 * cap / tangential, 0.0}, 0.0});
   EXPECT_NEAR(back.force.x, -0.5 * cap, 4.0 * rounding * cap);
   EXPECT_EQ(bench.memory().state, ContactState::stick);
+}
+
+TEST(Friction, CohesionActsOverTheExtent) {
+  ContactBench bench(
+      system_of({rectangle({0.0, -depth}, {3.0, 1.0})}, {rectangle({-20.0, -5.0}, {20.0, 0.0})}),
+      one_law(stiffness, 0.0, 200.0));
+  EXPECT_NEAR(bench.evaluate().cap, 600.0, 600.0 * rounding);
 }
 
 TEST(Friction, NoneWithoutAStrength) {
@@ -234,6 +242,36 @@ TEST(Dashpot, NeverPullsHoweverFastTheSeparation) {
       const PairForce &force = bench.evaluate();
       EXPECT_GE(dot(force.force, normal), -1e-12 * elastic) << name << " at " << speed << " m/s";
     }
+  }
+}
+
+// A flush block that lifts off and spins: max(-p, d) on both faces, by sampling. The pressure is cut within
+// the faces, at begin and end of pieces.
+TEST(Dashpot, IsCutWhereTensionWouldBegin) {
+  constexpr double xi = 0.1;
+  const double half_damping = xi * std::sqrt(stiffness * 1000.0); // c'/2, L_ref = 1, m = 1000
+  for (const RigidDof velocity :
+       {RigidDof{{0.0, 0.5}, 0.0}, {{0.0, 0.1}, 1.0}, {{0.0, 0.3}, -2.0}, {{0.0, 0.0}, 3.0}}) {
+    ContactBench bench = square_on_plane(0.0, 0.0, xi);
+    bench.evaluate();
+    bench.system.velocity[0] = velocity;
+    const PairForce &force = bench.evaluate();
+    double total = 0.0;
+    double moment = 0.0; // about x = 0
+    constexpr int points = 20000;
+    for (int i = 0; i < points; ++i) {
+      const double x = (i + 0.5) / points;
+      const double d = -half_damping * (velocity.u.y + velocity.r * (x - 0.5));
+      const double on_bottom = 0.5 * stiffness * depth;
+      const double on_plane = 0.5 * stiffness * std::min({depth, x, 1.0 - x});
+      const double q = std::max(-on_bottom, d) + std::max(-on_plane, d);
+      total += q / points;
+      moment += q * x / points;
+    }
+    // Midpoint rule with a few kinks: 1/points^2 of slopes up to k_n/2.
+    const double tolerance = 10.0 * stiffness / points / points;
+    EXPECT_NEAR(force.damping_force.y, total, tolerance);
+    EXPECT_NEAR(force.damping_moment + force.origin.x * force.damping_force.y, moment, tolerance);
   }
 }
 
