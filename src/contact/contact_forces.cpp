@@ -106,30 +106,49 @@ void add_force(PairForce &force, Vec2 at, Vec2 f) {
 
 } // namespace
 
-/// The dashpot along n_r, piece by piece.
+namespace {
+
+/// u.n of a piece: how far it faces the other block along n_r.
+double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
+  return is_lower ? -dot(normal, piece.normal) : dot(normal, piece.normal);
+}
+
+/// Share of the facing pieces' pressure along n_r that the resultant keeps: what the dashpot may take away.
+double releasable_share(const Overlap &overlap, Vec2 normal, double resultant) {
+  double facing_pressure = 0.0;
+  for (std::size_t i = 0; i < overlap.pieces().size(); ++i) {
+    const Piece &piece = overlap.pieces()[i];
+    const double facing = std::max(0.0, facing_of(piece, i < overlap.num_first(), normal));
+    facing_pressure += facing * 0.5 * piece.length * (piece.depth_begin + piece.depth_end);
+  }
+  return std::min(1.0, resultant / facing_pressure);
+}
+
+} // namespace
+
 void ContactForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
                                        PairForce &force) const {
+  const Vec2 n = force.normal;
   const std::span<const Piece> pieces = overlap_.pieces();
+  const double share = releasable_share(overlap_, n, force.normal_force / pair.half_stiffness);
   double total = 0.0;
   Vec2 moment;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece &piece = pieces[i];
-    const double facing =
-        i < overlap_.num_first() ? -dot(force.normal, piece.normal) : dot(force.normal, piece.normal);
+    const double facing = facing_of(piece, i < overlap_.num_first(), n);
     if (facing <= 0.0) {
       continue;
     }
     // (v_own - v_other).u is the closing speed for both blocks' pieces.
     const Vec2 begin = piece.begin - force.origin;
     const double rate = pair.damping * facing;
-    const double d0 = -rate * dot(velocity.at(begin), force.normal);
-    const double d1 = -rate * dot(velocity.at(piece.end() - force.origin), force.normal);
+    const double releasable = share * facing * pair.half_stiffness;
     const TractionIntegral q = integrate_without_tension(
-        piece.length, pair.half_stiffness * piece.depth_begin, pair.half_stiffness * piece.depth_end, d0, d1);
+        piece.length, releasable * piece.depth_begin, releasable * piece.depth_end,
+        -rate * dot(velocity.at(begin), n), -rate * dot(velocity.at(piece.end() - force.origin), n));
     total += q.total;
     moment += q.total * begin + q.along * perp(piece.normal);
   }
-  const Vec2 n = force.normal;
   force.force += total * n;
   force.damping_force += total * n;
   force.damping_moment += cross(moment, n);

@@ -204,6 +204,13 @@ template <class Distance> double integrate_linear(const Polygon &polygon, const 
 /// edge line is nearest.
 double integrate_distance(const Polygon &region, const ConvexView &block) {
   double sum = 0.0;
+  double largest = 0.0;
+  for (const Vec2 x : block.vertex) {
+    largest = std::max({largest, std::abs(x.x), std::abs(x.y)});
+  }
+  // Collinear edges share a line up to the rounding of their vertices: the first of them takes the whole
+  // cell.
+  const double same_line = 64.0 * std::numeric_limits<double>::epsilon() * largest;
   for (std::size_t i = 0; i < block.vertex.size(); ++i) {
     const auto depth = [&](std::size_t line, Vec2 x) {
       return dot(block.normal[line], block.vertex[line] - x);
@@ -211,9 +218,14 @@ double integrate_distance(const Polygon &region, const ConvexView &block) {
     Polygon cell = region;
     for (std::size_t j = 0; j < block.vertex.size() && cell.size() >= 3; ++j) {
       const auto margin = [&](Vec2 x) { return depth(j, x) - depth(i, x); };
-      if (j < i && std::all_of(cell.begin(), cell.end(), [&](Vec2 x) { return margin(x) == 0.0; })) {
-        cell.clear(); // collinear edges share a line: its cell has been counted
-      } else if (j != i) {
+      if (j == i) {
+        continue;
+      }
+      if (std::all_of(cell.begin(), cell.end(), [&](Vec2 x) { return std::abs(margin(x)) <= same_line; })) {
+        if (j < i) {
+          cell.clear();
+        }
+      } else {
         cell = keep_positive(cell, margin);
       }
     }

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 using testing::summary_number;
 using testing::summary_text;
 
-/// A wall of bricks in running bond, pressed together a little, each with its own velocity: contacts in the
-/// middle of everything, whatever way the wall is cut.
+/// A wall of bricks in running bond, pressed together a little, thrown as a whole and each with a velocity of
+/// its own: contacts in the middle of everything, whatever way the wall is cut.
 std::string shaken_wall_toml(int rows, int columns, double duration) {
   const double squeeze = 0.004;
   std::string toml = fmt::format(R"([run]
@@ -46,8 +46,8 @@ block = "brick3_2"
     for (int column = 0; column < columns; ++column) {
       const Vec2 low{column + 0.5 * (row % 2), 0.5 * row};
       const Vec2 high{low.x + 1.0 + squeeze, low.y + 0.5 + squeeze};
-      const double vx = speed(2.0);
-      const double vy = speed(2.0);
+      const double vx = 4.0 + speed(2.0);
+      const double vy = 2.0 + speed(2.0);
       toml += testing::block_toml(fmt::format("brick{}_{}", row, column), testing::rectangle(low, high),
                                   fmt::format("velocity = [{:.6g}, {:.6g}, {:.6g}]", vx, vy, speed(0.5)));
     }
@@ -110,6 +110,7 @@ std::set<std::string> ranks_with_blocks(const fs::path &run) {
   return ranks;
 }
 
+// Long and chaotic: one bit lost anywhere is seen at the end. Few contacts lie between ranks at a time.
 TEST(Identity, OfAFallingPile) {
   const TwoRuns runs(testing::scene_of(testing::falling_pile_toml(160, 0.9)));
   EXPECT_GE(runs.counted("refreshes"), 1);
@@ -117,10 +118,11 @@ TEST(Identity, OfAFallingPile) {
   EXPECT_EQ(ranks_with_blocks(runs.together()).size(), static_cast<std::size_t>(runs.world().size()));
   if (runs.world().size() > 1) {
     EXPECT_GE(runs.counted("migrations"), 1);
-    EXPECT_GE(runs.counted("cross_rank_contacts"), 4);
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 2);
   }
 }
 
+// More than fifty contacts between ranks, whatever way the wall is cut.
 TEST(Identity, OfAShakenWall) {
   const TwoRuns runs(testing::scene_of(shaken_wall_toml(50, 25, 0.06)));
   EXPECT_GE(runs.counted("refreshes"), 1);

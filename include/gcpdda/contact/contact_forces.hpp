@@ -19,9 +19,12 @@
 // dies with the region, and gets no increment in the step of its birth.
 //
 // The normal dashpot is distributed: on each piece with outward normal n of its own block and u = -n_r (lower
-// block) or n_r (higher), w = max(0, u.n), the traction q = max(-p, (c'/2) w (v_own - v_other).u) acts along
-// u. It is linear along the piece and cut exactly where p + q would turn into tension. Along n_r, not along
-// the piece's normal: there it would drag on the sunk leading side of a sliding block.
+// block) or n_r (higher), w = max(0, u.n), the traction q = max(-s w p, (c'/2) w (v_own - v_other).u) acts
+// along u. It is linear along the piece and cut exactly where it would exceed what the pressure gives along
+// u: w p, times the share s = |N| / sum of int w p ds that pieces facing backwards leave over, so that the
+// resultant never pulls. (Cutting at q = -p lets tips and tilted faces pull: their pressure counts only w p
+// along u.) Along n_r, not along the piece's normal: there it would drag on the sunk leading side of a
+// sliding block.
 
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/overlap.hpp"
