@@ -296,9 +296,10 @@ ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates 
     }
     report.normals_undefined += forces_[k].normal_undefined ? 1 : 0;
     report.max_overlap = std::max(report.max_overlap, forces_[k].overlap);
-    if (forces_[k].overlap > pair.allowed_overlap && !report.fault) {
-      report.fault = Fault{Fault::Cause::too_deep, system.properties[pair.lower.value].id,
-                           system.properties[pair.higher.value].id, forces_[k].overlap, pair.allowed_overlap};
+    if (forces_[k].overlap > pair.allowed_overlap) {
+      keep_first(report.fault,
+                 {Fault::Cause::too_deep, system.properties[pair.lower.value].id,
+                  system.properties[pair.higher.value].id, forces_[k].overlap, pair.allowed_overlap});
     }
   }
   return report;

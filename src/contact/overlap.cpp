@@ -43,6 +43,23 @@ Inside positive_stretch(std::span<const double> alpha, std::span<const double> b
   return in;
 }
 
+/// The same stretch after the edge's start has been moved to its entry; `length` is what is left of the edge.
+/// The ends move by rounding only: the root of a line that is parallel but for rounding could move anywhere.
+Inside near_entry(std::span<const double> alpha, std::span<const double> beta, const Inside &in,
+                  double length, double rounding) {
+  Inside near = in;
+  near.begin = std::clamp(-alpha[in.entry] / beta[in.entry], -rounding, rounding);
+  near.end = length;
+  for (std::size_t j = 0; j < alpha.size() && in.leaves; ++j) {
+    if (beta[j] < 0.0) {
+      near.end = std::min(near.end, -alpha[j] / beta[j]);
+    }
+  }
+  const double old_end = in.end - in.begin;
+  near.end = std::clamp(near.end, old_end - rounding, old_end + rounding);
+  return near;
+}
+
 std::size_t lowest_at_start(std::span<const double> alpha, std::span<const double> beta) {
   std::size_t lowest = 0;
   for (std::size_t j = 1; j < alpha.size(); ++j) {
@@ -61,7 +78,7 @@ void Overlap::clip_edges(const ConvexView &own, const ConvexView &other, Potenti
   alpha_.resize(num_lines);
   beta_.resize(num_lines);
   for (std::size_t e = 0; e < own.vertex.size(); ++e) {
-    const Vec2 a = own.vertex[e];
+    Vec2 a = own.vertex[e];
     const Vec2 b = own.vertex[e + 1 == own.vertex.size() ? 0 : e + 1];
     const Aabb edge_box{{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
     if (!edge_box.meets(other.box)) {
@@ -72,11 +89,21 @@ void Overlap::clip_edges(const ConvexView &own, const ConvexView &other, Potenti
       alpha_[j] = dot(other.normal[j], other.vertex[j] - a);
       beta_[j] = -dot(other.normal[j], tangent);
     }
-    const Inside in = positive_stretch(alpha_, beta_, own.length[e]);
+    Inside in = positive_stretch(alpha_, beta_, own.length[e]);
+    if (in.begin < in.end && in.entry != none) {
+      // Measured from near the entry, the rest of a long edge costs no digits of the stretch inside.
+      a += in.begin * tangent;
+      for (std::size_t j = 0; j < num_lines; ++j) {
+        alpha_[j] = dot(other.normal[j], other.vertex[j] - a);
+      }
+      const double rounding = 16.0 * std::numeric_limits<double>::epsilon() *
+                              (own.length[e] + std::max(std::abs(a.x), std::abs(a.y)));
+      in = near_entry(alpha_, beta_, in, dot(b - a, tangent), rounding);
+    }
     if (in.begin >= in.end) {
       continue;
     }
-    std::size_t line = in.entry != none ? in.entry : lowest_at_start(alpha_, beta_);
+    const std::size_t line = in.entry != none ? in.entry : lowest_at_start(alpha_, beta_);
     const Piece start{a + in.begin * tangent, own.normal[e], 0.0, in.entry != none ? 0.0 : alpha_[line], 0.0,
                       in.entry != none};
     if (potential == PotentialKind::linear) {
@@ -106,7 +133,8 @@ void Overlap::walk_envelope(Piece piece, std::size_t line, double s, double s_en
     for (std::size_t j = 0; j < alpha_.size(); ++j) {
       // A line of smaller slope that is lower at s_next crosses before it.
       if (beta_[j] < beta_[line] && alpha_[j] + beta_[j] * s_next < lowest) {
-        s_next = std::max(s, (alpha_[j] - alpha_[line]) / (beta_[line] - beta_[j]));
+        // The clamp is for collinear edges, whose lines cross anywhere in rounding.
+        s_next = std::clamp((alpha_[j] - alpha_[line]) / (beta_[line] - beta_[j]), s, s_next);
         lowest = alpha_[line] + beta_[line] * s_next;
         next = j;
       }

@@ -18,7 +18,7 @@ void Simulation::step() {
   {
     const auto scope = phases_.measure(Phase::update);
     if (const auto row = solve_and_update(blocks_, forces_, scheme_, plan_.time_step)) {
-      local_fault_ = Fault{Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0};
+      keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0});
     }
   }
   ++step_count_;
@@ -83,8 +83,8 @@ void Simulation::predict_next() {
 void Simulation::evaluate_contacts() {
   const auto scope = phases_.measure(Phase::forces);
   force_report_ = contacts_.evaluate(blocks_, candidates_, history_);
-  if (force_report_.fault && !local_fault_) {
-    local_fault_ = force_report_.fault;
+  if (force_report_.fault) {
+    keep_first(local_fault_, *force_report_.fault);
   }
 }
 
@@ -138,8 +138,8 @@ void Simulation::report() {
     if (norm(moved.u) + block.radius * std::abs(moved.r) + ahead > 0.5 * skin_) {
       status = needs_refresh;
     }
-    if (ahead > thinnest_ && num_blocks() > 1 && !local_fault_) {
-      local_fault_ = Fault{Fault::Cause::too_fast, block.id, {}, ahead, thinnest_};
+    if (ahead > thinnest_ && num_blocks() > 1) {
+      keep_first(local_fault_, {Fault::Cause::too_fast, block.id, {}, ahead, thinnest_});
     }
   }
   if (local_fault_) {
@@ -160,10 +160,7 @@ void Simulation::agree_on_fault() {
   }
   for (const std::vector<Fault> &faults : communicator_.all_gather(mine)) {
     for (const Fault &fault : faults) {
-      const auto key = [](const Fault &f) { return std::tuple(f.block, f.other, f.cause); };
-      if (!fault_ || key(fault) < key(*fault_)) {
-        fault_ = fault;
-      }
+      keep_first(fault_, fault);
     }
   }
 }

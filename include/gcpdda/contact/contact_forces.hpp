@@ -31,6 +31,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 namespace gcpdda {
@@ -73,7 +74,19 @@ struct Fault {
   BlockId other;      ///< invalid where no pair is involved
   double value = 0.0; ///< overlap (m) or motion per step (m)
   double limit = 0.0;
+
+  /// Which of several faults is reported: a choice that does not depend on the ranks.
+  friend bool operator<(const Fault &a, const Fault &b) {
+    return std::tie(a.block, a.other, a.cause) < std::tie(b.block, b.other, b.cause);
+  }
 };
+
+/// Keep the first of two faults.
+inline void keep_first(std::optional<Fault> &kept, const Fault &fault) {
+  if (!kept || fault < *kept) {
+    kept = fault;
+  }
+}
 
 /// What one evaluation of all candidates saw.
 struct ForceReport {
