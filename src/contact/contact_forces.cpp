@@ -26,10 +26,24 @@ namespace {
 /// Normals of a region cancel when the resultant falls below this share of the total pressure.
 constexpr double least_resultant = 0.1;
 
+/// How a trial configuration moved since the one before, in a form without cancellation.
+TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
+  const RigidDof step = system.trial[row] - system.trial_previous[row];
+  const double half = std::sin(0.5 * step.r);
+  return {step.u, std::sin(step.r), 2.0 * half * half};
+}
+
 /// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
 Vec2 increment_at(const TrialIncrement &step, Vec2 r) {
   return step.u +
          Vec2{step.one_minus_cosine * r.x - step.sine * r.y, step.sine * r.x + step.one_minus_cosine * r.y};
+}
+
+/// Motion of the lower block's material point now at x relative to the higher one's.
+Vec2 slide_at(const BlockSystem &system, const CandidatePair &pair, Vec2 x, const TrialIncrement &lower,
+              const TrialIncrement &higher) {
+  return increment_at(lower, x - system.trial_centroid[pair.lower.value]) -
+         increment_at(higher, x - system.trial_centroid[pair.higher.value]);
 }
 
 /// int q ds and int q s ds of q = max(-p, d) over [0, length], p >= 0 and d linear with the given end values.
@@ -230,10 +244,8 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   const Vec2 tangent = perp(force.normal);
   const double stiffness = pair.tangential_stiffness * memory.longest;
   if (!born) {
-    const std::size_t a = pair.lower.value;
-    const std::size_t b = pair.higher.value;
-    const Vec2 slide = increment_at(increments_[a], force.point - system.trial_centroid[a]) -
-                       increment_at(increments_[b], force.point - system.trial_centroid[b]);
+    const Vec2 slide =
+        slide_at(system, pair, force.point, increments_[pair.lower.value], increments_[pair.higher.value]);
     memory.shear += stiffness * dot(slide, tangent);
   }
   if (std::abs(memory.shear) > force.cap) {
@@ -272,9 +284,7 @@ ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates 
                                     ContactHistory &history) {
   increments_.resize(system.num_rows());
   for (std::size_t row = 0; row < system.num_mobile(); ++row) {
-    const RigidDof step = system.trial[row] - system.trial_previous[row];
-    const double half = std::sin(0.5 * step.r);
-    increments_[row] = {step.u, std::sin(step.r), 2.0 * half * half};
+    increments_[row] = trial_increment(system, row);
   }
   for (std::size_t row = system.first_fixed(); row < system.num_rows(); ++row) {
     increments_[row] = {};
@@ -303,6 +313,14 @@ ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates 
     }
   }
   return report;
+}
+
+double coming_slide(const BlockSystem &system, const CandidatePair &pair, const PairForce &force) {
+  const auto increment = [&](BlockIndex row) {
+    return system.is_fixed(row.value) ? TrialIncrement{} : trial_increment(system, row.value);
+  };
+  return dot(slide_at(system, pair, force.point, increment(pair.lower), increment(pair.higher)),
+             perp(force.normal));
 }
 
 ContactPart contact_part(const PairForce &force, bool is_lower, Vec2 centroid) {

@@ -28,7 +28,8 @@ InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidat
     : forces_(forces), history_(history), contact_counts_(system.num_rows(), 0.0) {
   for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
     const PairForce &force = forces.pairs()[k];
-    if (!force.touching || !(force.cap > 0.0)) {
+    // A region without extent along its tangent (faces that coincide up to rounding) has no spring yet.
+    if (!force.touching || !(force.cap > 0.0) || !(history.regions[k].longest > 0.0)) {
       continue;
     }
     Region region;

@@ -12,15 +12,13 @@ namespace {
 struct Terms {
   ExactSum kinetic;
   ExactSum normal;
-  ExactSum stick; ///< in the springs at x*_n
+  ExactSum stick;
   ExactSum gravity;
-  ExactSum shear_work; ///< by friction up to x*_n
+  ExactSum shear_work;
   ExactSum damping_work;
-  ExactSum open_shear_work; ///< from x*_n to the middle
 
   void agree(const Communicator &communicator) {
-    for (ExactSum *sum :
-         {&kinetic, &normal, &stick, &gravity, &shear_work, &damping_work, &open_shear_work}) {
+    for (ExactSum *sum : {&kinetic, &normal, &stick, &gravity, &shear_work, &damping_work}) {
       communicator.sum(sum->limbs());
     }
   }
@@ -41,13 +39,23 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
   }
 }
 
-void add_stick(const Simulation &simulation, ExactSum &sum) {
-  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
-    const CandidatePair &pair = simulation.candidates().pairs[k];
+enum class Moment { now, middle };
+
+/// Energy of the stick springs; in the middle of two trial configurations F_n F_{n+1}/(2 k), the form that
+/// the leapfrog conserves exactly. Slipping springs keep theirs.
+void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
+  const auto &pairs = simulation.candidates().pairs;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
     const RegionMemory &memory = simulation.history().regions[k];
-    if (memory.shear != 0.0 && simulation.counts_here(pair)) {
-      sum.add(0.5 * memory.shear * memory.shear / (pair.tangential_stiffness * memory.longest));
+    if (memory.shear == 0.0 || !simulation.counts_here(pairs[k])) {
+      continue;
     }
+    const double stiffness = pairs[k].tangential_stiffness * memory.longest;
+    double next = memory.shear;
+    if (moment == Moment::middle && memory.state == ContactState::stick) {
+      next += stiffness * coming_slide(simulation.blocks(), pairs[k], simulation.contacts().pairs()[k]);
+    }
+    sum.add(0.5 * memory.shear * next / stiffness);
   }
 }
 
@@ -58,7 +66,7 @@ Terms initial_terms(const Simulation &simulation) {
     terms.kinetic.add(kinetic_energy(blocks.properties[row], blocks.velocity[row]));
   }
   add_normal(simulation, 1.0, terms.normal);
-  add_stick(simulation, terms.stick);
+  add_stick(simulation, Moment::now, terms.stick);
   return terms;
 }
 
@@ -72,14 +80,13 @@ Terms current_terms(Simulation &simulation) {
       const RigidDof increment = blocks.trial[row] - blocks.trial_previous[row];
       terms.kinetic.add(kinetic_energy(block, (1.0 / time_step) * increment));
       terms.gravity.add(-(ledger.gravity_work + 0.5 * dot(ledger.gravity_force, increment.u)));
-      terms.shear_work.add(ledger.shear_work);
-      terms.open_shear_work.add(0.5 * work(ledger.shear_force, increment));
+      terms.shear_work.add(ledger.shear_work + 0.5 * work(ledger.shear_force, increment));
       terms.damping_work.add(ledger.damping_work + 0.5 * work(ledger.damping_force, increment));
     }
     add_normal(simulation, 0.5, terms.normal);
+    add_stick(simulation, Moment::middle, terms.stick);
   });
   add_normal(simulation, 0.5, terms.normal);
-  add_stick(simulation, terms.stick);
   return terms;
 }
 
@@ -126,7 +133,7 @@ EnergyRow EnergyLedger::row(Simulation &simulation) const {
   terms.agree(simulation.communicator());
   row.kinetic = terms.kinetic.value();
   row.contact_normal = terms.normal.value();
-  row.contact_stick = terms.stick.value() - terms.open_shear_work.value();
+  row.contact_stick = terms.stick.value();
   row.gravity = terms.gravity.value();
   row.friction_loss = stick_at_start_ - terms.stick.value() - terms.shear_work.value();
   row.damping_loss = -terms.damping_work.value();

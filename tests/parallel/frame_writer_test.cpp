@@ -1,9 +1,9 @@
 // Frames: what the ranks put in is what a reader gets out, in BlockId order, in files that do not depend on
 // the number of ranks. No fatal assertion: a rank that left early would leave the others waiting.
 
-#include "gcpdda/base/check.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/io/run_comparison.hpp"
+#include "parallel/shared_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,31 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder all ranks see, gone with the object.
-class SharedFolder {
-public:
-  explicit SharedFolder(const Communicator &world) : world_(world) {
-    std::string name = (fs::temp_directory_path() / "gcpdda_frames_XXXXXX").string();
-    if (world_.is_root()) {
-      expect(mkdtemp(name.data()) != nullptr, "a temporary folder");
-    }
-    world_.broadcast(name);
-    path_ = name;
-  }
-  ~SharedFolder() {
-    world_.barrier();
-    if (world_.is_root()) {
-      fs::remove_all(path_);
-    }
-  }
-  SharedFolder(const SharedFolder &) = delete;
-  SharedFolder &operator=(const SharedFolder &) = delete;
-  [[nodiscard]] fs::path path(const std::string &name) const { return path_ / name; }
-
-private:
-  Communicator world_;
-  fs::path path_;
-};
+using testing::SharedFolder;
 
 struct Block {
   FrameRow row;

@@ -24,20 +24,7 @@ using testing::summary_text;
 /// its own: contacts in the middle of everything, whatever way the wall is cut.
 std::string shaken_wall_toml(int rows, int columns, double duration) {
   const double squeeze = 0.004;
-  std::string toml = fmt::format(R"([run]
-duration = {0}
-fidelity = "rigid"
-[material.rock]
-density = 2600.0
-[joint.default]
-normal_stiffness = 2e8
-friction_angle_deg = 30.0
-[output]
-interval = {1}
-[[monitor]]
-block = "brick3_2"
-)",
-                                 duration, duration / 2.0);
+  std::string toml = testing::rock_toml(duration, duration / 2.0, "brick3_2");
   toml += testing::block_toml("floor", testing::rectangle({-2.0, -1.0}, {columns + 3.0, squeeze}),
                               "fixed = true");
   std::mt19937 random(4);

@@ -81,11 +81,8 @@ std::vector<Vec2> random_polygon(unsigned seed, int num_vertices, double radius,
   return vertices;
 }
 
-std::string falling_pile_toml(int num_blocks, double duration) {
-  const int columns = static_cast<int>(std::sqrt(num_blocks)) + 1;
-  const double spacing = 1.15;
-  const double width = columns * spacing;
-  std::string toml = fmt::format(R"([run]
+std::string rock_toml(double duration, double interval, const std::string &monitored) {
+  return fmt::format(R"([run]
 duration = {}
 fidelity = "rigid"
 [material.rock]
@@ -96,9 +93,16 @@ friction_angle_deg = 30.0
 [output]
 interval = {}
 [[monitor]]
-block = "grain5"
+block = "{}"
 )",
-                                 duration, duration / 4.0);
+                     duration, interval, monitored);
+}
+
+std::string falling_pile_toml(int num_blocks, double duration) {
+  const int columns = static_cast<int>(std::sqrt(num_blocks)) + 1;
+  const double spacing = 1.15;
+  const double width = columns * spacing;
+  std::string toml = rock_toml(duration, duration / 4.0, "grain5");
   toml += block_toml("floor", rectangle({-3.0, -2.0}, {width + 2.0, 0.0}), "fixed = true");
   toml += block_toml("left", rectangle({-3.0, 0.0}, {-0.8, 2.0 * width}), "fixed = true");
   toml += block_toml("right", rectangle({width, 0.0}, {width + 2.0, 2.0 * width}), "fixed = true");

@@ -13,6 +13,9 @@ Scene scene_of(const std::string &toml, const std::vector<std::string> &sets = {
 /// A scene that ships with the program, run/scenes/<name>.toml.
 Scene shipped_scene(const std::string &name, const std::vector<std::string> &sets = {});
 
+/// All of a scene but its blocks: rigid rock with friction 30 degrees, one monitored block.
+std::string rock_toml(double duration, double interval, const std::string &monitored);
+
 /// One [[block]] of material "rock"; `extra` holds more lines of its table.
 std::string block_toml(const std::string &name, const std::vector<Vec2> &vertices,
                        const std::string &extra = "");

@@ -5,6 +5,8 @@
 // due and limbs of several ranks may be added as integers. Written sums are made this way, so that they are
 // the same for any number of ranks.
 
+#include "gcpdda/base/check.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -20,6 +22,7 @@ public:
 
   /// value must be finite.
   void add(double value) {
+    expect(std::isfinite(value), "summands are finite");
     int exponent = 0;
     // value = mantissa * 2^(exponent - 53), an integer of at most 53 bits
     auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));

@@ -58,7 +58,7 @@ struct PairForce {
   double extent_end = 0.0;
 };
 
-/// How trial configurations moved since the last evaluation, by row; see prepare_increments.
+/// How trial configurations moved since the last evaluation, by row.
 struct TrialIncrement {
   Vec2 u;
   double sine = 0.0;
@@ -151,6 +151,10 @@ struct ContactPart {
   std::array<double, 4> dyad{};
 };
 ContactPart contact_part(const PairForce &force, bool is_lower, Vec2 centroid);
+
+/// Slide along t_r of the last evaluation's contact point when the system has moved on to its next trial
+/// configuration.
+double coming_slide(const BlockSystem &system, const CandidatePair &pair, const PairForce &force);
 
 ConvexView view_of(const BlockSystem &system, std::size_t row);
 

@@ -25,8 +25,7 @@ public:
   /// Energies of the initial state. Collective.
   explicit EnergyLedger(Simulation &simulation);
 
-  /// The row of the current state. Collective; the state is as before, though a due refresh may have been
-  /// brought forward, which invalidates the order of the last evaluation's pair forces.
+  /// The row of the current state, which stays as it is. Collective.
   [[nodiscard]] EnergyRow row(Simulation &simulation) const;
 
 private:

@@ -90,9 +90,6 @@ public:
   /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On
   /// return the state is as before.
   template <class Look> void look_ahead(Look &&look) {
-    if (stale_) {
-      refresh();
-    }
     const std::vector<RigidDof> trial = blocks_.trial;
     const std::vector<RigidDof> previous = blocks_.trial_previous;
     predict_next();
