@@ -232,7 +232,6 @@ bool ContactForces::find_region(const BlockSystem &system, const CandidatePair &
 
 void ContactForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
                                  const RelativeVelocity &velocity, RegionMemory &memory, PairForce &force) {
-  const bool born = memory.state == ContactState::open;
   const double extent = force.extent_end - force.extent_begin;
   memory.longest = std::max(memory.longest, extent);
   force.cap = force.normal_force * pair.tan_friction + pair.cohesion * extent;
@@ -243,7 +242,7 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   }
   const Vec2 tangent = perp(force.normal);
   const double stiffness = pair.tangential_stiffness * memory.longest;
-  if (!born) {
+  if (!force.born) {
     const Vec2 slide =
         slide_at(system, pair, force.point, increments_[pair.lower.value], increments_[pair.higher.value]);
     memory.shear += stiffness * dot(slide, tangent);
@@ -268,6 +267,7 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const CandidatePair
     memory = {};
     return;
   }
+  force.born = memory.state == ContactState::open;
   if (force.normal_undefined) {
     memory.shear = 0.0;
     memory.state = ContactState::slip;

@@ -350,6 +350,7 @@ private:
     add("migrations", total(communicator_, counters.migrations));
     add("refreshes", counters.refreshes);
     add("cross_rank_contacts", total(communicator_, counters.cross_rank_contacts));
+    add("cross_rank_contacts_formed", total(communicator_, counters.cross_rank_contacts_formed));
     add("normals_undefined", total(communicator_, counters.normals_undefined));
   }
 

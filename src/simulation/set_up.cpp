@@ -144,7 +144,8 @@ void Simulation::find_initial_state() {
   gather_forces();
   accelerate_owned();
   report();
-  counters_ = {.max_overlap = counters_.max_overlap}; // counts are of steps
+  counters_.evaluations = 0; // these two are of steps
+  counters_.contact_steps = 0;
 }
 
 void Simulation::find_initial_friction() {

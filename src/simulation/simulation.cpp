@@ -119,11 +119,13 @@ void Simulation::report() {
   std::int64_t crossing = 0;
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
     const CandidatePair &pair = candidates_.pairs[k];
-    if (contacts_.pairs()[k].touching && counts_here(pair)) {
+    const PairForce &force = contacts_.pairs()[k];
+    if (force.touching && counts_here(pair)) {
       ++counters_.contact_steps;
       const bool higher_is_ghost =
           pair.higher.value >= blocks_.num_owned && !blocks_.is_fixed(pair.higher.value);
       crossing += higher_is_ghost ? 1 : 0;
+      counters_.cross_rank_contacts_formed += higher_is_ghost && force.born ? 1 : 0;
     }
   }
   counters_.cross_rank_contacts = std::max(counters_.cross_rank_contacts, crossing);

@@ -40,6 +40,7 @@ namespace gcpdda {
 /// at the same points.
 struct PairForce {
   bool touching = false;
+  bool born = false;             ///< not touching at the evaluation before
   bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
   Vec2 origin;                   ///< what dyad and moments are about
   Vec2 force;                    ///< normal, friction and dashpot, N/m

@@ -31,8 +31,10 @@ private:
 struct Counters {
   std::int64_t evaluations = 0;   ///< candidate pairs looked at closely
   std::int64_t contact_steps = 0; ///< touching pairs summed over steps; each pair on one rank only
-  std::int64_t cross_rank_contacts =
-      0; ///< largest number of touching pairs with a ghost in one step, each on one rank
+  /// Largest number of touching pairs with a ghost in one step, and how many were formed in the run; each
+  /// pair on one rank.
+  std::int64_t cross_rank_contacts = 0;
+  std::int64_t cross_rank_contacts_formed = 0;
   std::int64_t normals_undefined = 0;
   std::int64_t migrations = 0; ///< blocks that left this rank, the first distribution not counted
   std::int64_t refreshes = 0;  ///< of the neighbourhood after the first
