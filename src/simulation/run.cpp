@@ -106,6 +106,8 @@ public:
     write_due();
     const Clock::time_point loop_start = Clock::now();
     const double cpu_start = cpu_seconds();
+    const double output_before = output_seconds();
+    const double output_cpu_before = output_cpu_seconds_;
     while (!simulation_.finished()) {
       simulation_.step();
       if (simulation_.step_count() ==
@@ -115,8 +117,8 @@ public:
       write_due();
       show_progress(loop_start);
     }
-    loop_seconds_ = seconds_since(loop_start) - output_in_loop_seconds_;
-    cpu_seconds_ = cpu_seconds() - cpu_start - output_in_loop_cpu_;
+    loop_seconds_ = seconds_since(loop_start) - (output_seconds() - output_before);
+    cpu_seconds_ = cpu_seconds() - cpu_start - (output_cpu_seconds_ - output_cpu_before);
     return finish();
   }
 
@@ -206,7 +208,7 @@ private:
     if (!failed && !plan.output_due(step) && !plan.history_due(step)) {
       return;
     }
-    const Clock::time_point start = Clock::now();
+    const auto scope = simulation_.phases().measure(Phase::output);
     const double cpu_start = cpu_seconds();
     if (failed || plan.output_due(step)) {
       const int index = num_frames_++;
@@ -218,12 +220,10 @@ private:
     if (failed || plan.history_due(step)) {
       write_history(failed);
     }
-    if (step > 0) {
-      output_in_loop_seconds_ += seconds_since(start);
-      output_in_loop_cpu_ += cpu_seconds() - cpu_start;
-    }
-    output_seconds_ += seconds_since(start);
+    output_cpu_seconds_ += cpu_seconds() - cpu_start;
   }
+
+  [[nodiscard]] double output_seconds() { return simulation_.phases().seconds(Phase::output); }
 
   void write_history(bool failed) {
     const std::vector<BlockHistoryRow> rows = collect_monitors(simulation_);
@@ -327,7 +327,7 @@ private:
     const auto num_ranks = static_cast<double>(communicator_.size());
     summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
     summary.setup_wall_s = spread(communicator_, set_up_seconds_)[2];
-    summary.output_wall_s = spread(communicator_, output_seconds_)[2];
+    summary.output_wall_s = spread(communicator_, output_seconds())[2];
     summary.total_wall_s = spread(communicator_, seconds_since(start_))[2];
     double max_overlap = counters.max_overlap;
     communicator_.max(std::span(&max_overlap, 1));
@@ -339,9 +339,7 @@ private:
     summary.messages_per_step =
         static_cast<double>(total(communicator_, simulation_.ghosts().messages_sent())) / steps;
     for (std::size_t p = 0; p < phase_names.size(); ++p) {
-      const double seconds = static_cast<Phase>(p) == Phase::output
-                                 ? output_seconds_
-                                 : simulation_.phases().seconds(static_cast<Phase>(p));
+      const double seconds = simulation_.phases().seconds(static_cast<Phase>(p));
       summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
     }
     const auto add = [&](const char *name, std::int64_t value) {
@@ -366,9 +364,7 @@ private:
   int num_frames_ = 0;
   std::int64_t contacts_at_end_ = 0;
   double set_up_seconds_ = 0.0;
-  double output_seconds_ = 0.0;
-  double output_in_loop_seconds_ = 0.0;
-  double output_in_loop_cpu_ = 0.0;
+  double output_cpu_seconds_ = 0.0;
   double loop_seconds_ = 0.0;
   double cpu_seconds_ = 0.0;
 };

@@ -43,7 +43,7 @@ void Simulation::distribute() {
   map_ = partition_cells(map_.grid, count_contact_work(), communicator_.size(), &partition_);
 }
 
-// Cells of about half a mean block: fine enough to balance, coarse enough that most blocks stay in theirs.
+// About two cells a mobile block: fine enough to balance, coarse enough that most blocks stay in theirs.
 void Simulation::lay_grid() {
   Aabb region;
   double smallest_mobile = std::numeric_limits<double>::infinity();

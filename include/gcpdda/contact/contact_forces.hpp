@@ -3,20 +3,20 @@
 // Contact forces of all candidate pairs at the trial configuration.
 //
 // Two convex blocks have one contact region. With N the normal force on the block of lower id and P = int p
-// ds,
-//     n_r = N/|N|,  t_r = perp(n_r),  x_r = int p x ds / P   (always in the hull of the patch; the line of
-//     action of a
-// resultant runs away when normals nearly cancel),  l = extent of the pieces along t_r.
+// ds:
+//     n_r = N/|N|,   t_r = perp(n_r),   l = extent of the pieces along t_r,
+//     x_r = int p x ds / P, always in the hull of the patch.
+// (The line of action of a resultant runs away when normals nearly cancel.)
 //
 // Friction is Coulomb with a stick spring. Its elongation is taken from successive TRIAL configurations of
-// the two blocks' material points now at x_r,
-//     du = (increment of A at x_r) - (increment of B at x_r),   F_t += k_t du.t_r,   k_t = ratio k_n max(l so
-//     far),
+// the two blocks' material points now at x_r:
+//     du = (increment of A at x_r) - (increment of B at x_r),
+//     F_t += k_t du.t_r,   k_t = ratio k_n max(l so far),
 // in the form increment of u + (I - R(-dtheta)) r, which never subtracts world positions: a block at rest
 // then creeps by 1e-15 and not 5e-12 m per 100 s. Velocities times dt would feed energy into a sticking
-// block, and a k_t that follows the current l gains energy in every cycle of opening. F_t is cut at cap = |N|
-// tan(phi) + c l first; the dashpot adds to it and the sum is cut again. A region's spring turns with t_r,
-// dies with the region, and gets no increment in the step of its birth.
+// block, and a k_t that follows the current l gains energy in every cycle of opening. F_t is cut at
+// cap = |N| tan(phi) + c l first; the dashpot adds to it and the sum is cut again. A region's spring turns
+// with t_r, dies with the region, and gets no increment in the step of its birth.
 //
 // The normal dashpot is distributed: on each piece with outward normal n of its own block and u = -n_r (lower
 // block) or n_r (higher), w = max(0, u.n), the traction q = max(-s w p, (c'/2) w (v_own - v_other).u) acts
@@ -64,7 +64,6 @@ struct TrialIncrement {
   Vec2 u;
   double sine = 0.0;
   double one_minus_cosine = 0.0;
-  friend bool operator==(const TrialIncrement &, const TrialIncrement &) = default;
 };
 
 /// Something a step cannot go on with.

@@ -20,8 +20,9 @@
 //
 // Locality, bit for bit: pieces end only where the active line changes; lines are anchored at vertices and
 // use stored normals; the order of summation starts where a block's boundary enters the other one, never at
-// vertex 0; moments are taken about the first piece. What a block looks like elsewhere changes no bit of its
-// contact force.
+// vertex 0; moments are taken about the first piece. What a block looks like beyond the edges that meet the
+// overlap changes no bit of its contact force. The length of those edges themselves costs no digits either:
+// an edge that comes in from outside is measured from its entry.
 
 #include "gcpdda/geometry/aabb.hpp"
 #include "gcpdda/geometry/vec2.hpp"

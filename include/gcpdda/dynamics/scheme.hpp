@@ -8,11 +8,14 @@
 // taken. Every member of the family takes them at a trial configuration
 //     x* = x_n + c1 dt v_n + c2 dt^2 a_n.
 //
-// leapfrog (the default): c1 = 1 - af, c2 = (2r - 1)(1 - r)/(2 (1 + r)^2). These are the unique values for
-// which the trial configurations obey x*_{n+1} - 2 x*_n + x*_{n-1} = dt^2 M^-1 f(x*_n) exactly, for any
-// non-linear f. Proof: with a' = (f/M - am a)/(1 - am) the state after eliminating f is a linear recursion in
-// (x*, v, a); asking that the coefficients of a_n and a_{n-1} in the second difference vanish gives two
-// equations for c1 and c2. So the contact sees a symplectic, neutral scheme with limit W = 2, whatever r.
+// leapfrog (the default): c1 = 1 - af, c2 = (2r - 1)(1 - r)/(2 (1 + r)^2), the only values for which
+//     x*_{n+1} - 2 x*_n + x*_{n-1} = dt^2 M^-1 f(x*_n)     exactly, for any non-linear f.
+// With dt = 1 the first difference is x*_{n+1} - x*_n = v_n + P a_n + Q a_{n+1}, P = 1/2 - b + c1 (1 - g) -
+// c2, Q = b + c1 g + c2, so the second is Q a_{n+1} + (g + P - Q) a_n + (1 - g - P) a_{n-1}. It equals M^-1 f
+// = (1 - am) a_{n+1} + am a_n if and only if P = 1 - g and Q = 1 - am (the middle term then agrees). Their
+// sum gives c1 = 3/2 - g - am = 1 - af, and c2 = 1 - am - b - c1 g. So the contact sees a symplectic, neutral
+// scheme with limit W = 2, whatever r.
+//
 // start: x* = x_n, the literal reading of "explicit contact". Energy grows by (1 - af) W^2/2 a step for every
 // dt: it is here to be measured, not used.
 

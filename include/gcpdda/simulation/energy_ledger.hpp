@@ -2,14 +2,13 @@
 
 // Where the energy of a run is and where it went.
 //
-// With x* the trial configurations the scheme is a leapfrog, x*_{n+1} - 2 x*_n + x*_{n-1} = dt^2 M^-1
-// f(x*_n), so
-//     KE_{n+1/2} - KE_{n-1/2} = f_n . (x*_{n+1} - x*_{n-1})/2,    KE_{n+1/2} of the velocity (x*_{n+1} -
-//     x*_n)/dt,
-// holds to rounding. All terms of a row are therefore taken at the middle of x*_n and x*_{n+1}: kinetic
-// energy of their difference, potentials as the mean of both, works of friction and dashpots by the trapezoid
-// plus the half step that is still open. Adding KE(t_n) to U(x*) would mix two times (1 - af) dt apart. The
-// row at t = 0 is taken from x_0, v_0.
+// With x* the trial configurations the scheme is a leapfrog, and with KE_{n+1/2} the kinetic energy of
+// (x*_{n+1} - x*_n)/dt
+//     KE_{n+1/2} - KE_{n-1/2} = f_n . (x*_{n+1} - x*_{n-1})/2
+// holds to rounding. All terms of a row are therefore taken at the middle of x*_n and x*_{n+1}: the kinetic
+// energy of their difference, contact_normal as the mean of both, contact_stick as F_n F_{n+1}/(2 k), works
+// by the trapezoid plus the half step that is still open. Adding KE(t_n) to U(x*) would mix two times (1 -
+// af) dt apart. The row at t = 0 is taken from x_0, v_0.
 //
 // contact_normal is the true potential of the contact pressure, (k_n/2) int_S (d_A + d_B) dA, not an
 // accumulated work: the residual shows what the time steps made of it, O(dt^2), plus the offset of O(dt^2)
