@@ -2,8 +2,9 @@
 
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/io/scene_reader.hpp"
-#include "gcpdda/model/stiffness.hpp"
+#include "gcpdda/io/scene_reference.hpp"
 #include "gcpdda/parallel/communicator.hpp"
+#include "gcpdda/simulation/inspect.hpp"
 #include "gcpdda/simulation/run.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 
@@ -24,8 +25,12 @@ struct Arguments {
   std::string scene;
   std::string directory;
   std::vector<std::string> sets;
+  std::string svg;
+  int ranks = 0;
   bool overwrite = false;
 };
+
+constexpr int most_subdomains = 1 << 20;
 
 void print(const Communicator &world, const Diagnostics &diagnostics) {
   if (world.is_root()) {
@@ -69,43 +74,67 @@ std::string read_on_root(const Communicator &world, const std::string &path) {
   return text;
 }
 
-int run(const Communicator &world, const Arguments &arguments) {
-  SceneReading reading = read_scene(read_on_root(world, arguments.scene), arguments.scene, arguments.sets);
-  if (!has_errors(reading.diagnostics)) {
-    resolve_stiffness(reading.scene);
-    const Diagnostics overlaps = check_initial_overlaps(reading.scene);
-    reading.diagnostics.insert(reading.diagnostics.end(), overlaps.begin(), overlaps.end());
-  }
+/// The scene of the arguments goes to `work`; every fault of it becomes text and exit code 3.
+template <class Work> int with_scene(const Communicator &world, const Arguments &arguments, Work &&work) {
+  const SceneReading reading =
+      read_scene(read_on_root(world, arguments.scene), arguments.scene, arguments.sets);
   print(world, reading.diagnostics);
   if (has_errors(reading.diagnostics)) {
     return bad_scene;
   }
-  RunOptions options;
-  options.directory = arguments.directory.empty() ? std::filesystem::path("results") / reading.scene.stem
-                                                  : std::filesystem::path(arguments.directory);
-  options.overwrite = arguments.overwrite;
   try {
-    return run_scene(world, reading.scene, options);
+    return work(reading.scene);
   } catch (const SceneError &error) {
     Diagnostics diagnostics = error.diagnostics();
     for (Diagnostic &d : diagnostics) {
-      d.where.file = arguments.scene;
+      d.where.file = d.where.file.empty() ? arguments.scene : d.where.file;
     }
     print(world, diagnostics);
     return bad_scene;
   }
 }
 
+int run(const Communicator &world, const Arguments &arguments) {
+  return with_scene(world, arguments, [&](const Scene &scene) {
+    RunOptions options;
+    options.directory = arguments.directory.empty() ? std::filesystem::path("results") / scene.stem
+                                                    : std::filesystem::path(arguments.directory);
+    options.overwrite = arguments.overwrite;
+    return run_scene(world, scene, options);
+  });
+}
+
+int inspect(const Communicator &world, const Arguments &arguments) {
+  return with_scene(world, arguments, [&](const Scene &scene) {
+    const std::string report = inspect_scene(world, scene, {arguments.ranks, arguments.svg});
+    if (world.is_root()) {
+      std::cout << report << std::flush;
+    }
+    return static_cast<int>(done);
+  });
+}
+
 int dispatch(const Communicator &world, int argc, char **argv) {
   CLI::App app("gcpdda: block-by-block simulation of jointed rock slopes and tunnels");
   app.require_subcommand(1);
   Arguments arguments;
+  const auto takes_scene = [&](CLI::App *command) {
+    command->add_option("SCENE", arguments.scene, "scene file (TOML)")->required();
+    command->add_option("--set", arguments.sets, "path=value: replace a value of the scene; repeatable")
+        ->allow_extra_args(false);
+  };
   CLI::App *run_command = app.add_subcommand("run", "run a scene");
-  run_command->add_option("SCENE", arguments.scene, "scene file (TOML)")->required();
+  takes_scene(run_command);
   run_command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>");
-  run_command->add_option("--set", arguments.sets, "path=value: replace a value of the scene; repeatable")
-      ->allow_extra_args(false);
   run_command->add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the result folder");
+  CLI::App *inspect_command =
+      app.add_subcommand("inspect", "tell what a scene holds, costs and how it would be cut");
+  takes_scene(inspect_command);
+  inspect_command->add_option("--ranks", arguments.ranks, "number of subdomains; default: ranks of this call")
+      ->check(CLI::Range(1, most_subdomains));
+  inspect_command->add_option("--svg", arguments.svg, "draw blocks and subdomains into this file");
+  const CLI::App *reference_command =
+      app.add_subcommand("reference", "print all scene keys as a Markdown page");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError &error) {
@@ -113,7 +142,13 @@ int dispatch(const Communicator &world, int argc, char **argv) {
     const int code = world.is_root() ? app.exit(error) : error.get_exit_code();
     return code == 0 ? done : usage;
   }
-  return run(world, arguments);
+  if (reference_command->parsed()) {
+    if (world.is_root()) {
+      std::cout << scene_reference() << std::flush;
+    }
+    return done;
+  }
+  return inspect_command->parsed() ? inspect(world, arguments) : run(world, arguments);
 }
 
 } // namespace

@@ -87,15 +87,16 @@ CandidatePair make_pair(const BlockSystem &system, BlockIndex lower, BlockIndex 
   pair.tangential_stiffness = law.tangential_ratio * law.normal_stiffness;
   pair.tan_friction = law.tan_friction;
   pair.cohesion = law.cohesion;
-  // A fixed block counts as infinitely heavy and sets no length.
-  const bool a_fixed = a.kind == BlockKind::fixed;
-  const bool b_fixed = b.kind == BlockKind::fixed;
+  // A fixed or driven block counts as infinitely heavy and sets no length.
+  const bool a_fixed = a.keeps_its_velocity();
+  const bool b_fixed = b.keeps_its_velocity();
   pair.mass = a_fixed ? b.mass : b_fixed ? a.mass : a.mass * b.mass / (a.mass + b.mass);
   const double smaller_area = a_fixed ? b.area : b_fixed ? a.area : std::min(a.area, b.area);
   // c' = 2 xi sqrt(k_n m_eff / L_ref), half of it for each side's pieces.
   pair.damping =
       parameters.damping_ratio * std::sqrt(law.normal_stiffness * pair.mass / std::sqrt(smaller_area));
   pair.allowed_overlap = 0.5 * std::min(a.width, b.width);
+  pair.is_convex = a.is_convex && b.is_convex;
   return pair;
 }
 
@@ -126,7 +127,8 @@ std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &sys
       }
       for (std::uint32_t j = i + 1; j < cells.begin[cell + 1]; ++j) {
         const std::uint32_t q = cells.rows[j];
-        if (!boxes[p].meets(boxes[q])) {
+        if (!boxes[p].meets(boxes[q]) ||
+            (system.properties[p].keeps_its_velocity() && system.properties[q].keeps_its_velocity())) {
           continue;
         }
         // Several cells may hold the pair: the one with the lower left corner of the common box counts.
@@ -152,21 +154,28 @@ Candidates make_candidates(const BlockSystem &system,
                            ContactHistory &history) {
   Candidates candidates;
   candidates.pairs.reserve(pairs.size());
+  // Several regions of a pair keep their order: both sides of a border wrote them in the same one.
   const auto record_key = [](const RegionRecord &r) { return std::pair(r.lower, r.higher); };
-  std::sort(memory.begin(), memory.end(),
-            [&](const RegionRecord &a, const RegionRecord &b) { return record_key(a) < record_key(b); });
-  history.regions.assign(pairs.size(), {});
+  std::stable_sort(memory.begin(), memory.end(), [&](const RegionRecord &a, const RegionRecord &b) {
+    return record_key(a) < record_key(b);
+  });
+  history.regions.clear();
+  history.begin.assign(1, 0);
   auto record = memory.begin();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [lower, higher] = pairs[k];
+  for (const auto &[lower, higher] : pairs) {
     candidates.pairs.push_back(make_pair(system, lower, higher, parameters));
     const std::pair key(system.properties[lower.value].id, system.properties[higher.value].id);
     while (record != memory.end() && record_key(*record) < key) {
       ++record;
     }
-    if (record != memory.end() && record_key(*record) == key) {
-      history.regions[k] = record->memory;
+    for (; record != memory.end() && record_key(*record) == key; ++record) {
+      const auto known = history.regions.begin() + history.begin.back();
+      if (std::none_of(known, history.regions.end(),
+                       [&](const RegionMemory &m) { return m.is_same_region(record->memory); })) {
+        history.regions.push_back(record->memory);
+      }
     }
+    history.begin.push_back(static_cast<std::uint32_t>(history.regions.size()));
   }
 
   candidates.contact_begin.assign(system.num_owned + 1, 0);
@@ -203,6 +212,14 @@ StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material) {
     }
   }
   return bound;
+}
+
+double stiffest_joint(const JointLaws &joints) {
+  double stiffest = 0.0;
+  for (const JointLaw &law : joints.laws) {
+    stiffest = std::max(stiffest, law.normal_stiffness);
+  }
+  return stiffest;
 }
 
 } // namespace gcpdda

@@ -3,22 +3,35 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace gcpdda {
 
-/// Relative velocity of two blocks as a field: v(x) = at_origin + spin perp(x - origin).
+/// Relative velocity of two blocks as a field: v(x) = at_origin + gradient (x - origin).
 struct ContactForces::RelativeVelocity {
   Vec2 at_origin;
-  double spin = 0.0;
+  Mat2 gradient;
 
   RelativeVelocity(const BlockSystem &system, const CandidatePair &pair, Vec2 origin) {
-    const RigidDof &a = system.velocity[pair.lower.value];
-    const RigidDof &b = system.velocity[pair.higher.value];
-    at_origin = (a.u + a.r * perp(origin - system.trial_centroid[pair.lower.value])) -
-                (b.u + b.r * perp(origin - system.trial_centroid[pair.higher.value]));
-    spin = a.r - b.r;
+    const auto part = [&](std::size_t row) {
+      const Mat2 own = velocity_gradient(system, row);
+      return std::pair(system.velocity[row].u + own(origin - system.trial_centroid[row]), own);
+    };
+    const auto [lower, lower_gradient] = part(pair.lower.value);
+    const auto [higher, higher_gradient] = part(pair.higher.value);
+    at_origin = lower - higher;
+    gradient = lower_gradient - higher_gradient;
   }
-  [[nodiscard]] Vec2 at(Vec2 from_origin) const { return at_origin + spin * perp(from_origin); }
+  [[nodiscard]] Vec2 at(Vec2 from_origin) const { return at_origin + gradient(from_origin); }
+
+private:
+  static Mat2 velocity_gradient(const BlockSystem &system, std::size_t row) {
+    if (system.is_deformable(row)) {
+      return system.deformation_of(row).rate * system.trial_inverse[system.deformation_begin[row]];
+    }
+    const double spin = system.velocity[row].r;
+    return {0.0, -spin, spin, 0.0};
+  }
 };
 
 namespace {
@@ -29,14 +42,19 @@ constexpr double least_resultant = 0.1;
 /// How a trial configuration moved since the one before, in a form without cancellation.
 TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
   const RigidDof step = system.trial[row] - system.trial_previous[row];
+  if (system.is_deformable(row)) {
+    const Deformation &d = system.deformation_of(row);
+    return {step.u, (d.trial - d.trial_previous) * system.trial_inverse[system.deformation_begin[row]]};
+  }
+  const double sine = std::sin(step.r);
   const double half = std::sin(0.5 * step.r);
-  return {step.u, std::sin(step.r), 2.0 * half * half};
+  const double one_minus_cosine = 2.0 * half * half;
+  return {step.u, {one_minus_cosine, -sine, sine, one_minus_cosine}};
 }
 
 /// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
 Vec2 increment_at(const TrialIncrement &step, Vec2 r) {
-  return step.u +
-         Vec2{step.one_minus_cosine * r.x - step.sine * r.y, step.sine * r.x + step.one_minus_cosine * r.y};
+  return step.u + step.turn(r);
 }
 
 /// Motion of the lower block's material point now at x relative to the higher one's.
@@ -86,7 +104,7 @@ double deepest(std::span<const Piece> pieces) {
 }
 
 /// Thickness along n_r and extent along t_r of the pieces, relative to x_r.
-void measure_region(std::span<const Piece> pieces, PairForce &force) {
+void measure_region(std::span<const Piece> pieces, RegionForce &force) {
   const Vec2 tangent = perp(force.normal);
   double low_n = std::numeric_limits<double>::infinity();
   double low_t = low_n;
@@ -109,18 +127,15 @@ void measure_region(std::span<const Piece> pieces, PairForce &force) {
   force.extent_end = high_t;
 }
 
-void add_force(PairForce &force, Vec2 at, Vec2 f) {
-  const Vec2 arm = at - force.origin;
+void add_force(RegionForce &force, Vec2 at, Vec2 f) {
   force.force += f;
-  force.dyad[0] += arm.x * f.x;
-  force.dyad[1] += arm.x * f.y;
-  force.dyad[2] += arm.y * f.x;
-  force.dyad[3] += arm.y * f.y;
+  force.dyad += outer(at - force.origin, f);
 }
 
-} // namespace
-
-namespace {
+void add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction) {
+  force.damping_force += f;
+  force.damping_dyad += outer(moment, direction);
+}
 
 /// u.n of a piece: how far it faces the other block along n_r.
 double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
@@ -128,11 +143,11 @@ double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
 }
 
 /// Share of the facing pieces' pressure along n_r that the resultant keeps: what the dashpot may take away.
-double releasable_share(const Overlap &overlap, Vec2 normal, double resultant) {
+double releasable_share(const Overlap &overlap, const Region &region, Vec2 normal, double resultant) {
   double facing_pressure = 0.0;
-  for (std::size_t i = 0; i < overlap.pieces().size(); ++i) {
+  for (std::uint32_t i = region.begin; i < region.end; ++i) {
     const Piece &piece = overlap.pieces()[i];
-    const double facing = std::max(0.0, facing_of(piece, i < overlap.num_first(), normal));
+    const double facing = std::max(0.0, facing_of(piece, i < region.middle, normal));
     facing_pressure += facing * 0.5 * piece.length * (piece.depth_begin + piece.depth_end);
   }
   return std::min(1.0, resultant / facing_pressure);
@@ -141,15 +156,14 @@ double releasable_share(const Overlap &overlap, Vec2 normal, double resultant) {
 } // namespace
 
 void ContactForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
-                                       PairForce &force) const {
+                                       const Region &region, RegionForce &force) const {
   const Vec2 n = force.normal;
-  const std::span<const Piece> pieces = overlap_.pieces();
-  const double share = releasable_share(overlap_, n, force.normal_force / pair.half_stiffness);
+  const double share = releasable_share(overlap_, region, n, force.normal_force / pair.half_stiffness);
   double total = 0.0;
   Vec2 moment;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Piece &piece = pieces[i];
-    const double facing = facing_of(piece, i < overlap_.num_first(), n);
+  for (std::uint32_t i = region.begin; i < region.end; ++i) {
+    const Piece &piece = overlap_.pieces()[i];
+    const double facing = facing_of(piece, i < region.middle, n);
     if (facing <= 0.0) {
       continue;
     }
@@ -157,81 +171,80 @@ void ContactForces::add_normal_dashpot(const CandidatePair &pair, const Relative
     const Vec2 begin = piece.begin - force.origin;
     const double rate = pair.damping * facing;
     const double releasable = share * facing * pair.half_stiffness;
+    const std::array<double, 2> depth = overlap_.depth_floor(piece);
     const TractionIntegral q = integrate_without_tension(
-        piece.length, releasable * piece.depth_begin, releasable * piece.depth_end,
-        -rate * dot(velocity.at(begin), n), -rate * dot(velocity.at(piece.end() - force.origin), n));
+        piece.length, releasable * depth[0], releasable * depth[1], -rate * dot(velocity.at(begin), n),
+        -rate * dot(velocity.at(piece.end() - force.origin), n));
     total += q.total;
     moment += q.total * begin + q.along * perp(piece.normal);
   }
   force.force += total * n;
-  force.damping_force += total * n;
-  force.damping_moment += cross(moment, n);
-  force.dyad[0] += moment.x * n.x;
-  force.dyad[1] += moment.x * n.y;
-  force.dyad[2] += moment.y * n.x;
-  force.dyad[3] += moment.y * n.y;
+  force.dyad += outer(moment, n);
+  add_damping(force, total * n, moment, n);
 }
 
-ConvexView view_of(const BlockSystem &system, std::size_t row) {
-  return {system.of_row(system.vertex, row), system.of_row(system.normal, row),
-          system.of_row(system.edge_length, row), system.box[row]};
+BlockView view_of(const BlockSystem &system, std::size_t row) {
+  BlockView view{system.of_row(system.vertex, row),      system.of_row(system.normal, row),
+                 system.of_row(system.edge_length, row), system.box[row],
+                 system.properties[row].is_convex,       {}};
+  if (system.is_deformable(row)) {
+    view.frame = {system.trial_centroid[row], system.deformation_of(row).trial,
+                  system.trial_inverse[system.deformation_begin[row]],
+                  system.of_row(system.reference_vertex, row), system.of_row(system.reference_normal, row)};
+  }
+  return view;
 }
 
-void ContactForces::add_shear(PairForce &force, double elastic, double viscous) const {
+Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x) {
+  const Vec2 arm = x - system.trial_centroid[row];
+  return system.is_deformable(row) ? system.trial_inverse[system.deformation_begin[row]](arm)
+                                   : Rotation::of(-system.trial[row].r)(arm);
+}
+
+void ContactForces::add_shear(RegionForce &force, double elastic, double viscous) const {
   const Vec2 tangent = perp(force.normal);
   force.shear = elastic + viscous;
   force.shear_force = -elastic * tangent;
-  force.shear_moment = cross(force.point - force.origin, force.shear_force);
   const Vec2 drag = -viscous * tangent;
-  force.damping_force += drag;
-  force.damping_moment += cross(force.point - force.origin, drag);
+  add_damping(force, drag, force.point - force.origin, drag);
   add_force(force, force.point, -force.shear * tangent);
 }
 
-void ContactForces::set_shear(std::size_t pair, double shear) {
-  PairForce &force = forces_[pair];
+void ContactForces::set_shear(std::size_t region, double shear) {
+  RegionForce &force = forces_[region];
   const Vec2 tangent = perp(force.normal);
   const double viscous = force.shear + dot(force.shear_force, tangent);
   add_force(force, force.point, (force.shear - shear) * tangent);
-  force.damping_force += viscous * tangent;
-  force.damping_moment += cross(force.point - force.origin, viscous * tangent);
+  add_damping(force, viscous * tangent, force.point - force.origin, viscous * tangent);
   force.shear = shear;
   force.shear_force = -shear * tangent;
-  force.shear_moment = cross(force.point - force.origin, force.shear_force);
 }
 
-bool ContactForces::find_region(const BlockSystem &system, const CandidatePair &pair, PairForce &force) {
-  force = {};
-  if (!overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
-                     parameters_.potential)) {
+bool ContactForces::measure(const CandidatePair &pair, const Region &region, RegionForce &force) const {
+  const RegionIntegrals sum = overlap_.integrate(region);
+  if (!(sum.pressure > 0.0)) {
     return false;
   }
-  const RegionIntegrals region = overlap_.integrate();
-  if (!(region.pressure > 0.0)) {
-    return false;
-  }
-  force.touching = true;
-  force.origin = region.origin;
-  force.force = pair.half_stiffness * region.force;
-  for (std::size_t i = 0; i < 4; ++i) {
-    force.dyad[i] = pair.half_stiffness * region.dyad[i];
-  }
-  force.point = region.origin + (1.0 / region.pressure) * region.pressure_moment;
-  const double resultant = norm(region.force);
+  force.origin = sum.origin;
+  force.force = pair.half_stiffness * sum.force;
+  force.dyad = pair.half_stiffness * Mat2{sum.dyad[0], sum.dyad[1], sum.dyad[2], sum.dyad[3]};
+  force.point = sum.origin + (1.0 / sum.pressure) * sum.pressure_moment;
+  const double resultant = norm(sum.force);
   force.normal_force = pair.half_stiffness * resultant;
-  if (resultant < least_resultant * region.pressure) {
+  const auto pieces = overlap_.pieces().subspan(region.begin, region.end - region.begin);
+  if (resultant < least_resultant * sum.pressure) {
     force.normal_undefined = true;
     // No direction to measure along: twice the deepest point stands for the thickness.
-    force.overlap = 2.0 * deepest(overlap_.pieces());
+    force.overlap = 2.0 * deepest(pieces);
   } else {
-    force.normal = (1.0 / resultant) * region.force;
-    measure_region(overlap_.pieces(), force);
+    force.normal = (1.0 / resultant) * sum.force;
+    measure_region(pieces, force);
   }
   return true;
 }
 
 void ContactForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
-                                 const RelativeVelocity &velocity, RegionMemory &memory, PairForce &force) {
+                                 const RelativeVelocity &velocity, RegionMemory &memory, RegionForce &force) {
   const double extent = force.extent_end - force.extent_begin;
   memory.longest = std::max(memory.longest, extent);
   force.cap = force.normal_force * pair.tan_friction + pair.cohesion * extent;
@@ -261,22 +274,68 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   add_shear(force, memory.shear, viscous);
 }
 
-void ContactForces::evaluate_pair(const BlockSystem &system, const CandidatePair &pair, RegionMemory &memory,
-                                  PairForce &force) {
-  if (!find_region(system, pair, force)) {
-    memory = {};
+namespace {
+
+/// Take the memory of a region out of those its pair had: the nearest between the same stretches that can be
+/// the same patch. A region of two convex blocks is always the same one.
+std::optional<RegionMemory> take_memory(std::span<RegionMemory> old, bool is_convex, const Region &region,
+                                        Vec2 position, double extent) {
+  constexpr double taken = -1.0;
+  RegionMemory *nearest = nullptr;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (RegionMemory &memory : old) {
+    const double distance = norm(memory.position - position);
+    const bool can_be =
+        is_convex || (memory.lower_stretch == region.faces.first &&
+                      memory.higher_stretch == region.faces.second && distance <= memory.longest + extent);
+    if (memory.longest != taken && can_be && distance < smallest) {
+      smallest = distance;
+      nearest = &memory;
+    }
+  }
+  if (nearest == nullptr) {
+    return std::nullopt;
+  }
+  const RegionMemory found = *nearest;
+  nearest->longest = taken;
+  return found;
+}
+
+} // namespace
+
+void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &candidates,
+                                  std::uint32_t number, std::span<RegionMemory> old) {
+  const CandidatePair &pair = candidates.pairs[number];
+  if (!overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
+                     parameters_.potential)) {
     return;
   }
-  force.born = memory.state == ContactState::open;
-  if (force.normal_undefined) {
-    memory.shear = 0.0;
-    memory.state = ContactState::slip;
-    return;
-  }
-  const RelativeVelocity velocity(system, pair, force.origin);
-  add_friction(system, pair, velocity, memory, force);
-  if (pair.damping > 0.0) {
-    add_normal_dashpot(pair, velocity, force);
+  for (const Region &region : overlap_.regions()) {
+    RegionForce force;
+    if (!measure(pair, region, force)) {
+      continue;
+    }
+    force.pair = number;
+    const Vec2 position = pair.is_convex ? Vec2{} : reference_point(system, pair.lower.value, force.point);
+    const auto known =
+        take_memory(old, pair.is_convex, region, position, force.extent_end - force.extent_begin);
+    force.born = !known;
+    RegionMemory memory = known.value_or(RegionMemory{});
+    memory.position = position;
+    memory.lower_stretch = region.faces.first;
+    memory.higher_stretch = region.faces.second;
+    if (force.normal_undefined) {
+      memory.shear = 0.0;
+      memory.state = ContactState::slip;
+    } else {
+      const RelativeVelocity velocity(system, pair, force.origin);
+      add_friction(system, pair, velocity, memory, force);
+      if (pair.damping > 0.0) {
+        add_normal_dashpot(pair, velocity, region, force);
+      }
+    }
+    forces_.push_back(force);
+    next_.regions.push_back(memory);
   }
 }
 
@@ -291,31 +350,36 @@ ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates 
   }
 
   ForceReport report;
-  forces_.resize(candidates.pairs.size());
-  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
+  forces_.clear();
+  begin_.assign(1, 0);
+  next_.regions.clear();
+  for (std::uint32_t k = 0; k < candidates.pairs.size(); ++k) {
     const CandidatePair &pair = candidates.pairs[k];
-    if (!system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
-      forces_[k].touching = false;
-      history.regions[k] = {};
-      continue;
+    if (system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
+      ++report.evaluations;
+      evaluate_pair(
+          system, candidates, k,
+          std::span(history.regions).subspan(history.begin[k], history.begin[k + 1] - history.begin[k]));
     }
-    ++report.evaluations;
-    evaluate_pair(system, pair, history.regions[k], forces_[k]);
-    if (!forces_[k].touching) {
-      continue;
-    }
-    report.normals_undefined += forces_[k].normal_undefined ? 1 : 0;
-    report.max_overlap = std::max(report.max_overlap, forces_[k].overlap);
-    if (forces_[k].overlap > pair.allowed_overlap) {
+    begin_.push_back(static_cast<std::uint32_t>(forces_.size()));
+  }
+  next_.begin = begin_;
+  std::swap(history, next_);
+
+  for (const RegionForce &force : forces_) {
+    const CandidatePair &pair = candidates.pairs[force.pair];
+    report.normals_undefined += force.normal_undefined ? 1 : 0;
+    report.max_overlap = std::max(report.max_overlap, force.overlap);
+    if (force.overlap > pair.allowed_overlap) {
       keep_first(report.fault,
                  {Fault::Cause::too_deep, system.properties[pair.lower.value].id,
-                  system.properties[pair.higher.value].id, forces_[k].overlap, pair.allowed_overlap});
+                  system.properties[pair.higher.value].id, force.overlap, pair.allowed_overlap});
     }
   }
   return report;
 }
 
-double coming_slide(const BlockSystem &system, const CandidatePair &pair, const PairForce &force) {
+double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force) {
   const auto increment = [&](BlockIndex row) {
     return system.is_fixed(row.value) ? TrialIncrement{} : trial_increment(system, row.value);
   };
@@ -323,48 +387,67 @@ double coming_slide(const BlockSystem &system, const CandidatePair &pair, const 
              perp(force.normal));
 }
 
-ContactPart contact_part(const PairForce &force, bool is_lower, Vec2 centroid) {
+ContactPart contact_part(const RegionForce &force, bool is_lower, Vec2 centroid) {
   const double sign = is_lower ? 1.0 : -1.0;
-  const Vec2 arm = force.origin - centroid;
-  return {sign * force.force,
-          {sign * (force.dyad[0] + arm.x * force.force.x), sign * (force.dyad[1] + arm.x * force.force.y),
-           sign * (force.dyad[2] + arm.y * force.force.x), sign * (force.dyad[3] + arm.y * force.force.y)}};
+  return {sign * force.force, sign * (force.dyad + outer(force.origin - centroid, force.force))};
 }
 
-BlockContactSum sum_contacts(const BlockSystem &system, const Candidates &candidates,
-                             std::span<const PairForce> forces, std::size_t row) {
-  BlockContactSum sum;
-  const Vec2 centroid = system.trial_centroid[row];
+namespace {
+
+/// Visit the regions of a block with their sign, in the order of the other blocks' ids.
+template <class Visit>
+void for_regions(const Candidates &candidates, const ContactForces &contacts, std::size_t row,
+                 Visit &&visit) {
   for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
     const BlockContact contact = candidates.block_contacts[c];
-    const PairForce &f = forces[contact.pair];
-    if (!f.touching) {
-      continue;
+    for (const RegionForce &force : contacts.of_pair(contact.pair)) {
+      visit(force, contact.is_lower);
     }
-    const double sign = contact.is_lower ? 1.0 : -1.0;
-    const Vec2 arm = f.origin - centroid;
-    sum.force += sign * RigidDof{f.force, f.dyad[1] - f.dyad[2] + cross(arm, f.force)};
-    sum.shear += sign * RigidDof{f.shear_force, f.shear_moment + cross(arm, f.shear_force)};
-    sum.damping += sign * RigidDof{f.damping_force, f.damping_moment + cross(arm, f.damping_force)};
   }
+}
+
+} // namespace
+
+BlockContactSum sum_contacts(const BlockSystem &system, const Candidates &candidates,
+                             const ContactForces &contacts, std::size_t row) {
+  BlockContactSum sum;
+  const Vec2 centroid = system.trial_centroid[row];
+  for_regions(candidates, contacts, row, [&](const RegionForce &f, bool is_lower) {
+    const double sign = is_lower ? 1.0 : -1.0;
+    const Vec2 arm = f.origin - centroid;
+    const auto torque = [&](const Mat2 &dyad, Vec2 force) { return dyad.xy - dyad.yx + cross(arm, force); };
+    sum.force += sign * RigidDof{f.force, torque(f.dyad, f.force)};
+    sum.shear += sign * RigidDof{f.shear_force, cross(f.point - centroid, f.shear_force)};
+    sum.damping += sign * RigidDof{f.damping_force, torque(f.damping_dyad, f.damping_force)};
+  });
   return sum;
 }
 
+BlockGradientSum sum_gradient_forces(const BlockSystem &system, const Candidates &candidates,
+                                     const ContactForces &contacts, std::size_t row) {
+  BlockGradientSum dyads;
+  const Vec2 centroid = system.trial_centroid[row];
+  for_regions(candidates, contacts, row, [&](const RegionForce &f, bool is_lower) {
+    const double sign = is_lower ? 1.0 : -1.0;
+    const Vec2 arm = f.origin - centroid;
+    dyads.force += sign * (f.dyad + outer(arm, f.force));
+    dyads.shear += sign * outer(f.point - centroid, f.shear_force);
+    dyads.damping += sign * (f.damping_dyad + outer(arm, f.damping_force));
+  });
+  // int t X^T with X = F^-1 (x - x_c).
+  const Mat2 &to_reference = system.trial_inverse[system.deformation_begin[row]];
+  const auto work_on_gradient = [&](const Mat2 &dyad) { return transposed(to_reference * dyad); };
+  return {work_on_gradient(dyads.force), work_on_gradient(dyads.shear), work_on_gradient(dyads.damping)};
+}
+
 std::array<double, 3> mean_stress(const BlockSystem &system, const Candidates &candidates,
-                                  std::span<const PairForce> forces, std::size_t row) {
-  std::array<double, 4> dyad{};
-  for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
-    const BlockContact contact = candidates.block_contacts[c];
-    if (forces[contact.pair].touching) {
-      const ContactPart part =
-          contact_part(forces[contact.pair], contact.is_lower, system.trial_centroid[row]);
-      for (std::size_t i = 0; i < 4; ++i) {
-        dyad[i] += part.dyad[i];
-      }
-    }
-  }
+                                  const ContactForces &contacts, std::size_t row) {
+  Mat2 dyad;
+  for_regions(candidates, contacts, row, [&](const RegionForce &force, bool is_lower) {
+    dyad += contact_part(force, is_lower, system.trial_centroid[row]).dyad;
+  });
   const double area = system.properties[row].area;
-  return {dyad[0] / area, dyad[3] / area, 0.5 * (dyad[1] + dyad[2]) / area};
+  return {dyad.xx / area, dyad.yy / area, 0.5 * (dyad.xy + dyad.yx) / area};
 }
 
 } // namespace gcpdda

@@ -8,16 +8,32 @@ namespace gcpdda {
 
 namespace {
 
-double yield_of(const BlockProperties &block, Vec2 arm, Vec2 tangent) {
+/// Acceleration of the point along `tangent` under a unit force there; 0 for infinite mass.
+double yield_of(const BlockSystem &system, std::size_t row, Vec2 arm, Vec2 tangent) {
+  const BlockProperties &block = system.properties[row];
+  if (system.is_deformable(row)) {
+    const Vec2 x = system.trial_inverse[system.deformation_begin[row]](arm);
+    return 1.0 / block.mass + dot(x, inverse(system.deformation_of(row).second_moment)(x));
+  }
   const double moment = cross(arm, tangent);
-  return 1.0 / block.mass + moment * moment / block.inertia; // 0 for infinite mass
+  return 1.0 / block.mass + moment * moment / block.inertia;
 }
 
-Vec2 velocity_at(const RigidDof &v, Vec2 arm) {
+Vec2 velocity_at(const BlockSystem &system, std::size_t row, Vec2 arm) {
+  const RigidDof &v = system.velocity[row];
+  if (system.is_deformable(row)) {
+    return v.u + system.deformation_of(row).rate(system.trial_inverse[system.deformation_begin[row]](arm));
+  }
   return v.u + v.r * perp(arm);
 }
 
-Vec2 acceleration_at(const RigidDof &v, const RigidDof &a, Vec2 arm) {
+Vec2 acceleration_at(const BlockSystem &system, std::size_t row, Vec2 arm) {
+  const RigidDof &v = system.velocity[row];
+  const RigidDof &a = system.acceleration[row];
+  if (system.is_deformable(row)) {
+    const Mat2 &to_reference = system.trial_inverse[system.deformation_begin[row]];
+    return a.u + system.deformation_of(row).acceleration(to_reference(arm));
+  }
   return a.u + a.r * perp(arm) - (v.r * v.r) * arm;
 }
 
@@ -26,26 +42,26 @@ Vec2 acceleration_at(const RigidDof &v, const RigidDof &a, Vec2 arm) {
 InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
                            ContactHistory &history)
     : forces_(forces), history_(history), contact_counts_(system.num_rows(), 0.0) {
-  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
-    const PairForce &force = forces.pairs()[k];
+  for (std::size_t k = 0; k < forces.regions().size(); ++k) {
+    const RegionForce &force = forces.regions()[k];
     // A region without extent along its tangent (faces that coincide up to rounding) has no spring yet.
-    if (!force.touching || !(force.cap > 0.0) || !(history.regions[k].longest > 0.0)) {
+    if (!(force.cap > 0.0) || !(history.regions[k].longest > 0.0)) {
       continue;
     }
     Region region;
-    region.pair = k;
+    region.number = k;
     region.tangent = perp(force.normal);
-    region.lower = candidates.pairs[k].lower.value;
-    region.higher = candidates.pairs[k].higher.value;
+    region.lower = candidates.pairs[force.pair].lower.value;
+    region.higher = candidates.pairs[force.pair].higher.value;
     region.arm_lower = force.point - system.trial_centroid[region.lower];
     region.arm_higher = force.point - system.trial_centroid[region.higher];
     region.cap = force.cap;
-    region.yield_lower = yield_of(system.properties[region.lower], region.arm_lower, region.tangent);
-    region.yield_higher = yield_of(system.properties[region.higher], region.arm_higher, region.tangent);
+    region.yield_lower = yield_of(system, region.lower, region.arm_lower, region.tangent);
+    region.yield_higher = yield_of(system, region.higher, region.arm_higher, region.tangent);
     contact_counts_[region.lower] += 1.0;
     contact_counts_[region.higher] += 1.0;
-    const Vec2 lower_velocity = velocity_at(system.velocity[region.lower], region.arm_lower);
-    const Vec2 higher_velocity = velocity_at(system.velocity[region.higher], region.arm_higher);
+    const Vec2 lower_velocity = velocity_at(system, region.lower, region.arm_lower);
+    const Vec2 higher_velocity = velocity_at(system, region.higher, region.arm_higher);
     const double sliding = dot(lower_velocity - higher_velocity, region.tangent);
     const double rounding =
         16.0 * std::numeric_limits<double>::epsilon() * (norm(lower_velocity) + norm(higher_velocity));
@@ -59,19 +75,18 @@ InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidat
 }
 
 double InitialStick::tangential_acceleration(const BlockSystem &system, const Region &region) const {
-  const auto at = [&](std::size_t row, Vec2 arm) {
-    return acceleration_at(system.velocity[row], system.acceleration[row], arm);
-  };
-  return dot(at(region.lower, region.arm_lower) - at(region.higher, region.arm_higher), region.tangent);
+  return dot(acceleration_at(system, region.lower, region.arm_lower) -
+                 acceleration_at(system, region.higher, region.arm_higher),
+             region.tangent);
 }
 
 double InitialStick::corrected(const Region &region, double change) const {
-  return std::clamp(history_.regions[region.pair].shear + change, -region.cap, region.cap);
+  return std::clamp(history_.regions[region.number].shear + change, -region.cap, region.cap);
 }
 
 void InitialStick::set_shear(const Region &region, double shear) {
-  history_.regions[region.pair].shear = shear;
-  forces_.set_shear(region.pair, shear);
+  history_.regions[region.number].shear = shear;
+  forces_.set_shear(region.number, shear);
 }
 
 double InitialStick::residual(const BlockSystem &system) const {
@@ -79,7 +94,7 @@ double InitialStick::residual(const BlockSystem &system) const {
   for (const Region &region : regions_) {
     const double yield = region.yield_lower + region.yield_higher;
     const double wanted = corrected(region, tangential_acceleration(system, region) / yield);
-    largest = std::max(largest, std::abs(wanted - history_.regions[region.pair].shear) * yield);
+    largest = std::max(largest, std::abs(wanted - history_.regions[region.number].shear) * yield);
   }
   return largest;
 }

@@ -1,6 +1,11 @@
 #include "gcpdda/contact/overlap.hpp"
 
+#include "curve.hpp"
+#include "distance_field.hpp"
+#include "regions.hpp"
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace gcpdda {
@@ -70,49 +75,146 @@ std::size_t lowest_at_start(std::span<const double> alpha, std::span<const doubl
   return lowest;
 }
 
+inline Vec2 end_of_edge(const BlockView &block, std::size_t e) {
+  return block.vertex[e + 1 == block.vertex.size() ? 0 : e + 1];
+}
+
+/// An edge in the axes in which the other block has its field.
+struct EdgeInField {
+  FieldEdge edge;
+  double stretch = 1.0; ///< length there per length in the world
+
+  EdgeInField(const BlockView &own, std::size_t e, const BlockView &other)
+      : edge{own.vertex[e], end_of_edge(own, e), perp(own.normal[e]), own.length[e]} {
+    if (other.frame) {
+      const DeformedFrame &frame = *other.frame;
+      const Vec2 along = frame.inverse(edge.tangent);
+      stretch = norm(along);
+      edge.begin = frame.inverse(edge.begin - frame.centre);
+      edge.end = frame.inverse(edge.end - frame.centre);
+      edge.tangent = (1.0 / stretch) * along;
+      edge.length *= stretch;
+    }
+  }
+};
+
+inline bool edge_meets(Vec2 a, Vec2 b, const Aabb &box) {
+  return std::max(a.x, b.x) >= box.low.x && std::min(a.x, b.x) <= box.high.x &&
+         std::max(a.y, b.y) >= box.low.y && std::min(a.y, b.y) <= box.high.y;
+}
+
+/// 1/J of a block's potential.
+double field_scale(const BlockView &block) {
+  return block.frame ? 1.0 / determinant(block.frame->gradient) : 1.0;
+}
+
+std::span<const Vec2> field_vertices(const BlockView &block) {
+  return block.frame ? block.frame->vertex : block.vertex;
+}
+
+std::span<const Vec2> field_normals(const BlockView &block) {
+  return block.frame ? block.frame->normal : block.normal;
+}
+
 } // namespace
 
-void Overlap::clip_edges(const ConvexView &own, const ConvexView &other, PotentialKind potential) {
-  const std::size_t num_lines = other.vertex.size();
-  const std::size_t first_piece = pieces_.size();
+void Overlap::clip_edges(const BlockView &own, const BlockView &other, PotentialKind potential) {
+  const std::span<const Vec2> vertex = field_vertices(other);
+  const std::span<const Vec2> normal = field_normals(other);
+  const std::size_t num_lines = vertex.size();
   alpha_.resize(num_lines);
   beta_.resize(num_lines);
   for (std::size_t e = 0; e < own.vertex.size(); ++e) {
-    Vec2 a = own.vertex[e];
-    const Vec2 b = own.vertex[e + 1 == own.vertex.size() ? 0 : e + 1];
-    const Aabb edge_box{{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
-    if (!edge_box.meets(other.box)) {
+    if (!edge_meets(own.vertex[e], end_of_edge(own, e), other.box)) {
       continue;
     }
-    const Vec2 tangent = perp(own.normal[e]);
+    const EdgeInField in_field(own, e, other);
+    Vec2 a = in_field.edge.begin;
+    const Vec2 tangent = in_field.edge.tangent;
     for (std::size_t j = 0; j < num_lines; ++j) {
-      alpha_[j] = dot(other.normal[j], other.vertex[j] - a);
-      beta_[j] = -dot(other.normal[j], tangent);
+      alpha_[j] = dot(normal[j], vertex[j] - a);
+      beta_[j] = -dot(normal[j], tangent);
     }
-    Inside in = positive_stretch(alpha_, beta_, own.length[e]);
+    Inside in = positive_stretch(alpha_, beta_, in_field.edge.length);
+    double anchor = 0.0;
     if (in.begin < in.end && in.entry != none) {
       // Measured from near the entry, the rest of a long edge costs no digits of the stretch inside.
+      anchor = in.begin;
       a += in.begin * tangent;
       for (std::size_t j = 0; j < num_lines; ++j) {
-        alpha_[j] = dot(other.normal[j], other.vertex[j] - a);
+        alpha_[j] = dot(normal[j], vertex[j] - a);
       }
       const double rounding = 16.0 * std::numeric_limits<double>::epsilon() *
-                              (own.length[e] + std::max(std::abs(a.x), std::abs(a.y)));
-      in = near_entry(alpha_, beta_, in, dot(b - a, tangent), rounding);
+                              (in_field.edge.length + std::max(std::abs(a.x), std::abs(a.y)));
+      in = near_entry(alpha_, beta_, in, dot(in_field.edge.end - a, tangent), rounding);
     }
     if (in.begin >= in.end) {
       continue;
     }
     const std::size_t line = in.entry != none ? in.entry : lowest_at_start(alpha_, beta_);
-    const Piece start{a + in.begin * tangent, own.normal[e], 0.0, in.entry != none ? 0.0 : alpha_[line], 0.0,
-                      in.entry != none};
+    const Piece start{a + in.begin * tangent,
+                      own.normal[e],
+                      0.0,
+                      in.entry != none ? 0.0 : alpha_[line],
+                      0.0,
+                      in.entry != none,
+                      static_cast<std::int32_t>(e),
+                      static_cast<std::int32_t>(line)};
+    const std::size_t first_piece = pieces_.size();
     if (potential == PotentialKind::linear) {
       pieces_.push_back(chord(start, in.begin, in.end, in.leaves));
     } else {
       walk_envelope(start, line, in.begin, in.end);
     }
+    if (other.frame) {
+      const double begin = (anchor + in.begin) / in_field.stretch;
+      to_world(first_piece, own.vertex[e] + begin * perp(own.normal[e]), in_field.stretch,
+               field_scale(other));
+    }
   }
-  start_at_entry(first_piece);
+}
+
+void Overlap::to_world(std::size_t first_piece, Vec2 begin, double stretch, double scale) {
+  for (std::size_t i = first_piece; i < pieces_.size(); ++i) {
+    Piece &piece = pieces_[i];
+    piece.begin = begin;
+    piece.length /= stretch;
+    piece.depth_begin *= scale;
+    piece.depth_end *= scale;
+    begin = piece.end();
+  }
+}
+
+void Overlap::trace_edges(const BlockView &own, const BlockView &other, PotentialKind potential) {
+  DistanceField field(field_vertices(other), field_normals(other));
+  const double scale = field_scale(other);
+  std::vector<FieldPart> parts;
+  for (std::size_t e = 0; e < own.vertex.size(); ++e) {
+    if (!edge_meets(own.vertex[e], end_of_edge(own, e), other.box)) {
+      continue;
+    }
+    const EdgeInField in_field(own, e, other);
+    const double stretch = in_field.stretch;
+    const Vec2 tangent = perp(own.normal[e]);
+    parts.clear();
+    field.trace(in_field.edge, potential, parts);
+    for (const FieldPart &part : parts) {
+      const Vec2 anchor = own.vertex[e] + (part.anchor / stretch) * tangent;
+      Piece piece{anchor + (part.begin / stretch) * tangent,
+                  own.normal[e],
+                  (part.end - part.begin) / stretch,
+                  scale * part.depth_begin,
+                  scale * part.depth_end,
+                  part.enters,
+                  static_cast<std::int32_t>(e),
+                  part.face};
+      if (part.nearest_vertex) {
+        piece.curve = static_cast<std::int32_t>(curves_.size());
+        curves_.push_back({scale * stretch, part.q / stretch, part.foot / stretch});
+      }
+      pieces_.push_back(piece);
+    }
+  }
 }
 
 Piece Overlap::chord(Piece piece, double s_begin, double s_end, bool leaves) const {
@@ -143,47 +245,54 @@ void Overlap::walk_envelope(Piece piece, std::size_t line, double s, double s_en
       piece.length = s_next - s;
       piece.depth_end = std::max(0.0, lowest);
       pieces_.push_back(piece);
-      piece = {piece.end(), piece.normal, 0.0, piece.depth_end, 0.0, false};
+      piece = {piece.end(), piece.normal, 0.0, piece.depth_end, 0.0, false, piece.edge, piece.face};
       s = s_next;
     }
     if (next == none) {
       return;
     }
     line = next;
+    piece.face = static_cast<std::int32_t>(line);
   }
 }
 
-void Overlap::start_at_entry(std::size_t first_piece) {
-  // Sum from where the boundary comes in, the lowest leftmost such place if there are several: a choice that
-  // cutting or renumbering the block elsewhere cannot change.
-  const auto begin = pieces_.begin() + static_cast<std::ptrdiff_t>(first_piece);
-  const auto start = std::min_element(begin, pieces_.end(), [](const Piece &p, const Piece &q) {
-    if (p.enters != q.enters) {
-      return p.enters;
-    }
-    return p.begin.x != q.begin.x ? p.begin.x < q.begin.x : p.begin.y < q.begin.y;
-  });
-  std::rotate(begin, start, pieces_.end());
-}
-
-bool Overlap::find(const ConvexView &first, const ConvexView &second, PotentialKind potential) {
+bool Overlap::find(const BlockView &first, const BlockView &second, PotentialKind potential) {
   pieces_.clear();
-  clip_edges(first, second, potential);
-  num_first_ = pieces_.size();
-  clip_edges(second, first, potential);
-  return !pieces_.empty();
+  curves_.clear();
+  regions_.clear();
+  const auto add_edges = [&](const BlockView &own, const BlockView &other) {
+    other.is_convex ? clip_edges(own, other, potential) : trace_edges(own, other, potential);
+  };
+  add_edges(first, second);
+  const std::size_t num_first = pieces_.size();
+  add_edges(second, first);
+  if (!first.is_convex || !second.is_convex) {
+    split_into_regions(first, second, pieces_, num_first, regions_);
+  } else if (!pieces_.empty()) {
+    start_at_entry(std::span(pieces_).first(num_first));
+    start_at_entry(std::span(pieces_).subspan(num_first));
+    regions_.push_back(
+        {0, static_cast<std::uint32_t>(num_first), static_cast<std::uint32_t>(pieces_.size()), {}});
+  }
+  return !regions_.empty();
 }
 
-RegionIntegrals Overlap::integrate() const {
+RegionIntegrals Overlap::integrate(const Region &region) const {
   RegionIntegrals sum;
-  sum.origin = pieces_.front().begin;
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+  sum.origin = pieces_[region.begin].begin;
+  for (std::size_t i = region.begin; i < region.end; ++i) {
     const Piece &piece = pieces_[i];
     const double length = piece.length;
-    const double total = 0.5 * length * (piece.depth_begin + piece.depth_end);
-    const double along = length * length * (piece.depth_begin + 2.0 * piece.depth_end) / 6.0;
+    double total = 0.5 * length * (piece.depth_begin + piece.depth_end);
+    double along = length * length * (piece.depth_begin + 2.0 * piece.depth_end) / 6.0;
+    if (piece.curve >= 0) {
+      const DepthCurve &curve = curves_[static_cast<std::size_t>(piece.curve)];
+      const CurveIntegral integral = integrate_curve(curve.q, -curve.foot, length);
+      total = curve.scale * integral.total;
+      along = curve.scale * integral.moment;
+    }
     const Vec2 moment = total * (piece.begin - sum.origin) + along * perp(piece.normal);
-    const Vec2 direction = i < num_first_ ? -piece.normal : piece.normal;
+    const Vec2 direction = i < region.middle ? -piece.normal : piece.normal;
     sum.force += total * direction;
     sum.dyad[0] += moment.x * direction.x;
     sum.dyad[1] += moment.x * direction.y;
@@ -195,86 +304,19 @@ RegionIntegrals Overlap::integrate() const {
   return sum;
 }
 
-namespace {
-
-using Polygon = std::vector<Vec2>;
-
-/// The part of a convex polygon where distance(x) >= 0 for a linear function given by its values at the
-/// vertices.
-template <class Distance> Polygon keep_positive(const Polygon &polygon, const Distance &distance) {
-  Polygon kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 a = polygon[i];
-    const Vec2 b = polygon[(i + 1) % polygon.size()];
-    const double da = distance(a);
-    const double db = distance(b);
-    if (da >= 0.0) {
-      kept.push_back(a);
-    }
-    if ((da > 0.0 && db < 0.0) || (da < 0.0 && db > 0.0)) {
-      kept.push_back(a + (da / (da - db)) * (b - a));
-    }
+std::array<double, 2> Overlap::depth_floor(const Piece &piece) const {
+  if (piece.curve < 0) {
+    return {piece.depth_begin, piece.depth_end};
   }
-  return kept;
-}
-
-/// int d dA of a linear function over a convex polygon: each triangle of the fan by the mean of its corners.
-template <class Distance> double integrate_linear(const Polygon &polygon, const Distance &distance) {
-  double sum = 0.0;
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const double area = 0.5 * cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-    sum += area * (distance(polygon[0]) + distance(polygon[i]) + distance(polygon[i + 1])) / 3.0;
+  // The tangent in the middle of a convex curve. It is nowhere negative, because the foot is not inside.
+  const DepthCurve &curve = curves_[static_cast<std::size_t>(piece.curve)];
+  const double g = 0.5 * piece.length - curve.foot;
+  const double r = std::hypot(curve.q, g);
+  if (r == 0.0) {
+    return {0.0, 0.0};
   }
-  return sum;
-}
-
-/// int over the region of the distance to the boundary of `block`: cut the region into the cells in which one
-/// edge line is nearest.
-double integrate_distance(const Polygon &region, const ConvexView &block) {
-  double sum = 0.0;
-  double largest = 0.0;
-  for (const Vec2 x : block.vertex) {
-    largest = std::max({largest, std::abs(x.x), std::abs(x.y)});
-  }
-  // Collinear edges share a line up to the rounding of their vertices: the first of them takes the whole
-  // cell.
-  const double same_line = 64.0 * std::numeric_limits<double>::epsilon() * largest;
-  for (std::size_t i = 0; i < block.vertex.size(); ++i) {
-    const auto depth = [&](std::size_t line, Vec2 x) {
-      return dot(block.normal[line], block.vertex[line] - x);
-    };
-    Polygon cell = region;
-    for (std::size_t j = 0; j < block.vertex.size() && cell.size() >= 3; ++j) {
-      const auto margin = [&](Vec2 x) { return depth(j, x) - depth(i, x); };
-      if (j == i) {
-        continue;
-      }
-      if (std::all_of(cell.begin(), cell.end(), [&](Vec2 x) { return std::abs(margin(x)) <= same_line; })) {
-        if (j < i) {
-          cell.clear();
-        }
-      } else {
-        cell = keep_positive(cell, margin);
-      }
-    }
-    if (cell.size() >= 3) {
-      sum += integrate_linear(cell, [&](Vec2 x) { return depth(i, x); });
-    }
-  }
-  return sum;
-}
-
-} // namespace
-
-double overlap_energy(const ConvexView &first, const ConvexView &second) {
-  Polygon region(first.vertex.begin(), first.vertex.end());
-  for (std::size_t j = 0; j < second.vertex.size() && region.size() >= 3; ++j) {
-    region = keep_positive(region, [&](Vec2 x) { return dot(second.normal[j], second.vertex[j] - x); });
-  }
-  if (region.size() < 3) {
-    return 0.0;
-  }
-  return integrate_distance(region, first) + integrate_distance(region, second);
+  const double rise = 0.5 * piece.length * g / r;
+  return {std::max(0.0, curve.scale * (r - rise)), std::max(0.0, curve.scale * (r + rise))};
 }
 
 } // namespace gcpdda

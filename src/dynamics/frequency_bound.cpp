@@ -4,8 +4,10 @@
 
 namespace gcpdda {
 
-double contact_frequency_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
-                               double tangential_stiffness) {
+namespace {
+
+double rigid_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
+                   double tangential_stiffness) {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
     const Vec2 n = system.reference_normal[k];
@@ -26,6 +28,66 @@ double contact_frequency_bound(const BlockSystem &system, std::size_t row, doubl
   const Eigen::Matrix3d scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scaled, Eigen::EigenvaluesOnly);
   return 2.0 * solver.eigenvalues().maxCoeff();
+}
+
+/// int (k_n b_n b_n^T + k_t b_t b_t^T) ds over a deformable block's boundary; unknowns (u, F11, F12, F21,
+/// F22), in which a traction d at X works as (d, d X^T).
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+Matrix6 boundary_stiffness(std::span<const Vec2> vertices, double normal_stiffness,
+                           double tangential_stiffness) {
+  Matrix6 stiffness = Matrix6::Zero();
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Vec2 edge = vertices[(k + 1) % vertices.size()] - vertices[k];
+    const double length = norm(edge);
+    const Vec2 t = (1.0 / length) * edge;
+    for (const double gauss : {-1.0, 1.0}) { // as above
+      const Vec2 x = vertices[k] + (0.5 + gauss / std::sqrt(12.0)) * edge;
+      const auto add = [&](double spring, Vec2 d) {
+        Eigen::Matrix<double, 6, 1> b;
+        b << d.x, d.y, d.x * x.x, d.x * x.y, d.y * x.x, d.y * x.y;
+        stiffness += 0.5 * length * spring * b * b.transpose();
+      };
+      add(normal_stiffness, -perp(t));
+      add(tangential_stiffness, t);
+    }
+  }
+  return stiffness;
+}
+
+double deformable_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
+                        double tangential_stiffness, Elasticity elasticity) {
+  const Deformation &d = system.deformation_of(row);
+  Matrix6 stiffness = 2.0 * boundary_stiffness(system.of_row(system.reference_vertex, row), normal_stiffness,
+                                               tangential_stiffness);
+  if (elasticity == Elasticity::explicit_) {
+    Eigen::Matrix<double, 3, 4> strain; // eps_x, eps_y, gamma_xy of F - I
+    strain << 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0;
+    Eigen::Matrix3d elastic;
+    elastic << d.stiffness_direct, d.stiffness_cross, 0.0, d.stiffness_cross, d.stiffness_direct, 0.0, 0.0,
+        0.0, d.stiffness_shear;
+    stiffness.bottomRightCorner<4, 4>() += strain.transpose() * elastic * strain;
+  }
+  const double mass_of_block = system.properties[row].mass;
+  const Mat2 &s = d.second_moment;
+  Matrix6 mass = Matrix6::Zero();
+  mass.diagonal().head<2>().setConstant(mass_of_block);
+  for (const Eigen::Index i : {2, 4}) {
+    mass.block<2, 2>(i, i) << s.xx, s.xy, s.yx, s.yy;
+  }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(stiffness, mass, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().maxCoeff();
+}
+
+} // namespace
+
+double contact_frequency_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
+                               double tangential_stiffness, Elasticity elasticity) {
+  if (system.properties[row].keeps_its_velocity()) {
+    return 0.0;
+  }
+  return system.is_deformable(row)
+             ? deformable_bound(system, row, normal_stiffness, tangential_stiffness, elasticity)
+             : rigid_bound(system, row, normal_stiffness, tangential_stiffness);
 }
 
 } // namespace gcpdda

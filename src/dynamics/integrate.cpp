@@ -1,5 +1,10 @@
 #include "gcpdda/dynamics/integrate.hpp"
 
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/dynamics/deformable.hpp"
+#include "own_springs.hpp"
+#include "own_step.hpp"
+
 #include <cmath>
 
 namespace gcpdda {
@@ -19,17 +24,74 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
     system.trial_previous[i] = system.trial[i];
     system.trial[i] = system.displacement[i] +
                       (by_velocity * system.velocity[i] + by_acceleration * system.acceleration[i]);
+    if (system.is_deformable(i)) {
+      Deformation &d = system.deformation_of(i);
+      d.trial_previous = d.trial;
+      d.trial = d.gradient + (by_velocity * d.rate + by_acceleration * d.acceleration);
+      system.trial[i].r = system.displacement[i].r + angle_between(d.gradient, d.trial);
+    }
   }
   pose(system, 0, system.num_owned);
 }
 
-std::optional<std::size_t> solve_and_update(BlockSystem &system, std::span<const RigidDof> forces,
-                                            const Scheme &scheme, double time_step) {
+void accelerate(BlockSystem &system, const BlockForces &forces) {
+  for (std::size_t i = 0; i < system.num_owned; ++i) {
+    const bool held = system.has_matrix(i) && !system.anchors_of(i).empty();
+    if (!system.is_deformable(i)) {
+      system.acceleration[i] = held ? accelerate_held(system, i, forces.rigid[i], {}).rigid
+                                    : accelerate(system.properties[i], forces.rigid[i]);
+      continue;
+    }
+    Deformation &d = system.deformation_of(i);
+    d.internal = elastic_force(d, d.trial);
+    const Mat2 force = forces.gradient[system.deformation_begin[i]] - d.internal;
+    const HeldAcceleration a = held ? accelerate_held(system, i, forces.rigid[i], force)
+                                    : HeldAcceleration{accelerate(system.properties[i], forces.rigid[i]),
+                                                       force * inverse(d.second_moment)};
+    d.acceleration = a.gradient;
+    system.acceleration[i] = {a.rigid.u, spin_rate_of(d.gradient, d.rate, d.acceleration)};
+  }
+}
+
+double motion_bound(const BlockSystem &system, std::size_t row, double time_step) {
+  const double radius = system.properties[row].radius;
+  const RigidDof &v = system.velocity[row];
+  const RigidDof &a = system.acceleration[row];
+  double turning = std::abs(v.r);
+  double turning_rate = std::abs(a.r);
+  if (system.is_deformable(row)) {
+    turning = norm(system.deformation_of(row).rate);
+    turning_rate = norm(system.deformation_of(row).acceleration);
+  }
+  return time_step * (norm(v.u) + radius * turning) +
+         time_step * time_step * (norm(a.u) + radius * turning_rate);
+}
+
+double moved_since_refresh(const BlockSystem &system, std::size_t row) {
+  const RigidDof moved = system.displacement[row] - system.refreshed[row];
+  double turned = std::abs(moved.r);
+  if (system.is_deformable(row)) {
+    const Deformation &d = system.deformation_of(row);
+    turned = norm(d.gradient - d.refreshed);
+  }
+  return norm(moved.u) + system.properties[row].radius * turned;
+}
+
+std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
+                                            const Scheme &scheme, double time_step, Elasticity elasticity) {
+  expect(system.matrix_begin[system.num_owned] >= system.deformation_begin[system.num_owned],
+         "every deformable block has its matrix");
   std::optional<std::size_t> broken;
   for (std::size_t i = 0; i < system.num_owned; ++i) {
+    if (system.has_matrix(i)) {
+      if (!step_by_own_matrix(system, i, forces, scheme, time_step, elasticity)) {
+        broken = broken.value_or(i);
+      }
+      continue;
+    }
     const RigidDof a = system.acceleration[i];
-    const RigidDof a_new =
-        (1.0 / (1.0 - scheme.alpha_m)) * (accelerate(system.properties[i], forces[i]) - scheme.alpha_m * a);
+    const RigidDof a_new = (1.0 / (1.0 - scheme.alpha_m)) *
+                           (accelerate(system.properties[i], forces.rigid[i]) - scheme.alpha_m * a);
     const RigidDof d_new =
         system.displacement[i] + (time_step * system.velocity[i] +
                                   time_step * time_step * ((0.5 - scheme.beta) * a + scheme.beta * a_new));

@@ -34,6 +34,68 @@ bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
          (cda == 0 && within_box(a, c, d)) || (cdb == 0 && within_box(b, c, d));
 }
 
+/// Whether the boundary turns right from `in` to `out` by more than `rounding` of the vertices explains.
+bool turns_right(Vec2 in, Vec2 out, double rounding) {
+  // A vertex placed on a straight edge by another program's rounding sits up to about 1e-12 edge lengths off
+  // it; such a dent is far below any overlap and the lower envelope does not mind it.
+  constexpr double dent = 1e-11;
+  return cross(in, out) < -dent * norm(in) * norm(out) - rounding * (norm(in) + norm(out));
+}
+
+double rounding_of(std::span<const Vec2> vertices) {
+  double largest = 0.0;
+  for (const Vec2 p : vertices) {
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
+  }
+  return 4.0 * std::numeric_limits<double>::epsilon() * largest;
+}
+
+/// Whether an edge other than those at vertex `from` crosses the way from there to `to`, short of its end.
+bool is_blocked(std::span<const Vec2> vertices, std::size_t from, Vec2 to) {
+  const std::size_t n = vertices.size();
+  const Vec2 v = vertices[from];
+  const Vec2 way = to - v;
+  constexpr double short_of_end = 1e-9;
+  for (std::size_t step = 1; step + 1 < n; ++step) {
+    const Vec2 a = vertices[(from + step) % n];
+    const Vec2 edge = vertices[(from + step + 1) % n] - a;
+    const double from_a = cross(way, a - v);
+    const double from_b = cross(way, a + edge - v);
+    const double across = cross(way, edge);
+    if (across != 0.0 && (from_a <= 0.0) != (from_b <= 0.0)) {
+      const double share = cross(a - v, edge) / across;
+      if (share > 0.0 && share < 1.0 - short_of_end) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Smallest distance from a re-entrant vertex through the interior to an edge that does not start or end
+/// there. The foot of a step's riser lies in the cone's border: material is not narrow there.
+double width_at(std::span<const Vec2> vertices, std::size_t vertex) {
+  const std::size_t n = vertices.size();
+  const Vec2 v = vertices[vertex];
+  const Vec2 in = v - vertices[(vertex + n - 1) % n];
+  const Vec2 out = vertices[(vertex + 1) % n] - v;
+  constexpr double strictly = 1e-9;
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (std::size_t step = 1; step + 1 < n; ++step) {
+    const Vec2 a = vertices[(vertex + step) % n];
+    const Vec2 edge = vertices[(vertex + step + 1) % n] - a;
+    const double share = std::clamp(dot(v - a, edge) / dot(edge, edge), 0.0, 1.0);
+    const Vec2 foot = a + share * edge;
+    const double width = norm(foot - v);
+    const bool in_cone = cross(in, foot - v) > strictly * norm(in) * width ||
+                         cross(out, foot - v) > strictly * norm(out) * width;
+    if (width < narrowest && in_cone && !is_blocked(vertices, vertex, foot)) {
+      narrowest = width;
+    }
+  }
+  return narrowest;
+}
+
 } // namespace
 
 double signed_area(std::span<const Vec2> vertices) {
@@ -86,29 +148,36 @@ bool is_simple(std::span<const Vec2> vertices) {
 
 bool is_convex(std::span<const Vec2> vertices) {
   const std::size_t n = vertices.size();
-  // A vertex placed on a straight edge by another program's rounding sits up to about 1e-12 edge lengths off
-  // it; such a dent is far below any overlap and the lower envelope does not mind it.
-  constexpr double dent = 1e-11;
-  double largest = 0.0;
-  for (const Vec2 p : vertices) {
-    largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-  }
-  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * largest;
+  const double rounding = rounding_of(vertices);
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 in = vertices[(i + 1) % n] - vertices[i];
     const Vec2 out = vertices[(i + 2) % n] - vertices[(i + 1) % n];
-    if (cross(in, out) < -dent * norm(in) * norm(out) - rounding * (norm(in) + norm(out))) {
+    if (turns_right(in, out, rounding)) {
       return false;
     }
   }
   return true;
 }
 
+std::vector<bool> reentrant_vertices(std::span<const Vec2> vertices) {
+  const std::size_t n = vertices.size();
+  const double rounding = rounding_of(vertices);
+  std::vector<bool> reentrant(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 in = vertices[i] - vertices[(i + n - 1) % n];
+    const Vec2 out = vertices[(i + 1) % n] - vertices[i];
+    reentrant[i] = turns_right(in, out, rounding);
+  }
+  return reentrant;
+}
+
 double narrowest_width(std::span<const Vec2> vertices) {
   const std::size_t n = vertices.size();
   // The edges of a convex polygon are those of its hull. Otherwise the hull's are among all pairs of
   // vertices, and no direction is narrower than the narrowest.
-  const std::size_t farthest = is_convex(vertices) ? 1 : n - 1;
+  const std::vector<bool> reentrant = reentrant_vertices(vertices);
+  const bool convex = std::find(reentrant.begin(), reentrant.end(), true) == reentrant.end();
+  const std::size_t farthest = convex ? 1 : n - 1;
   double narrowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t step = 1; step <= farthest; ++step) {
@@ -124,6 +193,9 @@ double narrowest_width(std::span<const Vec2> vertices) {
       if (length > 0.0) {
         narrowest = std::min(narrowest, (high - low) / length);
       }
+    }
+    if (reentrant[i]) {
+      narrowest = std::min(narrowest, width_at(vertices, i));
     }
   }
   return narrowest;

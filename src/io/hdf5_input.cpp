@@ -1,8 +1,13 @@
 #include "hdf5_input.hpp"
 
+#include "hdf5_collective_file.hpp"
+
+#include <mpi.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 namespace gcpdda::hdf5 {
 
@@ -141,5 +146,102 @@ template std::vector<double> read_numbers(const File &, const std::string &);
 template std::vector<std::int64_t> read_numbers(const File &, const std::string &);
 template std::vector<std::int32_t> read_numbers(const File &, const std::string &);
 template std::vector<std::uint8_t> read_numbers(const File &, const std::string &);
+
+struct CollectiveInput::Slab {
+  hsize_t first;
+  hsize_t count;
+  hsize_t columns;
+  hid_t type;
+  void *target;
+};
+
+CollectiveInput::CollectiveInput(const Communicator &communicator, std::filesystem::path path)
+    : communicator_(communicator), path_(std::move(path)) {
+  on_all_ranks(communicator_, [&] {
+    const Properties access(checked(H5Pcreate(H5P_FILE_ACCESS), "set up parallel file access"));
+    const MPI_Comm native = *static_cast<const MPI_Comm *>(communicator_.native());
+    checked(H5Pset_fapl_mpio(access.get(), native, MPI_INFO_NULL), "set up parallel file access");
+    checked(H5Pset_all_coll_metadata_ops(access.get(), true), "set up collective metadata");
+    file_ = File(checked(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, access.get()), "open " + path_.string()));
+  });
+}
+
+std::int64_t CollectiveInput::num_rows(const std::string &name) {
+  const std::string what = "read " + path_.string() + " at " + name;
+  std::array<hsize_t, 2> shape{};
+  on_all_ranks(communicator_, [&] {
+    if (H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0) {
+      const Dataset dataset(checked(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT), what));
+      const Dataspace space(checked(H5Dget_space(dataset.get()), what));
+      if (H5Sget_simple_extent_ndims(space.get()) > 2) {
+        throw FileError("cannot " + what + ": it has more than two dimensions");
+      }
+      checked(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr), what);
+    }
+  });
+  return static_cast<std::int64_t>(shape[0]);
+}
+
+void CollectiveInput::read_piece(const Dataset &dataset, const std::string &what, const Slab &slab) {
+  Dataspace file_space;
+  Dataspace memory_space;
+  const Properties transfer(H5Pcreate(H5P_DATASET_XFER));
+  on_all_ranks(communicator_, [&] {
+    file_space = Dataspace(checked(H5Dget_space(dataset.get()), what));
+    const std::array<hsize_t, 2> extent{std::max<hsize_t>(slab.count, 1), slab.columns};
+    const int dimensions = slab.columns > 1 ? 2 : 1;
+    memory_space = Dataspace(checked(H5Screate_simple(dimensions, extent.data(), nullptr), what));
+    if (slab.count == 0) {
+      checked(H5Sselect_none(file_space.get()), what);
+      checked(H5Sselect_none(memory_space.get()), what);
+    } else {
+      const std::array<hsize_t, 2> start{slab.first, 0};
+      checked(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, extent.data(),
+                                  nullptr),
+              what);
+    }
+    checked(H5Pset_dxpl_mpio(transfer.get(), H5FD_MPIO_COLLECTIVE), what);
+  });
+  on_all_ranks(communicator_, [&] {
+    checked(
+        H5Dread(dataset.get(), slab.type, memory_space.get(), file_space.get(), transfer.get(), slab.target),
+        what);
+  });
+}
+
+template <class T>
+std::vector<T> CollectiveInput::rows(const std::string &name, std::int64_t first, std::int64_t count,
+                                     hsize_t columns) {
+  const std::string what = "read " + path_.string() + " at " + name;
+  Dataset dataset;
+  std::vector<T> values;
+  on_all_ranks(communicator_, [&] {
+    dataset = Dataset(checked(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT), what));
+    values.resize(static_cast<std::size_t>(count) * columns);
+  });
+  // MPI-IO counts bytes in 32 bits, and buffers what it reads.
+  constexpr std::size_t most_bytes = std::size_t{64} << 20;
+  const auto piece = static_cast<std::int64_t>(most_bytes / (sizeof(T) * columns));
+  std::int64_t num_pieces = (count + piece - 1) / piece;
+  communicator_.max(std::span(&num_pieces, 1));
+  for (std::int64_t k = 0; k < num_pieces; ++k) {
+    const std::int64_t begin = std::min(k * piece, count);
+    const std::int64_t end = std::min(begin + piece, count);
+    T nothing{}; // a rank without rows still takes part; HDF5 refuses a null pointer from it
+    read_piece(dataset, what,
+               {static_cast<hsize_t>(first + begin), static_cast<hsize_t>(end - begin), columns,
+                NumberType<T>::memory(),
+                begin == end ? &nothing : values.data() + static_cast<std::size_t>(begin) * columns});
+  }
+  return values;
+}
+
+template std::vector<double> CollectiveInput::rows(const std::string &, std::int64_t, std::int64_t, hsize_t);
+template std::vector<std::int64_t> CollectiveInput::rows(const std::string &, std::int64_t, std::int64_t,
+                                                         hsize_t);
+template std::vector<std::int32_t> CollectiveInput::rows(const std::string &, std::int64_t, std::int64_t,
+                                                         hsize_t);
+template std::vector<std::uint8_t> CollectiveInput::rows(const std::string &, std::int64_t, std::int64_t,
+                                                         hsize_t);
 
 } // namespace gcpdda::hdf5

@@ -18,6 +18,7 @@ namespace {
 
 constexpr const char *block_header = "time[s],x[m],y[m],rotation[rad],vx[m/s],vy[m/s],omega[rad/s],"
                                      "sxx[Pa],syy[Pa],sxy[Pa],fx[N/m],fy[N/m]\n";
+constexpr const char *point_header = "time[s],x[m],y[m],vx[m/s],vy[m/s]\n";
 constexpr const char *energy_header =
     "time[s],kinetic[J/m],strain[J/m],contact_normal[J/m],contact_stick[J/m],gravity[J/m],friction_loss[J/m],"
     "damping_loss[J/m],boundary_work[J/m],residual[J/m],unbalanced_ratio[-],max_speed[m/s]\n";
@@ -47,20 +48,25 @@ std::filesystem::path history_path(const std::filesystem::path &directory, const
 
 } // namespace
 
-HistoryWriter::HistoryWriter(std::filesystem::path directory, const std::vector<std::string> &block_monitors)
-    : directory_(std::move(directory)), names_(block_monitors), pending_(block_monitors.size() + 1) {
-  expect(std::find(names_.begin(), names_.end(), energy_name) == names_.end(),
+HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors)
+    : directory_(std::move(directory)), monitors_(std::move(monitors)), pending_(monitors_.size() + 1) {
+  expect(std::none_of(monitors_.begin(), monitors_.end(),
+                      [](const Monitor &monitor) { return monitor.name == energy_name; }),
          "no monitor by the name of the energy history");
   make_directory(directory_ / "history");
-  for (const std::string &name : names_) {
-    write_to(history_path(directory_, name), block_header, std::ios::trunc);
+  for (const Monitor &monitor : monitors_) {
+    write_to(history_path(directory_, monitor.name), monitor.is_point ? point_header : block_header,
+             std::ios::trunc);
   }
-  names_.emplace_back(energy_name);
   write_to(history_path(directory_, energy_name), energy_header, std::ios::trunc);
 }
 
-void HistoryWriter::write_block(std::size_t monitor, double time, const BlockHistoryRow &row) {
-  expect(monitor + 1 < pending_.size(), "a monitor that exists");
+void HistoryWriter::write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row) {
+  expect(monitor < monitors_.size(), "a monitor that exists");
+  if (monitors_[monitor].is_point) {
+    append_row(pending_[monitor], {time, row.position.x, row.position.y, row.velocity[0], row.velocity[1]});
+    return;
+  }
   append_row(pending_[monitor], {time, row.position.x, row.position.y, row.rotation, row.velocity[0],
                                  row.velocity[1], row.velocity[2], row.stress[0], row.stress[1],
                                  row.stress[2], row.contact_force.x, row.contact_force.y});
@@ -75,7 +81,8 @@ void HistoryWriter::write_energy(double time, const EnergyRow &row) {
 void HistoryWriter::flush() {
   for (std::size_t i = 0; i < pending_.size(); ++i) {
     if (!pending_[i].empty()) {
-      write_to(history_path(directory_, names_[i]), pending_[i], std::ios::app);
+      const std::string name = i < monitors_.size() ? monitors_[i].name : energy_name;
+      write_to(history_path(directory_, name), pending_[i], std::ios::app);
       pending_[i].clear();
     }
   }

@@ -1,96 +1,47 @@
+#include "scene_outline.hpp"
 #include "scene_parts.hpp"
-#include "scene_sets.hpp"
 
-#include "gcpdda/geometry/aabb.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "gcpdda/geometry/holds_point.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <span>
-#include <unordered_map>
+#include <utility>
 
 namespace gcpdda::scene_text {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-std::vector<Vec2> read_vertices(const toml::node &node) {
-  std::vector<Vec2> vertices;
-  for (const toml::node &element : *node.as_array()) {
-    const toml::array &point = *element.as_array();
-    vertices.push_back({as_number(point[0]), as_number(point[1])});
-  }
-  return vertices;
-}
-
-// Rounding of the coordinates as they stand in the file, as a length.
-double coordinate_rounding(std::span<const Vec2> vertices) {
-  double largest = 0.0;
-  for (const Vec2 p : vertices) {
-    largest = std::max({largest, std::abs(p.x), std::abs(p.y)});
-  }
-  return 4.0 * epsilon * largest;
-}
-
-// No vertex is further off one straight line than rounding puts it.
-bool is_flat(std::span<const Vec2> vertices) {
-  const Vec2 origin = vertices[0];
-  Vec2 farthest;
-  for (const Vec2 p : vertices) {
-    if (norm(p - origin) > norm(farthest)) {
-      farthest = p - origin;
-    }
-  }
-  const double bound = norm(farthest) * coordinate_rounding(vertices);
-  return std::all_of(vertices.begin(), vertices.end(),
-                     [&](Vec2 p) { return std::abs(cross(farthest, p - origin)) <= bound; });
-}
-
-// Left turns only and once around: such a ring is simple, which spares the O(n^2) test (1 s at 10^4
-// vertices).
-bool turns_left_once(std::span<const Vec2> vertices) {
-  constexpr double three_half_turns = 9.42477796076938;
-  const std::size_t n = vertices.size();
-  double turned = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 in = vertices[(i + 1) % n] - vertices[i];
-    const Vec2 out = vertices[(i + 2) % n] - vertices[(i + 1) % n];
-    turned += std::atan2(cross(in, out), dot(in, out));
-  }
-  return is_convex(vertices) && turned < three_half_turns;
-}
-
 class BlockReader {
 public:
-  BlockReader(const SceneSource &source, const MaterialIndex &materials)
-      : source_(source), materials_(&materials) {}
+  BlockReader(const SceneSource &source, Materials &materials, Names &names, Fidelity of_run)
+      : source_(source), materials_(&materials), names_(&names), of_run_(of_run) {}
 
   SceneBlock read(const Section &section, const std::string &name) {
     SceneBlock block;
     block.name = name;
     block.where = source_.faults.origins().position(section.source());
-    check_unique(section, name);
-    if (const auto material = section.text("material")) {
-      block.material = std::max(
-          0, find_material(*materials_, *material, section.given("material")->source(), source_.faults));
-    }
-    section.read("velocity", block.velocity);
+    names_->add(section, section.label(), name);
+    const std::int32_t material = materials_->find(section);
+    block.material = std::max(0, material);
     section.read("fixed", block.fixed);
-    if (block.fixed && block.velocity != std::array<double, 3>{}) {
-      fault(*section.given("velocity"), fmt::format("block '{}' is fixed but has a velocity", name),
-            "a fixed block never moves", "leave one of fixed and velocity out");
+    section.read("velocity", block.velocity);
+    section.read("prescribed_velocity", block.velocity);
+    block.driven = section.given("prescribed_velocity") != nullptr;
+    section.read_choice("block[]", "fidelity", block.fidelity);
+    check_motion(section, block);
+    check_fidelity(section, block, material);
+
+    const bool has_outline = read_outline(section, block);
+    section.read("fixed_points", block.fixed_points);
+    if (const toml::node *points = section.sound("fixed_points"); points != nullptr && has_outline) {
+      for (std::size_t i = 0; i < block.fixed_points.size(); ++i) {
+        expect_in_block((*points->as_array())[i], block, block.fixed_points[i],
+                        fmt::format("fixed point {} of {}", i, section.label()));
+      }
     }
-    if (section.text("fidelity") == "deformable") {
-      fault(*section.given("fidelity"), "deformable blocks are not available in this version", "",
-            "use \"rigid\"");
-    }
-    if (const toml::node *vertices = section.sound("vertices")) {
-      block.vertices = read_vertices(*vertices);
-      check_polygon(*vertices, block);
+    for (const Section &load : section.list("load")) {
+      read_load(load, block, has_outline);
     }
     return block;
   }
@@ -100,75 +51,125 @@ private:
     source_.faults.add(node.source(), std::move(what), std::move(why), std::move(hint));
   }
 
-  void check_unique(const Section &section, const std::string &name) {
-    const auto [first, is_new] = first_of_name_.emplace(name, section.source());
-    if (!is_new) {
-      const toml::node *given = section.sound("name");
-      source_.faults.add(given == nullptr ? section.source() : given->source(),
-                         fmt::format("two blocks are named '{}'", name),
-                         fmt::format("the first is at {}", source_.faults.origins().place(first->second)),
-                         "names are unique, and unnamed blocks are b<n> from 0 in file order");
-    }
-  }
-
-  // Leaves the vertices counter-clockwise.
-  void check_polygon(const toml::node &node, SceneBlock &block) {
-    std::vector<Vec2> &vertices = block.vertices;
-    const std::string who = fmt::format("block '{}'", block.name);
-    if (has_equal_neighbours(node, vertices, who)) {
-      return;
-    }
-    if (is_flat(vertices)) {
-      fault(node, who + " has zero area", "all its vertices lie on one line", "check the vertices");
-      return;
-    }
-    if (signed_area(vertices) < 0.0) {
-      std::reverse(vertices.begin() + 1, vertices.end());
-    }
-    if (turns_left_once(vertices)) {
-      return;
-    }
-    if (!is_simple(vertices)) {
-      fault(node, who + " crosses itself", "two of its edges meet away from a common vertex",
-            "list the vertices in order around the block");
-    } else {
-      fault(node, who + " is not convex: this version computes convex blocks", "",
-            "split it into convex blocks");
-    }
-  }
-
-  bool has_equal_neighbours(const toml::node &node, std::span<const Vec2> vertices, const std::string &who) {
-    const double rounding = coordinate_rounding(vertices);
-    bool found = false;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const std::size_t next = (i + 1) % vertices.size();
-      if (norm(vertices[next] - vertices[i]) > rounding) {
-        continue;
+  void check_motion(const Section &section, const SceneBlock &block) {
+    const std::string &who = section.label();
+    if (const toml::node *node = section.given("prescribed_velocity")) {
+      check_prescribed(section, block, *node);
+    } else if (block.fixed) {
+      if (block.velocity != std::array<double, 3>{}) {
+        fault(*section.given("velocity"), who + " is fixed but has a velocity", "a fixed block never moves",
+              "leave one of fixed and velocity out");
       }
-      found = true;
-      // Of the last and the first vertex the last is the superfluous one.
-      const std::size_t later = std::max(i, next);
-      fault((*node.as_array())[later],
-            fmt::format("vertex {} of {} equals vertex {}", later, who, later == i ? next : i),
-            later == i ? "the outline closes by itself" : "an edge needs a length", "leave one of them out");
+      if (const toml::node *points = section.given("fixed_points")) {
+        fault(*points, who + " is fixed but has fixed_points", "all of it is held",
+              "leave one of fixed and fixed_points out");
+      }
     }
-    return found;
+    const toml::node *loads = section.given("load");
+    if (loads != nullptr && (block.fixed || block.driven)) {
+      const std::vector<Section> list = section.list("load");
+      source_.faults.add(
+          list.empty() ? loads->source() : list.front().source(),
+          fmt::format("{} {} but has a load", who, block.fixed ? "is fixed" : "has a prescribed velocity"),
+          "no force changes its motion", "leave the load out");
+    }
+  }
+
+  void check_prescribed(const Section &section, const SceneBlock &block, const toml::node &node) {
+    const std::string &who = section.label();
+    if (block.fixed) {
+      fault(node, who + " is fixed but has a prescribed_velocity", "a fixed block never moves",
+            "leave one of fixed and prescribed_velocity out");
+    }
+    if (section.given("velocity") != nullptr) {
+      fault(node, who + " has both velocity and prescribed_velocity",
+            "it keeps the prescribed one from the start", "leave velocity out");
+    }
+    if (section.given("fixed_points") != nullptr) {
+      fault(node, who + " has both fixed_points and prescribed_velocity", "a point cannot be held and move",
+            "leave one of them out");
+    }
+  }
+
+  void check_fidelity(const Section &section, const SceneBlock &block, std::int32_t material) {
+    const bool own = block.fidelity != Fidelity::automatic;
+    const bool deformable = (own ? block.fidelity : of_run_) == Fidelity::deformable;
+    if (!deformable || block.fixed) {
+      return;
+    }
+    const toml::node *where = section.given(own ? "fidelity" : "material");
+    if (!block.driven && where != nullptr) {
+      materials_->expect_elastic(material, section.label(), *where);
+    } else if (block.driven && own) {
+      fault(*section.given("fidelity"), section.label() + " has a prescribed velocity but is deformable",
+            "its motion is prescribed as that of a rigid body", "leave fidelity out or write \"rigid\"");
+    }
+  }
+
+  /// True if the outline is sound.
+  bool read_outline(const Section &section, SceneBlock &block) {
+    section.read("vertices", block.vertices);
+    const toml::node *node = section.sound("vertices");
+    if (node == nullptr) {
+      return false;
+    }
+    const std::vector<OutlineFault> faults = check_outline(block.vertices, section.label());
+    for (const OutlineFault &f : faults) {
+      fault(f.vertex ? (*node->as_array())[*f.vertex] : *node, f.what, f.why, f.hint);
+    }
+    return faults.empty();
+  }
+
+  void read_load(const Section &section, SceneBlock &block, bool has_outline) {
+    PointLoad load;
+    section.read("point", load.point);
+    section.read("force", load.force);
+    if (const toml::node *point = section.sound("point"); point != nullptr && has_outline) {
+      expect_in_block(*point, block, load.point, fmt::format("the point of {}", section.label()));
+    }
+    block.loads.push_back(load);
+  }
+
+  void expect_in_block(const toml::node &node, const SceneBlock &block, Vec2 point, const std::string &who) {
+    if (!holds_point(block.vertices, point)) {
+      fault(node, fmt::format("{} is not in the block", who),
+            fmt::format("[{}, {}] lies outside its outline", point.x, point.y),
+            "move it to a place in or on the block");
+    }
   }
 
   SceneSource source_;
-  const MaterialIndex *materials_;
-  std::unordered_map<std::string, toml::source_region> first_of_name_;
+  Materials *materials_;
+  Names *names_;
+  Fidelity of_run_;
 };
 
 } // namespace
 
-std::vector<SceneBlock> read_blocks(const SceneSource &source, const MaterialIndex &materials) {
+void Names::add(const Section &section, const std::string &label, const std::string &name) {
+  const auto [first, is_new] = first_of_name_.emplace(name, First{label, section.source()});
+  if (is_new) {
+    return;
+  }
+  const toml::node *given = section.sound("name");
+  const bool same_list = first->second.label == label;
+  faults_->add(given == nullptr ? section.source() : given->source(),
+               same_list ? fmt::format("two {}s are named '{}'", label.substr(0, label.find(' ')), name)
+                         : fmt::format("{} has the name of {}", label, first->second.label),
+               fmt::format("the first is at {}", faults_->origins().place(first->second.where)),
+               label.starts_with("block")
+                   ? "names are unique, and unnamed blocks are b<n> from 0 in file order"
+                   : "names of blocks, walls and pyramids are unique: choose another one");
+}
+
+std::vector<SceneBlock> read_blocks(const SceneSource &source, Materials &materials, Names &names,
+                                    Fidelity of_run) {
   const std::vector<Section> sections = listed_sections(source.root, "block", source.faulty);
-  BlockReader reader(source, materials);
+  BlockReader reader(source, materials, names, of_run);
   std::vector<SceneBlock> blocks;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const toml::node &node = (*source.root["block"].as_array())[i];
-    blocks.push_back(reader.read(sections[i], block_name(node, i)));
+    blocks.push_back(reader.read(sections[i], name_of_element("block", node, i)));
   }
   return blocks;
 }

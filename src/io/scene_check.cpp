@@ -54,9 +54,6 @@ public:
       const Key *row = find_key(parent, key.str());
       if (row == nullptr) {
         report_unknown(key, parent, label);
-      } else if (row->kind == Kind::later) {
-        faults_->add(key.source(), subject(key.str(), label) + " is not available in this version", "",
-                     "leave it out");
       } else if (!check_entry(*row, key, node, label)) {
         faulty_.insert(&node);
       }
@@ -106,7 +103,7 @@ private:
     case Kind::named_tables:
       return check_named_tables(row, node, who);
     case Kind::table_list:
-      return check_table_list(row, node, who);
+      return check_table_list(row, node, label, who);
     case Kind::number:
       return check_number(row, node, who, "a number");
     case Kind::number_or_auto:
@@ -117,14 +114,17 @@ private:
       return check_choice(row, node, who);
     case Kind::name:
       return check_name(row, node, who);
+    case Kind::text:
+      return check_text(row, node, who);
     case Kind::pair_of_names:
     case Kind::vector2:
     case Kind::vector3:
       return check_array(row, node, who);
+    case Kind::points:
     case Kind::polygon:
-      return check_polygon(row, node, who);
-    case Kind::later:
-      break;
+      return check_points(row, node, who);
+    case Kind::count:
+      return check_count(row, node, who);
     }
     return true;
   }
@@ -156,23 +156,22 @@ private:
     return true;
   }
 
-  bool check_table_list(const Key &row, const toml::node &node, const std::string &who) {
+  bool check_table_list(const Key &row, const toml::node &node, const std::string &label,
+                        const std::string &who) {
     const toml::array *list = node.as_array();
     if (list == nullptr) {
       return wrong_type(row, node, who, "a list of tables");
     }
-    if (row.need == Need::required && list->empty()) {
-      return fault(node, fmt::format("{} is empty", who), "at least one is needed", example_of(row));
-    }
     if (list->size() > most_blocks) {
       return fault((*list)[most_blocks], fmt::format("{} has {} entries", who, list->size()),
                    fmt::format("a scene file holds at most {}", most_blocks),
-                   "put many blocks into a file and name it in [blocks] file");
+                   name_of(row) == "block" ? "put many blocks into a file and name it in [blocks] file"
+                                           : "leave some of them out");
     }
     for (std::size_t i = 0; i < list->size(); ++i) {
       const toml::node &element = (*list)[i];
       if (element.is_table()) {
-        check_table(*element.as_table(), row.path, label_of_element(name_of(row), element, i));
+        check_table(*element.as_table(), row.path, label_of_element(name_of(row), element, i, label));
       } else {
         wrong_type(row, element, fmt::format("'{}[{}]'", name_of(row), i), "a table");
       }
@@ -194,6 +193,15 @@ private:
                    example_of(row));
     }
     return true;
+  }
+
+  bool check_count(const Key &row, const toml::node &node, const std::string &who) {
+    if (!check_number(row, node, who, "an integer")) {
+      return false;
+    }
+    const double x = as_number(node);
+    return x == std::floor(x) ||
+           fault(node, fmt::format("{} is {}", who, x), "it must be an integer", example_of(row));
   }
 
   bool check_number_or_auto(const Key &row, const toml::node &node, const std::string &who) {
@@ -232,6 +240,19 @@ private:
                                   "a name holds 1 to 100 letters, digits, _ . and -", example_of(row));
   }
 
+  bool check_text(const Key &row, const toml::node &node, const std::string &who) {
+    if (!node.is_string()) {
+      return wrong_type(row, node, who, "a string");
+    }
+    const std::string &text = node.as_string()->get();
+    if (text.empty() || text.size() > longest_text) {
+      return fault(node, fmt::format("{} has {} characters", who, text.size()),
+                   fmt::format("it must have 1 to {}", longest_text), example_of(row));
+    }
+    return shown(text, longest_text) == text || fault(node, fmt::format("{} holds control characters", who),
+                                                      "it must be one line of text", example_of(row));
+  }
+
   bool check_array(const Key &row, const toml::node &node, const std::string &who) {
     const std::size_t size = row.kind == Kind::vector3 ? 3 : 2;
     const bool names = row.kind == Kind::pair_of_names;
@@ -253,34 +274,40 @@ private:
     return sound;
   }
 
-  bool check_polygon(const Key &row, const toml::node &node, const std::string &who) {
+  bool check_points(const Key &row, const toml::node &node, const std::string &who) {
+    const bool is_polygon = row.kind == Kind::polygon;
     const toml::array *points = node.as_array();
     if (points == nullptr) {
       return wrong_type(row, node, who, "an array of points [x, y]");
     }
-    if (points->size() < 3) {
-      return fault(node, fmt::format("{} has {} points", who, points->size()), "a block has at least 3",
-                   example_of(row));
+    if (points->size() < (is_polygon ? 3 : 1)) {
+      return fault(node, fmt::format("{} has {} points", who, points->size()),
+                   is_polygon ? "a block has at least 3" : "at least one is needed", example_of(row));
     }
     if (points->size() > most_vertices) {
       return fault(node, fmt::format("{} has {} points", who, points->size()),
-                   fmt::format("a block has at most {}", most_vertices), "simplify the outline");
+                   fmt::format("a block has at most {}", most_vertices),
+                   is_polygon ? "simplify the outline" : "leave some of them out");
     }
     bool sound = true;
     for (std::size_t i = 0; i < points->size(); ++i) {
-      const toml::array *point = (*points)[i].as_array();
-      const std::string vertex = fmt::format("vertex {} of {}", i, who);
-      if (point == nullptr) {
-        sound = wrong_type(row, (*points)[i], vertex, "a point [x, y]");
-      } else if (point->size() != 2) {
-        sound = fault(*point, fmt::format("{} has {} coordinates", vertex, point->size()),
-                      "the scene is plane", "write [x, y]");
-      } else {
-        sound &= check_number(row, (*point)[0], vertex + ": x", "a number");
-        sound &= check_number(row, (*point)[1], vertex + ": y", "a number");
-      }
+      const std::string point_name = fmt::format("{} {} of {}", is_polygon ? "vertex" : "point", i, who);
+      sound &= check_point(row, (*points)[i], point_name);
     }
     return sound;
+  }
+
+  bool check_point(const Key &row, const toml::node &node, const std::string &who) {
+    const toml::array *point = node.as_array();
+    if (point == nullptr) {
+      return wrong_type(row, node, who, "a point [x, y]");
+    }
+    if (point->size() != 2) {
+      return fault(node, fmt::format("{} has {} coordinates", who, point->size()), "the scene is plane",
+                   "write [x, y]");
+    }
+    const bool sound = check_number(row, (*point)[0], who + ": x", "a number");
+    return check_number(row, (*point)[1], who + ": y", "a number") && sound;
   }
 
   Faults *faults_;

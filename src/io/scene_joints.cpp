@@ -1,9 +1,8 @@
 #include "scene_parts.hpp"
 
-#include "edit_distance.hpp"
-
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -142,23 +141,6 @@ private:
 };
 
 } // namespace
-
-std::int32_t find_material(const MaterialIndex &materials, const std::string &name,
-                           const toml::source_region &where, Faults &faults) {
-  const auto found = materials.find(name);
-  if (found != materials.end()) {
-    return found->second;
-  }
-  std::vector<std::string> names;
-  for (const auto &[known, index] : materials) {
-    names.push_back(known);
-  }
-  const std::string near = nearest_word(name, names);
-  faults.add(where, fmt::format("no material is named '{}'", name), "",
-             near.empty() ? fmt::format("add a table [material.{}]", name)
-                          : fmt::format("did you mean '{}'?", near));
-  return -1;
-}
 
 JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materials) {
   return JointReader(source, materials).read();

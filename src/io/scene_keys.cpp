@@ -40,11 +40,12 @@ constexpr Key all_keys[] = {
   {"run.spectral_radius", Kind::number, optional, from_to(0, 1), "", "0.8", "0.8", "Spectral radius at infinite frequency of generalized-alpha and explicit-generalized-alpha: 1 keeps all high frequencies, 0 removes them in one step."},
   {"run.contact_time", Kind::choice, optional, any, "leapfrog start predictor predictor-end", "\"leapfrog\"", "\"leapfrog\"", "Where within the step generalized-alpha takes the contact force."},
   {"run.potential", Kind::choice, optional, any, "exact linear", "\"exact\"", "\"exact\"", "Contact potential."},
-  {"run.fidelity", Kind::choice, optional, any, "auto rigid deformable", "\"auto\"", "\"rigid\"", "How blocks deform; in this version all are rigid."},
+  {"run.fidelity", Kind::choice, optional, any, "auto rigid deformable", "\"auto\"", "\"auto\"", "How blocks deform; auto decides for each block by its stiffness and that of its joints."},
   {"run.accepted_error", Kind::number, optional, above_to(0, 1), "", "0.01", "0.01", "Relative error up to which fidelity \"auto\" computes a block as rigid."},
   {"run.initial_friction", Kind::choice, optional, any, "consistent zero", "\"consistent\"", "\"consistent\"", "Shear force of the contacts that exist at the start."},
   {"run.contact_damping", Kind::number, optional, from_to(0, 100), "", "0.05", "0.05", "Damping ratio of the contact dashpots."},
-  {"run.local_damping", Kind::number, optional, from_below(0, 1), "", "0.0", "0.0", "Non-viscous damping for static problems; only 0 in this version."},
+  {"run.local_damping", Kind::number, optional, from_below(0, 1), "", "0.0", "0.0", "Share of the net force that is taken away against the motion; for static problems only."},
+  {"run.elasticity", Kind::choice, optional, any, "implicit explicit", "\"implicit\"", "\"implicit\"", "Where the elastic force of deformable blocks is taken."},
   {"run.plane", Kind::choice, optional, any, "strain stress", "\"strain\"", "\"strain\"", "Plane strain or plane stress."},
 
   {"material", Kind::named_tables, required, any, "", "", "[material.granite]", "The rocks of the scene, one table each, in this order."},
@@ -62,30 +63,49 @@ constexpr Key all_keys[] = {
   {"joint.*.friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "0.0", "35.0", "[degrees] Friction angle."},
   {"joint.*.cohesion", Kind::number, optional, from_to(0, 1e20), "", "0.0", "0.0", "[Pa] Cohesion."},
 
-  {"block[]", Kind::table_list, required, any, "", "", "[[block]]", "The blocks, in the order of their ids."},
+  {"block[]", Kind::table_list, optional, any, "", "", "[[block]]", "Single blocks; they have the first ids, walls and pyramids in the order of the file the next."},
   {"block[].name", Kind::name, optional, any, "", "<b and the position of the block, from 0>", "\"slider\"", "Name, unique in the scene."},
   {"block[].material", Kind::name, required, any, "", "", "\"granite\"", "One of the materials."},
   {"block[].vertices", Kind::polygon, required, from_to(-1e9, 1e9), "", "", "[[0, 0], [1, 0], [1, 1], [0, 1]]", "[m] Corners in order around the block, either way round."},
   {"block[].velocity", Kind::vector3, optional, from_to(-1e9, 1e9), "", "[0.0, 0.0, 0.0]", "[0.0, 0.0, 0.0]", "[m/s, m/s, rad/s] Initial velocity of the centroid and angular velocity, counter-clockwise positive."},
   {"block[].fixed", Kind::boolean, optional, any, "", "false", "true", "A fixed block never moves."},
-  {"block[].fidelity", Kind::choice, optional, any, "auto rigid deformable", "<run.fidelity>", "\"rigid\"", "How this block deforms; in this version all are rigid."},
-  {"block[].fixed_points", Kind::later, optional, any, "", "", "[[0, 0]]", "[m] Points of the block that are held."},
-  {"block[].prescribed_velocity", Kind::later, optional, any, "", "", "[1.0, 0.0, 0.0]", "[m/s, m/s, rad/s] Motion forced on the block."},
-  {"block[].load", Kind::later, optional, any, "", "", "[[block.load]]", "Point loads."},
+  {"block[].fidelity", Kind::choice, optional, any, "auto rigid deformable", "<run.fidelity>", "\"rigid\"", "How this block deforms; auto is as run.fidelity says."},
+  {"block[].fixed_points", Kind::points, optional, from_to(-1e9, 1e9), "", "<none>", "[[0, 0], [1, 0]]", "[m] Points in or on the block that are held where they are at the start."},
+  {"block[].prescribed_velocity", Kind::vector3, optional, from_to(-1e9, 1e9), "", "<none>", "[1.0, 0.0, 0.0]", "[m/s, m/s, rad/s] Velocity that the block keeps whatever acts on it; not together with fixed, velocity or fixed_points."},
+  {"block[].load[]", Kind::table_list, optional, any, "", "", "[[block.load]]", "Constant forces on the block above them."},
+  {"block[].load[].point", Kind::vector2, required, from_to(-1e9, 1e9), "", "", "[0.5, 1.0]", "[m] Where the force acts at the start, in or on the block; it goes with the block."},
+  {"block[].load[].force", Kind::vector2, required, from_to(-1e20, 1e20), "", "", "[0.0, -1e5]", "[N/m] Force per metre of thickness; it keeps its direction."},
 
-  {"wall", Kind::later, optional, any, "", "", "[[wall]]", "Generator of a wall of bricks."},
-  {"pyramid", Kind::later, optional, any, "", "", "[[pyramid]]", "Generator of a pyramid of bricks."},
-  {"blocks", Kind::later, optional, any, "", "", "[blocks]", "Blocks from an HDF5 file."},
+  {"wall[]", Kind::table_list, optional, any, "", "", "[[wall]]", "Walls of equal bricks, named <wall>.<row>.<column> from 0, rows from below, bricks from the left; with bond, every second row begins and ends with a cut brick."},
+  {"wall[].name", Kind::name, optional, any, "", "<wall and its position among the walls, from 0>", "\"wall\"", "Name, unique among blocks, walls and pyramids."},
+  {"wall[].material", Kind::name, required, any, "", "", "\"granite\"", "One of the materials."},
+  {"wall[].origin", Kind::vector2, required, from_to(-1e9, 1e9), "", "", "[0.0, 0.0]", "[m] Lower left corner."},
+  {"wall[].rows", Kind::count, required, from_to(1, 1e6), "", "", "10", "Number of rows."},
+  {"wall[].columns", Kind::count, required, from_to(1, 1e6), "", "", "20", "Whole bricks in the lowest row."},
+  {"wall[].block_size", Kind::vector2, required, above_to(0, 1e9), "", "", "[0.4, 0.2]", "[m] Width and height of a brick."},
+  {"wall[].bond", Kind::number, optional, from_below(0, 1), "", "0.5", "0.5", "Shift of every second row, in brick widths; 0 for none."},
+  {"wall[].gap", Kind::number, optional, from_to(0, 1e9), "", "0.0", "0.0", "[m] Gap between neighbours of a row."},
+
+  {"pyramid[]", Kind::table_list, optional, any, "", "", "[[pyramid]]", "Pyramids of equal bricks, each row one brick shorter than the one below; named as those of a wall."},
+  {"pyramid[].name", Kind::name, optional, any, "", "<pyramid and its position among the pyramids, from 0>", "\"pyramid\"", "Name, unique among blocks, walls and pyramids."},
+  {"pyramid[].material", Kind::name, required, any, "", "", "\"granite\"", "One of the materials."},
+  {"pyramid[].origin", Kind::vector2, required, from_to(-1e9, 1e9), "", "", "[0.0, 0.0]", "[m] Lower left corner."},
+  {"pyramid[].rows", Kind::count, required, from_to(1, 1e6), "", "", "100", "Number of rows, and of bricks in the lowest row."},
+  {"pyramid[].block_size", Kind::vector2, required, above_to(0, 1e9), "", "", "[0.4, 0.2]", "[m] Width and height of a brick."},
+  {"pyramid[].gap", Kind::number, optional, from_to(0, 1e9), "", "0.0", "0.0", "[m] Gap between neighbours of a row."},
+
+  {"blocks", Kind::table, optional, any, "", "", "[blocks]", "Blocks from an HDF5 file, named b<id>; their ids follow those of the scene file."},
+  {"blocks.file", Kind::text, required, any, "", "", "\"blocks.h5\"", "Path of the file, from the folder of the scene file."},
 
   {"output", Kind::table, optional, any, "", "", "[output]", "What is written and when."},
   {"output.interval", Kind::number, optional, above_to(0, 1e12), "", "<duration/100>", "0.02", "[s] Time between frames."},
   {"output.history_interval", Kind::number, optional, above_to(0, 1e12), "", "<interval>", "0.02", "[s] Time between rows of the histories; divides interval or is a multiple of it."},
   {"output.contacts", Kind::boolean, optional, any, "", "true", "true", "Whether contacts are written beside the frames."},
 
-  {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks whose history is written."},
-  {"monitor[].block", Kind::name, required, any, "", "", "\"slider\"", "Name of the block."},
-  {"monitor[].name", Kind::later, optional, any, "", "", "\"roof\"", "Name of a monitored point."},
-  {"monitor[].point", Kind::later, optional, any, "", "", "[0.0, 1.0]", "[m] Point that follows the block that holds it."},
+  {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks and points whose history is written to history/<name>.csv: either block, or name and point."},
+  {"monitor[].block", Kind::name, optional, any, "", "<exactly one of this and point>", "\"slider\"", "Name of the block, also of a generated one or one of the block file."},
+  {"monitor[].name", Kind::name, optional, any, "", "<required with point>", "\"roof\"", "Name of the monitored point."},
+  {"monitor[].point", Kind::vector2, optional, from_to(-1e9, 1e9), "", "<exactly one of this and block>", "[0.0, 1.0]", "[m] Point at the start; it goes with the block that holds it."},
 };
 // clang-format on
 
@@ -129,10 +149,11 @@ std::vector<std::string> names_below(std::string_view parent) {
 }
 
 std::string header_of(std::string_view parent) {
-  if (parent.ends_with("[]")) {
-    return fmt::format("[[{}]]", parent.substr(0, parent.size() - 2));
+  std::string path(parent);
+  for (std::size_t at = path.find("[]"); at != std::string::npos; at = path.find("[]")) {
+    path.erase(at, 2);
   }
-  return fmt::format("[{}]", parent);
+  return parent.ends_with("[]") ? fmt::format("[[{}]]", path) : fmt::format("[{}]", path);
 }
 
 std::vector<std::string> words_of(std::string_view choices) {
@@ -147,6 +168,10 @@ std::vector<std::string> words_of(std::string_view choices) {
 std::string describe(const Range &range) {
   const std::string low = fmt::format("{} {:g}", range.low_open ? "above" : "at least", range.low);
   return fmt::format("{} and {} {:g}", low, range.high_open ? "below" : "at most", range.high);
+}
+
+std::string_view prefix_of_unnamed(std::string_view list) {
+  return list == "block" ? "b" : list;
 }
 
 bool is_name(std::string_view text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -19,11 +20,13 @@ enum class Kind {
   boolean,
   choice, ///< one of a few words
   name,
+  text, ///< any one line
   pair_of_names,
   vector2,
   vector3,
-  polygon, ///< list of [x, y]
-  later    ///< part of the contract that this version does not have
+  points,  ///< list of [x, y]
+  polygon, ///< the same, at least three
+  count    ///< integer, or a real number that is one
 };
 
 /// Numbers a key accepts; also each number of a vector or polygon.
@@ -53,9 +56,13 @@ struct Key {
   std::string_view doc;      ///< one sentence; starts with the unit in brackets if there is one
 };
 
-inline constexpr std::size_t most_blocks = 10'000;
+inline constexpr std::size_t most_blocks = 10'000; ///< and other tables of one list
 inline constexpr std::size_t most_vertices = 10'000;
 inline constexpr std::size_t longest_name = 100;
+inline constexpr std::size_t longest_text = 4096;
+/// Of inline blocks, generators and block file together: ids fit 32 bits, which METIS and VTK count with.
+inline constexpr std::int64_t most_blocks_in_all = 2'147'483'647;
+inline constexpr double largest_coordinate = 1e9;
 
 /// Every key of the scene contract, in the order of its description.
 std::span<const Key> scene_keys();
@@ -70,7 +77,7 @@ const Key *find_key(std::string_view parent, std::string_view name);
 /// Names of the keys directly below `parent`, in table order.
 std::vector<std::string> names_below(std::string_view parent);
 
-/// How a person writes the table a key lives in: "[run]", "[material.*]", "[[block]]".
+/// How a person writes the table a key lives in: "[run]", "[material.*]", "[[block]]", "[[block.load]]".
 std::string header_of(std::string_view parent);
 
 /// The words of a choice.
@@ -78,6 +85,9 @@ std::vector<std::string> words_of(std::string_view choices);
 
 /// "above 0 and at most 1".
 std::string describe(const Range &range);
+
+/// What the name of an unnamed element of a list begins with, before its position: "b", "wall", "pyramid".
+std::string_view prefix_of_unnamed(std::string_view list);
 
 /// Letters, digits, _ . and -, 1 to longest_name of them: fit for a file name on any system.
 bool is_name(std::string_view text);

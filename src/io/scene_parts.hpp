@@ -5,6 +5,7 @@
 #include "gcpdda/model/scene.hpp"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,13 +20,70 @@ struct SceneSource {
 
 using MaterialIndex = std::map<std::string, std::int32_t>;
 
+/// The materials while the scene is read.
+class Materials {
+public:
+  explicit Materials(const SceneSource &source);
+
+  [[nodiscard]] const std::vector<Material> &all() const { return materials_; }
+  [[nodiscard]] const MaterialIndex &index() const { return index_; }
+
+  /// Index of the material that a section names; -1 where it names none, with a fault where it is unknown.
+  std::int32_t find(const Section &section);
+  /// Where `who` deforms, its material must say how: one fault per material.
+  void expect_elastic(std::int32_t material, const std::string &who, const toml::node &where);
+  /// The blocks of a file may be of any material.
+  void expect_all_elastic();
+
+private:
+  void report_missing(std::int32_t material, const toml::source_region &where, const std::string &what,
+                      const std::string &why);
+
+  SceneSource source_;
+  std::vector<Material> materials_;
+  std::vector<NamedSection> sections_;
+  MaterialIndex index_;
+  std::set<std::int32_t> reported_;
+};
+
+/// Names of blocks, walls and pyramids: each is given once.
+class Names {
+public:
+  explicit Names(Faults &faults) : faults_(&faults) {}
+  /// @param label  "block 'slider'"
+  void add(const Section &section, const std::string &label, const std::string &name);
+
+private:
+  struct First {
+    std::string label;
+    toml::source_region where;
+  };
+  Faults *faults_;
+  std::map<std::string, First> first_of_name_;
+};
+
 /// Index of a material, -1 (and a fault at `where`) where no material has that name.
 std::int32_t find_material(const MaterialIndex &materials, const std::string &name,
                            const toml::source_region &where, Faults &faults);
 
+RunSettings read_run(const SceneSource &source);
+OutputSettings read_output(const SceneSource &source, double duration);
 JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materials);
 
 /// One SceneBlock per [[block]]; the faulty ones lack their faulty parts.
-std::vector<SceneBlock> read_blocks(const SceneSource &source, const MaterialIndex &materials);
+std::vector<SceneBlock> read_blocks(const SceneSource &source, Materials &materials, Names &names,
+                                    Fidelity of_run);
+
+/// Walls and pyramids that can be built, in the order of the file. Blocks whose name is that of a brick are
+/// faults, and more blocks than ids.
+std::vector<BrickGenerator> read_generators(const SceneSource &source, Materials &materials, Names &names,
+                                            Fidelity of_run, const std::vector<SceneBlock> &blocks);
+
+/// @param scene_file  as the user gave it: the block file's path starts from its folder
+BlockFile read_block_file_table(const SceneSource &source, Materials &materials, Fidelity of_run,
+                                const std::string &scene_file);
+
+/// @param scene  with all its blocks
+std::vector<Monitor> read_monitors(const SceneSource &source, const Scene &scene);
 
 } // namespace gcpdda::scene_text

@@ -1,7 +1,5 @@
 #include "scene_section.hpp"
 
-#include "scene_sets.hpp"
-
 #include "gcpdda/base/check.hpp"
 
 #include <fmt/format.h>
@@ -62,6 +60,32 @@ void Section::read(std::string_view key, std::array<double, 3> &value) const {
   }
 }
 
+void Section::read(std::string_view key, std::vector<Vec2> &value) const {
+  const toml::node *node = sound(key);
+  const toml::array *points = node == nullptr ? nullptr : node->as_array();
+  for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
+    const toml::array &point = *(*points)[i].as_array();
+    value.push_back({as_number(point[0]), as_number(point[1])});
+  }
+}
+
+void Section::read(std::string_view key, std::int64_t &value) const {
+  if (const toml::node *node = sound(key)) {
+    value = static_cast<std::int64_t>(as_number(*node));
+  }
+}
+
+std::vector<Section> Section::list(std::string_view key) const {
+  const toml::node *node = sound(key);
+  const toml::array *elements = node == nullptr ? nullptr : node->as_array();
+  std::vector<Section> sections;
+  for (std::size_t i = 0; elements != nullptr && i < elements->size(); ++i) {
+    const toml::node &element = (*elements)[i];
+    sections.emplace_back(&element, label_of_element(key, element, i, label_), *faulty_);
+  }
+  return sections;
+}
+
 std::optional<std::string> Section::text(std::string_view key) const {
   const toml::node *node = sound(key);
   return node == nullptr ? std::nullopt : node->value<std::string>();
@@ -96,20 +120,26 @@ std::vector<NamedSection> named_sections(const toml::table &root, std::string_vi
 
 std::vector<Section> listed_sections(const toml::table &root, std::string_view name,
                                      const FaultyNodes &faulty) {
-  const toml::array *list = root[name].as_array();
-  std::vector<Section> sections;
-  if (list == nullptr || faulty.count(list) != 0) {
-    return sections;
-  }
-  for (std::size_t i = 0; i < list->size(); ++i) {
-    sections.emplace_back(&(*list)[i], label_of_element(name, (*list)[i], i), faulty);
-  }
-  return sections;
+  return Section(&root, "", faulty).list(name);
 }
 
-std::string label_of_element(std::string_view name, const toml::node &element, std::size_t index) {
-  return name == "block" ? fmt::format("block '{}'", block_name(element, index))
-                         : fmt::format("[[{}]]", name);
+std::string label_of_element(std::string_view list, const toml::node &element, std::size_t index,
+                             std::string_view above) {
+  if (!above.empty()) {
+    return fmt::format("{} {} of {}", list, index, above);
+  }
+  return list == "monitor" ? "[[monitor]]"
+                           : fmt::format("{} '{}'", list, name_of_element(list, element, index));
+}
+
+std::string name_of_element(std::string_view list, const toml::node &element, std::size_t index) {
+  if (const toml::table *table = element.as_table()) {
+    const auto name = (*table)["name"].value<std::string_view>();
+    if (name && is_name(*name)) {
+      return std::string(*name);
+    }
+  }
+  return fmt::format("{}{}", prefix_of_unnamed(list), index);
 }
 
 } // namespace gcpdda::scene_text

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,6 +46,10 @@ public:
   void read(std::string_view key, bool &value) const;
   void read(std::string_view key, Vec2 &value) const;
   void read(std::string_view key, std::array<double, 3> &value) const;
+  void read(std::string_view key, std::vector<Vec2> &value) const;
+  void read(std::string_view key, std::int64_t &value) const;
+  /// The tables of a list below; none if the list as a whole is at fault.
+  [[nodiscard]] std::vector<Section> list(std::string_view key) const;
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;
 
   /// The words of a choice stand in the order of the enumerators.
@@ -82,11 +87,18 @@ std::vector<NamedSection> named_sections(const toml::table &root, std::string_vi
 std::vector<Section> listed_sections(const toml::table &root, std::string_view name,
                                      const FaultyNodes &faulty);
 
-/// How messages call an element of the list `name`: "block 'slider'", "[[monitor]]".
-std::string label_of_element(std::string_view name, const toml::node &element, std::size_t index);
+/// How messages call element number `index` of a list: "block 'slider'", "wall 'wall0'", "[[monitor]]"; below
+/// another table, "load 0 of block 'slider'".
+/// @param above  what messages call the table that holds the list, "" for the top level
+std::string label_of_element(std::string_view list, const toml::node &element, std::size_t index,
+                             std::string_view above = "");
 
-/// Reports everything that can be said of each key by itself: unknown, not in this version, missing, of the
-/// wrong type, out of range.
+/// The name of element number `index` of the blocks, walls or pyramids: its own if it has a fit one, else
+/// b<index>, wall<index>, pyramid<index>.
+std::string name_of_element(std::string_view list, const toml::node &element, std::size_t index);
+
+/// Reports everything that can be said of each key by itself: unknown, missing, of the wrong type,
+/// out of range.
 FaultyNodes check_keys(const toml::table &root, Faults &faults);
 
 } // namespace gcpdda::scene_text

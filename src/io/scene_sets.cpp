@@ -2,6 +2,7 @@
 
 #include "edit_distance.hpp"
 #include "scene_keys.hpp"
+#include "scene_section.hpp"
 
 #include <fmt/format.h>
 
@@ -145,13 +146,18 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
   return tree;
 }
 
-// Finds the block that path[1], or path[1] to path[k] joined by dots (names may hold dots), names, and takes
-// these segments off the path.
-toml::table *find_block(toml::table &root, Path &path, const toml::source_region &where, Faults &faults) {
+bool is_named_list(std::string_view key) {
+  return key == "block" || key == "wall" || key == "pyramid";
+}
+
+// Finds the block, wall or pyramid that path[1], or path[1] to path[k] joined by dots (names may hold dots),
+// names, and takes these segments off the path.
+toml::table *find_element(toml::table &root, Path &path, const toml::source_region &where, Faults &faults) {
+  const std::string list = path.front();
   std::vector<std::string> names;
-  toml::array *blocks = root["block"].as_array();
-  for (std::size_t i = 0; blocks != nullptr && i < blocks->size(); ++i) {
-    names.push_back(block_name((*blocks)[i], i));
+  toml::array *elements = root[list].as_array();
+  for (std::size_t i = 0; elements != nullptr && i < elements->size(); ++i) {
+    names.push_back(name_of_element(list, (*elements)[i], i));
   }
   std::string name;
   for (std::size_t k = 1; k + 1 < path.size(); ++k) {
@@ -160,20 +166,22 @@ toml::table *find_block(toml::table &root, Path &path, const toml::source_region
     if (found == names.end()) {
       continue;
     }
-    if (toml::table *block = (*blocks)[static_cast<std::size_t>(found - names.begin())].as_table()) {
+    if (toml::table *element = (*elements)[static_cast<std::size_t>(found - names.begin())].as_table()) {
       path.erase(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(k + 1));
-      return block;
+      return element;
     }
   }
   if (name.empty()) {
-    faults.add(where, fmt::format("'block.{}' names no key of a block", shown(path[1])), "",
-               "for example --set block.slider.fixed=true");
+    faults.add(where, fmt::format("'{}.{}' names no key of a {}", list, shown(path[1]), list), "",
+               list == "block" ? "for example --set block.slider.fixed=true"
+                               : fmt::format("for example --set {0}.{0}0.rows=20", list));
     return nullptr;
   }
   const std::string near = nearest_word(name, names);
-  faults.add(where, fmt::format("no block is named '{}'", shown(name)), "",
-             near.empty() ? "unnamed blocks are b<n>, from 0 in file order"
-                          : fmt::format("did you mean '{}'?", near));
+  faults.add(where, fmt::format("no {} is named '{}'", list, shown(name)), "",
+             near.empty()
+                 ? fmt::format("unnamed {}s are {}<n>, from 0 in file order", list, prefix_of_unnamed(list))
+                 : fmt::format("did you mean '{}'?", near));
   return nullptr;
 }
 
@@ -181,16 +189,6 @@ toml::table *find_block(toml::table &root, Path &path, const toml::source_region
 
 std::optional<toml::table> parse_scene(std::string_view text, Faults &faults) {
   return parse(text, nullptr, faults);
-}
-
-std::string block_name(const toml::node &block, std::size_t index) {
-  if (const toml::table *table = block.as_table()) {
-    const auto name = (*table)["name"].value<std::string_view>();
-    if (name && is_name(*name)) {
-      return std::string(*name);
-    }
-  }
-  return fmt::format("b{}", index);
 }
 
 void apply_set(toml::table &root, const std::string &set, std::size_t index, Faults &faults) {
@@ -205,8 +203,8 @@ void apply_set(toml::table &root, const std::string &set, std::size_t index, Fau
     return;
   }
   toml::table *table = &root;
-  if (path->front() == "block" && path->size() > 1) {
-    table = find_block(root, *path, where, faults);
+  if (is_named_list(path->front()) && path->size() > 1) {
+    table = find_element(root, *path, where, faults);
   }
   auto tree = table == nullptr
                   ? std::nullopt

@@ -17,7 +17,4 @@ std::optional<toml::table> parse_scene(std::string_view text, Faults &faults);
 /// check of the whole tree to say.
 void apply_set(toml::table &root, const std::string &set, std::size_t index, Faults &faults);
 
-/// The name of block number `index`: its own if it has a fit one, else b<index>.
-std::string block_name(const toml::node &block, std::size_t index);
-
 } // namespace gcpdda::scene_text

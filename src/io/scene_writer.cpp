@@ -38,9 +38,12 @@ std::string value_text(const toml::node &node) {
     return boolean->get() ? "true" : "false";
   }
   const auto *string = node.as_string();
-  // Names and words of choices only: nothing in them needs an escape.
   expect(string != nullptr, "scene: a sound scene holds no dates");
-  return "\"" + string->get() + "\"";
+  std::string text = "\"";
+  for (const char c : string->get()) { // no control characters in a sound scene
+    text += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  }
+  return text + "\"";
 }
 
 class Writer {

@@ -2,80 +2,173 @@
 
 #include "gcpdda/geometry/polygon.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace gcpdda {
 
-void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material) {
-  const Moments moments = polygon_moments(block.vertices);
-  BlockProperties p;
-  p.id = id;
-  p.material = block.material;
-  p.kind = block.fixed ? BlockKind::fixed : BlockKind::rigid;
-  p.area = moments.area;
-  p.mass = block.fixed ? std::numeric_limits<double>::infinity() : material.density * moments.area;
-  p.inertia =
-      block.fixed ? std::numeric_limits<double>::infinity() : material.density * (moments.xx + moments.yy);
-  p.width = narrowest_width(block.vertices);
-  p.centroid = moments.centroid;
-  const std::size_t n = block.vertices.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 offset = block.vertices[i] - moments.centroid;
-    const Vec2 edge = block.vertices[(i + 1) % n] - block.vertices[i];
+namespace {
+
+/// Entries of all lists for one more row: none, until they are appended.
+void close_lists(BlockSystem &system) {
+  std::apply(
+      [&](auto... list) {
+        ((system.*std::get<0>(list))
+             .push_back(static_cast<std::uint32_t>((system.*std::get<1>(list)).size())),
+         ...);
+      },
+      BlockSystem::lists());
+}
+
+/// Every field with one entry a row gets a default one.
+void open_row(BlockSystem &system) {
+  std::apply([&](auto... field) { ((system.*field).emplace_back(), ...); }, BlockSystem::row_fields());
+}
+
+void append_shape(BlockSystem &system, std::span<const Vec2> vertices, Vec2 centroid) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec2 edge = vertices[(i + 1) % vertices.size()] - vertices[i];
     const double length = norm(edge);
-    p.radius = std::max(p.radius, norm(offset));
-    system.reference_vertex.push_back(offset);
+    system.reference_vertex.push_back(vertices[i] - centroid);
     system.reference_normal.push_back({edge.y / length, -edge.x / length});
     system.edge_length.push_back(length);
   }
-  system.vertex_begin.push_back(static_cast<std::uint32_t>(system.reference_vertex.size()));
-  const auto &v = block.velocity;
-  system.properties.push_back(p);
-  system.displacement.emplace_back();
-  system.velocity.push_back(block.fixed ? RigidDof{} : RigidDof{{v[0], v[1]}, v[2]});
-  system.acceleration.emplace_back();
-  system.trial.emplace_back();
-  system.trial_previous.emplace_back();
-  system.refreshed.emplace_back();
-  system.ledger.emplace_back();
+}
+
+/// [std] stiffness of plane strain or plane stress, times the area.
+void append_deformation(BlockSystem &system, const Moments &moments, const Material &material,
+                        const RigidDof &velocity, bool plane_strain) {
+  Deformation d;
+  d.second_moment = material.density * Mat2{moments.xx, moments.xy, moments.xy, moments.yy};
+  d.rate = {0.0, -velocity.r, velocity.r, 0.0};
+  const double e = material.youngs_modulus;
+  const double nu = material.poissons_ratio;
+  const double factor =
+      moments.area * (plane_strain ? e / ((1.0 + nu) * (1.0 - 2.0 * nu)) : e / (1.0 - nu * nu));
+  d.stiffness_direct = factor * (plane_strain ? 1.0 - nu : 1.0);
+  d.stiffness_cross = factor * nu;
+  d.stiffness_shear = 0.5 * moments.area * e / (1.0 + nu);
+  system.deformation.push_back(d);
+}
+
+void append_attachments(BlockSystem &system, const SceneBlock &block, Vec2 centroid) {
+  for (const PointLoad &load : block.loads) {
+    system.load.push_back({load.point - centroid, load.force});
+  }
+  for (const Vec2 point : block.fixed_points) {
+    system.anchor.push_back({point - centroid, 0.0, {}});
+  }
+}
+
+} // namespace
+
+void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material,
+                  BlockKind kind, bool plane_strain) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const Moments moments = polygon_moments(block.vertices);
+  open_row(system);
+  BlockProperties &p = system.properties.back();
+  p.id = id;
+  p.material = block.material;
+  p.kind = kind;
+  p.area = moments.area;
+  const bool heavy = kind == BlockKind::fixed || block.driven;
+  p.mass = heavy ? infinite : material.density * moments.area;
+  p.inertia = heavy ? infinite : material.density * (moments.xx + moments.yy);
+  p.width = narrowest_width(block.vertices);
+  p.is_convex = is_convex(block.vertices);
+  p.centroid = moments.centroid;
+  for (const Vec2 v : block.vertices) {
+    p.radius = std::max(p.radius, norm(v - moments.centroid));
+  }
+  if (kind != BlockKind::fixed) {
+    system.velocity.back() = {{block.velocity[0], block.velocity[1]}, block.velocity[2]};
+    append_attachments(system, block, moments.centroid);
+  }
+  if (kind == BlockKind::deformable) {
+    append_deformation(system, moments, material, system.velocity.back(), plane_strain);
+  }
+  append_shape(system, block.vertices, moments.centroid);
+  close_lists(system);
+}
+
+void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material) {
+  append_block(system, id, block, material, block.fixed ? BlockKind::fixed : BlockKind::rigid);
 }
 
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
   std::apply([&](auto... field) { ((to.*field).push_back((from.*field)[row]), ...); },
              BlockSystem::row_fields());
-  const auto begin = static_cast<std::ptrdiff_t>(from.vertex_begin[row]);
-  const auto end = static_cast<std::ptrdiff_t>(from.vertex_begin[row + 1]);
-  std::apply(
-      [&](auto... field) {
-        ((to.*field).insert((to.*field).end(), (from.*field).begin() + begin, (from.*field).begin() + end),
-         ...);
-      },
-      BlockSystem::shape_fields());
-  to.vertex_begin.push_back(static_cast<std::uint32_t>(to.reference_vertex.size()));
+  const auto append_list = [&](auto begins, auto... fields) {
+    const auto begin = static_cast<std::ptrdiff_t>((from.*begins)[row]);
+    const auto end = static_cast<std::ptrdiff_t>((from.*begins)[row + 1]);
+    ((to.*fields).insert((to.*fields).end(), (from.*fields).begin() + begin, (from.*fields).begin() + end),
+     ...);
+  };
+  std::apply([&](auto... list) { (std::apply(append_list, list), ...); }, BlockSystem::lists());
+  close_lists(to);
 }
+
+namespace {
+
+void pose_rigid(BlockSystem &system, std::size_t row) {
+  const Vec2 centre = system.trial_centroid[row];
+  const Rotation turn = Rotation::of(system.trial[row].r);
+  Aabb box;
+  for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
+    system.vertex[k] = centre + turn(system.reference_vertex[k]);
+    system.normal[k] = turn(system.reference_normal[k]);
+    box.include(system.vertex[k]);
+  }
+  system.box[row] = box;
+}
+
+void pose_deformable(BlockSystem &system, std::size_t row) {
+  const Vec2 centre = system.trial_centroid[row];
+  const Mat2 &gradient = system.deformation_of(row).trial;
+  system.trial_inverse[system.deformation_begin[row]] = inverse(gradient);
+  Aabb box;
+  const std::size_t begin = system.vertex_begin[row];
+  const std::size_t end = system.vertex_begin[row + 1];
+  for (std::size_t k = begin; k < end; ++k) {
+    const std::size_t next = k + 1 == end ? begin : k + 1;
+    const Vec2 edge = gradient(system.reference_vertex[next] - system.reference_vertex[k]);
+    system.vertex[k] = centre + gradient(system.reference_vertex[k]);
+    system.edge_length[k] = norm(edge);
+    system.normal[k] = (1.0 / system.edge_length[k]) * Vec2{edge.y, -edge.x};
+    box.include(system.vertex[k]);
+  }
+  system.box[row] = box;
+}
+
+} // namespace
 
 void pose(BlockSystem &system, std::size_t first, std::size_t last) {
   system.trial_centroid.resize(system.num_rows());
   system.box.resize(system.num_rows());
   system.vertex.resize(system.reference_vertex.size());
   system.normal.resize(system.reference_vertex.size());
+  system.trial_inverse.resize(system.deformation.size());
   for (std::size_t row = first; row < last; ++row) {
-    const Vec2 centre = system.properties[row].centroid + system.trial[row].u;
-    const Rotation turn = Rotation::of(system.trial[row].r);
-    Aabb box;
-    for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
-      system.vertex[k] = centre + turn(system.reference_vertex[k]);
-      system.normal[k] = turn(system.reference_normal[k]);
-      box.include(system.vertex[k]);
+    system.trial_centroid[row] = system.properties[row].centroid + system.trial[row].u;
+    if (system.is_deformable(row)) {
+      pose_deformable(system, row);
+    } else {
+      pose_rigid(system, row);
     }
-    system.trial_centroid[row] = centre;
-    system.box[row] = box;
   }
 }
 
 std::vector<Vec2> current_vertices(const BlockSystem &system, std::size_t row) {
-  const Rotation turn = Rotation::of(system.displacement[row].r);
   std::vector<Vec2> vertices;
+  if (system.is_deformable(row)) {
+    const Mat2 &gradient = system.deformation_of(row).gradient;
+    for (const Vec2 x : system.of_row(system.reference_vertex, row)) {
+      vertices.push_back(system.centroid(row) + gradient(x));
+    }
+    return vertices;
+  }
+  const Rotation turn = Rotation::of(system.displacement[row].r);
   for (const Vec2 x : system.of_row(system.reference_vertex, row)) {
     vertices.push_back(system.centroid(row) + turn(x));
   }

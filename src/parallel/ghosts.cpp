@@ -16,6 +16,28 @@ struct GhostMotion {
   RigidDof trial;
   RigidDof velocity;
 };
+/// And of a deformable one.
+struct GhostDeformation {
+  Mat2 trial;
+  Mat2 rate;
+};
+
+std::size_t bytes_of_motion(const BlockSystem &system, std::span<const std::uint32_t> rows) {
+  std::size_t bytes = rows.size() * sizeof(GhostMotion);
+  for (const std::uint32_t row : rows) {
+    bytes += system.is_deformable(row) ? sizeof(GhostDeformation) : 0;
+  }
+  return bytes;
+}
+
+template <class T> std::byte *put(std::byte *to, const T &value) {
+  std::memcpy(to, &value, sizeof(T));
+  return to + sizeof(T);
+}
+template <class T> const std::byte *take(const std::byte *from, T &value) {
+  std::memcpy(&value, from, sizeof(T));
+  return from + sizeof(T);
+}
 
 /// A published box of another rank.
 struct PublishedBox {
@@ -200,23 +222,52 @@ void Ghosts::transfer() {
   communicator_.exchange(outgoing_, incoming_);
 }
 
+void Ghosts::copy_accelerations(BlockSystem &system) {
+  copy(system.acceleration);
+  std::vector<Mat2> per_row(system.num_rows());
+  for (std::size_t row = 0; row < system.num_mobile(); ++row) {
+    per_row[row] = system.is_deformable(row) ? system.deformation_of(row).acceleration : Mat2{};
+  }
+  copy(per_row);
+  for (std::size_t row = system.num_owned; row < system.first_fixed(); ++row) {
+    if (system.is_deformable(row)) {
+      system.deformation_of(row).acceleration = per_row[row];
+    }
+  }
+}
+
 void Ghosts::update(BlockSystem &system) {
-  pack(
-      [&](std::size_t row, std::byte *to) {
-        const GhostMotion motion{system.trial[row], system.velocity[row]};
-        std::memcpy(to, &motion, sizeof motion);
-      },
-      sizeof(GhostMotion));
+  for (Neighbour &n : neighbours_) {
+    n.send.resize(bytes_of_motion(system, n.send_rows));
+    n.receive.resize(bytes_of_motion(system, n.receive_rows));
+    std::byte *to = n.send.data();
+    for (const std::uint32_t row : n.send_rows) {
+      to = put(to, GhostMotion{system.trial[row], system.velocity[row]});
+      if (system.is_deformable(row)) {
+        const Deformation &d = system.deformation_of(row);
+        to = put(to, GhostDeformation{d.trial, d.rate});
+      }
+    }
+  }
   transfer();
-  unpack(
-      [&](std::size_t row, const std::byte *from) {
-        GhostMotion motion;
-        std::memcpy(&motion, from, sizeof motion);
-        system.trial_previous[row] = system.trial[row];
-        system.trial[row] = motion.trial;
-        system.velocity[row] = motion.velocity;
-      },
-      sizeof(GhostMotion));
+  for (const Neighbour &n : neighbours_) {
+    const std::byte *from = n.receive.data();
+    for (const std::uint32_t row : n.receive_rows) {
+      GhostMotion motion;
+      from = take(from, motion);
+      system.trial_previous[row] = system.trial[row];
+      system.trial[row] = motion.trial;
+      system.velocity[row] = motion.velocity;
+      if (system.is_deformable(row)) {
+        Deformation &d = system.deformation_of(row);
+        GhostDeformation deformation;
+        from = take(from, deformation);
+        d.trial_previous = d.trial;
+        d.trial = deformation.trial;
+        d.rate = deformation.rate;
+      }
+    }
+  }
   pose(system, system.num_owned, system.first_fixed());
 }
 

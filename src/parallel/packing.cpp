@@ -16,6 +16,9 @@ template <class T> void put(Bytes &message, const T *values, std::size_t count) 
 
 template <class T> void take(std::span<const std::byte> &message, std::vector<T> &to, std::size_t count) {
   expect(message.size() >= count * sizeof(T), "a message of blocks holds whole rows");
+  if (count == 0) {
+    return;
+  }
   to.resize(to.size() + count);
   std::memcpy(to.data() + (to.size() - count), message.data(), count * sizeof(T));
   message = message.subspan(count * sizeof(T));
@@ -24,23 +27,28 @@ template <class T> void take(std::span<const std::byte> &message, std::vector<T>
 } // namespace
 
 void pack_row(const BlockSystem &system, std::size_t row, Bytes &message) {
-  const std::uint64_t num_vertices = system.num_vertices(row);
-  put(message, &num_vertices, 1);
   std::apply([&](auto... field) { (put(message, &(system.*field)[row], 1), ...); },
              BlockSystem::row_fields());
-  const std::size_t begin = system.vertex_begin[row];
-  std::apply([&](auto... field) { (put(message, (system.*field).data() + begin, num_vertices), ...); },
-             BlockSystem::shape_fields());
+  const auto put_list = [&](auto begins, auto... fields) {
+    const std::size_t begin = (system.*begins)[row];
+    const std::uint64_t count = (system.*begins)[row + 1] - begin;
+    put(message, &count, 1);
+    (put(message, (system.*fields).data() + begin, count), ...);
+  };
+  std::apply([&](auto... list) { (std::apply(put_list, list), ...); }, BlockSystem::lists());
 }
 
 void unpack_rows(std::span<const std::byte> message, BlockSystem &system) {
+  const auto take_list = [&](auto begins, auto first, auto... fields) {
+    std::vector<std::uint64_t> count;
+    take(message, count, 1);
+    take(message, system.*first, count[0]);
+    (take(message, system.*fields, count[0]), ...);
+    (system.*begins).push_back(static_cast<std::uint32_t>((system.*first).size()));
+  };
   while (!message.empty()) {
-    std::vector<std::uint64_t> num_vertices;
-    take(message, num_vertices, 1);
     std::apply([&](auto... field) { (take(message, system.*field, 1), ...); }, BlockSystem::row_fields());
-    std::apply([&](auto... field) { (take(message, system.*field, num_vertices[0]), ...); },
-               BlockSystem::shape_fields());
-    system.vertex_begin.push_back(static_cast<std::uint32_t>(system.reference_vertex.size()));
+    std::apply([&](auto... list) { (std::apply(take_list, list), ...); }, BlockSystem::lists());
   }
 }
 

@@ -1,6 +1,8 @@
 #include "gcpdda/simulation/energy_ledger.hpp"
 
 #include "gcpdda/base/exact_sum.hpp"
+#include "gcpdda/dynamics/deformable.hpp"
+#include "gcpdda/simulation/half_works.hpp"
 
 #include <algorithm>
 
@@ -11,21 +13,32 @@ namespace {
 /// Terms summed over all blocks and pairs of all ranks.
 struct Terms {
   ExactSum kinetic;
+  ExactSum strain;
   ExactSum normal;
   ExactSum stick;
   ExactSum gravity;
   ExactSum shear_work;
   ExactSum damping_work;
+  ExactSum load_work;
 
   void agree(const Communicator &communicator) {
-    for (ExactSum *sum : {&kinetic, &normal, &stick, &gravity, &shear_work, &damping_work}) {
+    for (ExactSum *sum :
+         {&kinetic, &strain, &normal, &stick, &gravity, &shear_work, &damping_work, &load_work}) {
       communicator.sum(sum->limbs());
     }
   }
 };
 
-double kinetic_energy(const BlockProperties &block, const RigidDof &velocity) {
-  return 0.5 * (block.mass * dot(velocity.u, velocity.u) + block.inertia * velocity.r * velocity.r);
+/// Of a row that moves and deforms at these rates; a driven block has none to speak of.
+double kinetic_energy(const BlockSystem &blocks, std::size_t row, const RigidDof &velocity,
+                      const Mat2 &rate) {
+  const BlockProperties &block = blocks.properties[row];
+  if (block.keeps_its_velocity()) {
+    return 0.0;
+  }
+  const double turning = blocks.is_deformable(row) ? kinetic_energy(blocks.deformation_of(row), rate)
+                                                   : 0.5 * block.inertia * velocity.r * velocity.r;
+  return 0.5 * block.mass * dot(velocity.u, velocity.u) + turning;
 }
 
 void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
@@ -44,27 +57,52 @@ enum class Moment { now, middle };
 /// Energy of the stick springs; in the middle of two trial configurations F_n F_{n+1}/(2 k), the form that
 /// the leapfrog conserves exactly. Slipping springs keep theirs.
 void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
-  const auto &pairs = simulation.candidates().pairs;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
+  for (std::size_t k = 0; k < simulation.contacts().regions().size(); ++k) {
+    const RegionForce &force = simulation.contacts().regions()[k];
+    const CandidatePair &pair = simulation.candidates().pairs[force.pair];
     const RegionMemory &memory = simulation.history().regions[k];
-    if (memory.shear == 0.0 || !simulation.counts_here(pairs[k])) {
+    if (memory.shear == 0.0 || !simulation.counts_here(pair)) {
       continue;
     }
-    const double stiffness = pairs[k].tangential_stiffness * memory.longest;
+    const double stiffness = pair.tangential_stiffness * memory.longest;
     double next = memory.shear;
     if (moment == Moment::middle && memory.state == ContactState::stick) {
-      next += stiffness * coming_slide(simulation.blocks(), pairs[k], simulation.contacts().pairs()[k]);
+      next += stiffness * coming_slide(simulation.blocks(), pair, force);
     }
     sum.add(0.5 * memory.shear * next / stiffness);
   }
+}
+
+/// Strain energy of owned rows. In the middle of two trial configurations that of the elastic force applied
+/// at the first one and half its work on the way: with implicit elasticity the energy at F* itself says
+/// nothing.
+void add_strain(const BlockSystem &blocks, Moment moment, ExactSum &sum) {
+  for (std::size_t i = 0; i < blocks.deformation_begin[blocks.num_owned]; ++i) {
+    const Deformation &d = blocks.deformation[i];
+    sum.add(moment == Moment::now
+                ? strain_energy(d, d.trial)
+                : applied_strain_energy(d) + 0.5 * contract(d.internal, d.trial - d.trial_previous));
+  }
+}
+
+/// Mean rate of F between the last two trial configurations; zero for a rigid row.
+Mat2 stretch_rate(const BlockSystem &blocks, std::size_t row, double time_step) {
+  if (!blocks.is_deformable(row)) {
+    return {};
+  }
+  const Deformation &d = blocks.deformation_of(row);
+  return (1.0 / time_step) * (d.trial - d.trial_previous);
 }
 
 Terms initial_terms(const Simulation &simulation) {
   Terms terms;
   const BlockSystem &blocks = simulation.blocks();
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
-    terms.kinetic.add(kinetic_energy(blocks.properties[row], blocks.velocity[row]));
+    const bool deformable = blocks.is_deformable(row);
+    terms.kinetic.add(kinetic_energy(blocks, row, blocks.velocity[row],
+                                     deformable ? blocks.deformation_of(row).rate : Mat2{}));
   }
+  add_strain(blocks, Moment::now, terms.strain);
   add_normal(simulation, 1.0, terms.normal);
   add_stick(simulation, Moment::now, terms.stick);
   return terms;
@@ -75,14 +113,17 @@ Terms current_terms(Simulation &simulation) {
   const double time_step = simulation.plan().time_step;
   simulation.look_ahead([&](const BlockSystem &blocks) {
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
-      const BlockProperties &block = blocks.properties[row];
       const BlockLedger &ledger = blocks.ledger[row];
+      const HalfWorks half = half_works(blocks, row);
       const RigidDof increment = blocks.trial[row] - blocks.trial_previous[row];
-      terms.kinetic.add(kinetic_energy(block, (1.0 / time_step) * increment));
-      terms.gravity.add(-(ledger.gravity_work + 0.5 * dot(ledger.gravity_force, increment.u)));
-      terms.shear_work.add(ledger.shear_work + 0.5 * work(ledger.shear_force, increment));
-      terms.damping_work.add(ledger.damping_work + 0.5 * work(ledger.damping_force, increment));
+      terms.kinetic.add(
+          kinetic_energy(blocks, row, (1.0 / time_step) * increment, stretch_rate(blocks, row, time_step)));
+      terms.gravity.add(-(ledger.gravity_work + half.gravity));
+      terms.shear_work.add(ledger.shear_work + half.shear);
+      terms.damping_work.add(ledger.damping_work + half.damping);
+      terms.load_work.add(ledger.load_work + half.load + anchor_half_work(blocks, row));
     }
+    add_strain(blocks, Moment::middle, terms.strain);
     add_normal(simulation, 0.5, terms.normal);
     add_stick(simulation, Moment::middle, terms.stick);
   });
@@ -95,13 +136,13 @@ double unbalanced_ratio(const Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
   std::array<double, 2> largest{};
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
-    largest[0] = std::max(largest[0], norm(simulation.forces()[row].u));
-    largest[1] = std::max(largest[1], blocks.properties[row].mass * norm(simulation.scene().run.gravity));
-  }
-  for (const PairForce &force : simulation.contacts().pairs()) {
-    if (force.touching) {
-      largest[1] = std::max(largest[1], norm(force.force));
+    if (!blocks.properties[row].keeps_its_velocity()) {
+      largest[0] = std::max(largest[0], norm(simulation.forces().rigid[row].u));
+      largest[1] = std::max(largest[1], blocks.properties[row].mass * norm(simulation.scene().run.gravity));
     }
+  }
+  for (const RegionForce &force : simulation.contacts().regions()) {
+    largest[1] = std::max(largest[1], norm(force.force));
   }
   simulation.communicator().max(largest);
   return largest[1] > 0.0 ? largest[0] / largest[1] : 0.0;
@@ -122,7 +163,7 @@ EnergyLedger::EnergyLedger(Simulation &simulation) {
   Terms terms = initial_terms(simulation);
   terms.agree(simulation.communicator());
   stick_at_start_ = terms.stick.value();
-  total_at_start_ = terms.kinetic.value() + terms.normal.value() + terms.stick.value();
+  total_at_start_ = terms.kinetic.value() + terms.strain.value() + terms.normal.value() + terms.stick.value();
 }
 
 EnergyRow EnergyLedger::row(Simulation &simulation) const {
@@ -132,13 +173,15 @@ EnergyRow EnergyLedger::row(Simulation &simulation) const {
   Terms terms = simulation.step_count() == 0 ? initial_terms(simulation) : current_terms(simulation);
   terms.agree(simulation.communicator());
   row.kinetic = terms.kinetic.value();
+  row.strain = terms.strain.value();
   row.contact_normal = terms.normal.value();
   row.contact_stick = terms.stick.value();
   row.gravity = terms.gravity.value();
   row.friction_loss = stick_at_start_ - terms.stick.value() - terms.shear_work.value();
   row.damping_loss = -terms.damping_work.value();
-  row.residual = row.kinetic + row.contact_normal + row.contact_stick + row.gravity + row.friction_loss +
-                 row.damping_loss - total_at_start_;
+  row.boundary_work = terms.load_work.value();
+  row.residual = row.kinetic + row.strain + row.contact_normal + row.contact_stick + row.gravity +
+                 row.friction_loss + row.damping_loss - row.boundary_work - total_at_start_;
   return row;
 }
 

@@ -1,5 +1,7 @@
 #include "gcpdda/simulation/results.hpp"
 
+#include "gcpdda/dynamics/deformable.hpp"
+
 #include <algorithm>
 #include <functional>
 #include <unordered_map>
@@ -34,11 +36,10 @@ std::vector<Reaction> collect_reactions(const Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
   const int num_ranks = simulation.communicator().size();
   std::vector<std::vector<Reaction>> outgoing(static_cast<std::size_t>(num_ranks));
-  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
-    const CandidatePair &pair = simulation.candidates().pairs[k];
-    const PairForce &force = simulation.contacts().pairs()[k];
+  for (const RegionForce &force : simulation.contacts().regions()) {
+    const CandidatePair &pair = simulation.candidates().pairs[force.pair];
     const bool lower_fixed = blocks.is_fixed(pair.lower.value);
-    if (!force.touching || (!lower_fixed && !blocks.is_fixed(pair.higher.value))) {
+    if (!lower_fixed && !blocks.is_fixed(pair.higher.value)) {
       continue;
     }
     const std::size_t fixed = lower_fixed ? pair.lower.value : pair.higher.value;
@@ -52,15 +53,35 @@ std::vector<Reaction> collect_reactions(const Simulation &simulation) {
   for (const auto &arrived : simulation.communicator().all_to_all(outgoing)) {
     reactions.insert(reactions.end(), arrived.begin(), arrived.end());
   }
-  std::sort(reactions.begin(), reactions.end(), [](const Reaction &a, const Reaction &b) {
+  // Regions of one pair come from one rank, in order.
+  std::stable_sort(reactions.begin(), reactions.end(), [](const Reaction &a, const Reaction &b) {
     return std::pair(a.fixed, a.mobile) < std::pair(b.fixed, b.mobile);
   });
   return reactions;
 }
 
+/// Position and velocity at t_n of the material point that was at `start` at t = 0.
+BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 start) {
+  const Vec2 reference = start - blocks.properties[index].centroid;
+  const RigidDof &v = blocks.velocity[index];
+  BlockHistoryRow row;
+  Vec2 velocity;
+  if (blocks.is_deformable(index)) {
+    const Deformation &d = blocks.deformation_of(index);
+    row.position = blocks.centroid(index) + d.gradient(reference);
+    velocity = v.u + d.rate(reference);
+  } else {
+    const Vec2 arm = Rotation::of(blocks.displacement[index].r)(reference);
+    row.position = blocks.centroid(index) + arm;
+    velocity = v.u + v.r * perp(arm);
+  }
+  row.velocity = {velocity.x, velocity.y, 0.0};
+  return row;
+}
+
 FrameData collect_rows(const Simulation &simulation, const std::function<bool(std::int64_t)> &wanted) {
   const BlockSystem &blocks = simulation.blocks();
-  const auto &forces = simulation.contacts().pairs();
+  const ContactForces &contacts = simulation.contacts();
   FrameData data;
   const auto append = [&](const FrameRow &row, std::size_t index) {
     data.rows.push_back(row);
@@ -72,8 +93,10 @@ FrameData collect_rows(const Simulation &simulation, const std::function<bool(st
       continue;
     }
     FrameRow row = row_of(blocks, index);
-    row.stress = mean_stress(blocks, simulation.candidates(), forces, index);
-    const RigidDof force = sum_contacts(blocks, simulation.candidates(), forces, index).force;
+    row.stress = blocks.is_deformable(index)
+                     ? mean_cauchy_stress(blocks.deformation_of(index), blocks.properties[index].area)
+                     : mean_stress(blocks, simulation.candidates(), contacts, index);
+    const RigidDof force = sum_contacts(blocks, simulation.candidates(), contacts, index).force;
     row.contact_force = {force.u.x, force.u.y, force.r};
     append(row, index);
   }
@@ -86,19 +109,17 @@ FrameData collect_rows(const Simulation &simulation, const std::function<bool(st
       continue;
     }
     Vec2 force;
-    std::array<double, 4> dyad{};
+    Mat2 dyad;
     for (; reaction != reactions.end() && reaction->fixed == block.id.value; ++reaction) {
       force += reaction->part.force;
-      for (std::size_t i = 0; i < 4; ++i) {
-        dyad[i] += reaction->part.dyad[i];
-      }
+      dyad += reaction->part.dyad;
     }
     if (!wanted(block.id.value)) {
       continue;
     }
     FrameRow row = row_of(blocks, index);
-    row.stress = {dyad[0] / block.area, dyad[3] / block.area, 0.5 * (dyad[1] + dyad[2]) / block.area};
-    row.contact_force = {force.x, force.y, dyad[1] - dyad[2]};
+    row.stress = {dyad.xx / block.area, dyad.yy / block.area, 0.5 * (dyad.xy + dyad.yx) / block.area};
+    row.contact_force = {force.x, force.y, dyad.xy - dyad.yx};
     append(row, index);
   }
   return data;
@@ -113,10 +134,13 @@ FrameData collect_frame(const Simulation &simulation) {
 std::vector<ContactRow> collect_contacts(const Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
   std::vector<ContactRow> rows;
-  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
-    const CandidatePair &pair = simulation.candidates().pairs[k];
-    const PairForce &force = simulation.contacts().pairs()[k];
-    if (!force.touching || !simulation.counts_here(pair)) {
+  const auto regions = simulation.contacts().regions();
+  std::uint32_t first_of_pair = 0;
+  for (std::uint32_t k = 0; k < regions.size(); ++k) {
+    const RegionForce &force = regions[k];
+    const CandidatePair &pair = simulation.candidates().pairs[force.pair];
+    first_of_pair = k > 0 && regions[k - 1].pair == force.pair ? first_of_pair : k;
+    if (!simulation.counts_here(pair)) {
       continue;
     }
     const RegionMemory &memory = simulation.history().regions[k];
@@ -124,6 +148,7 @@ std::vector<ContactRow> collect_contacts(const Simulation &simulation) {
     ContactRow row;
     row.lower = blocks.properties[pair.lower.value].id.value;
     row.higher = blocks.properties[pair.higher.value].id.value;
+    row.position = static_cast<std::int32_t>(k - first_of_pair);
     row.joint = pair.law;
     row.state = static_cast<std::uint8_t>(memory.state);
     row.begin = force.point + force.extent_begin * tangent;
@@ -139,7 +164,7 @@ std::vector<ContactRow> collect_contacts(const Simulation &simulation) {
 
 std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
   struct Found {
-    std::int64_t block;
+    std::int64_t monitor;
     BlockHistoryRow row;
   };
   const std::vector<Monitor> &monitors = simulation.scene().monitors;
@@ -151,18 +176,33 @@ std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
   for (std::size_t m = 0; m < monitors.size(); ++m) {
     monitor_of.emplace(monitors[m].block, m);
   }
+  std::vector<Found> mine;
   const FrameData data =
       collect_rows(simulation, [&](std::int64_t block) { return monitor_of.contains(block); });
-  std::vector<Found> mine;
   for (const FrameRow &row : data.rows) {
-    mine.push_back({row.block,
-                    {row.centroid, row.rotation, row.velocity, row.stress,
-                     Vec2{row.contact_force[0], row.contact_force[1]}}});
+    const auto [first, last] = monitor_of.equal_range(row.block);
+    std::for_each(first, last, [&](const auto &entry) {
+      if (!monitors[entry.second].is_point) {
+        mine.push_back({static_cast<std::int64_t>(entry.second),
+                        {row.centroid, row.rotation, row.velocity, row.stress,
+                         Vec2{row.contact_force[0], row.contact_force[1]}}});
+      }
+    });
+  }
+  const BlockSystem &blocks = simulation.blocks();
+  for (std::size_t index = 0; index < blocks.num_rows(); ++index) {
+    const bool mine_to_write = index < blocks.num_owned || blocks.is_fixed(index);
+    const auto [first, last] = monitor_of.equal_range(blocks.properties[index].id.value);
+    std::for_each(first, last, [&](const auto &entry) {
+      if (monitors[entry.second].is_point && mine_to_write) {
+        mine.push_back({static_cast<std::int64_t>(entry.second),
+                        point_row(blocks, index, monitors[entry.second].point)});
+      }
+    });
   }
   for (const auto &found : simulation.communicator().all_gather(mine)) {
     for (const Found &f : found) {
-      const auto [first, last] = monitor_of.equal_range(f.block);
-      std::for_each(first, last, [&](const auto &entry) { rows[entry.second] = f.row; });
+      rows[static_cast<std::size_t>(f.monitor)] = f.row;
     }
   }
   return rows;

@@ -1,7 +1,6 @@
 #include "gcpdda/simulation/run.hpp"
 
 #include "gcpdda/base/check.hpp"
-#include "gcpdda/geometry/polygon.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/simulation/energy_ledger.hpp"
 #include "gcpdda/simulation/results.hpp"
@@ -28,14 +27,6 @@ double seconds_since(Clock::time_point start) {
 
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-std::vector<std::string> monitor_names(const Scene &scene) {
-  std::vector<std::string> names;
-  for (const Monitor &monitor : scene.monitors) {
-    names.push_back(monitor.name);
-  }
-  return names;
 }
 
 /// Root's file work that may fail on the root alone: the verdict is shared before anybody throws.
@@ -92,7 +83,7 @@ public:
       : communicator_(communicator), directory_(options.directory), simulation_(communicator, scene) {
     on_root(communicator, [&] {
       prepare_result_directory(directory_, options.overwrite, scene.resolved);
-      histories_.emplace(directory_, monitor_names(scene));
+      histories_.emplace(directory_, scene.monitors);
     });
     log_.emplace(communicator.is_root(), directory_);
     frames_.emplace(communicator, directory_, simulation_.num_blocks());
@@ -156,25 +147,27 @@ private:
               : "",
           law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion));
     }
-    report_accepted_error(scene);
+    report_fidelity(scene.run);
   }
 
-  // Rigid blocks leave out the elastic part of a joint's closure.
-  void report_accepted_error(const Scene &scene) {
-    double worst = 0.0;
-    for (const SceneBlock &block : scene.blocks) {
-      const Material &material = scene.materials[static_cast<std::size_t>(block.material)];
-      if (!block.fixed && material.youngs_modulus > 0.0) {
-        const double joint =
-            stiffness_bound(scene.joints, block.material).normal * std::sqrt(signed_area(block.vertices));
-        worst = std::max(worst, joint / (material.youngs_modulus + joint));
-      }
+  void report_fidelity(const RunSettings &run) {
+    const FidelityReport &fidelity = simulation_.fidelity();
+    log_->line(
+        fmt::format("fidelity: {} rigid and {} deformable blocks; rigid leaves out up to {:.2g} of the "
+                    "joints' compliance k_n L/(E + k_n L), accepted are {:g}{}",
+                    fidelity.num_rigid, fidelity.num_deformable, fidelity.worst_rigid, run.accepted_error,
+                    fidelity.num_deformable > 0
+                        ? fmt::format("; of the deformable blocks it would leave out up to {:.2g}",
+                                      fidelity.worst_deformable)
+                        : ""));
+    if (fidelity.worst_rigid > run.accepted_error) {
+      log_->line("warning: the scene asks for rigid blocks that leave out more than is accepted "
+                 "(run.accepted_error), use fidelity = \"auto\"");
     }
-    if (worst > scene.run.accepted_error) {
-      log_->line(fmt::format(
-          "warning: all blocks are rigid, which leaves out up to {:.2g} of the joints' compliance; "
-          "accepted are {:g} (run.accepted_error)",
-          worst, scene.run.accepted_error));
+    if (run.local_damping > 0.0) {
+      log_->line(fmt::format("warning: local damping {:g} is for static problems, speeds and times of this "
+                             "run are not physical",
+                             run.local_damping));
     }
   }
 
@@ -233,7 +226,7 @@ private:
     }
     on_root(communicator_, [&] {
       for (std::size_t m = 0; m < rows.size(); ++m) {
-        histories_->write_block(m, simulation_.time(), rows[m]);
+        histories_->write_monitor(m, simulation_.time(), rows[m]);
       }
       if (!failed) {
         histories_->write_energy(simulation_.time(), energy_);
@@ -245,7 +238,7 @@ private:
   std::int64_t count_contacts() {
     std::int64_t count = 0;
     for (std::size_t k = 0; k < simulation_.candidates().pairs.size(); ++k) {
-      count += simulation_.contacts().pairs()[k].touching &&
+      count += !simulation_.contacts().of_pair(k).empty() &&
                        simulation_.counts_here(simulation_.candidates().pairs[k])
                    ? 1
                    : 0;
@@ -266,9 +259,7 @@ private:
 
   std::string fault_message() const {
     const Fault &fault = *simulation_.fault();
-    const auto name = [&](BlockId id) {
-      return simulation_.scene().blocks[static_cast<std::size_t>(id.value)].name;
-    };
+    const auto name = [&](BlockId id) { return block_name(simulation_.scene(), id.value); };
     const std::string where =
         fmt::format("block '{}' at t = {:.9g} s", name(fault.block), simulation_.time());
     switch (fault.cause) {

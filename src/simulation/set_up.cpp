@@ -1,18 +1,71 @@
-// Construction of a Simulation: distribution of the blocks, the step, the consistent initial state.
+// Construction of a Simulation: distribution of the blocks and the step.
+//
+// No rank holds all blocks. Each takes one slab of BlockIds from the scene, its generators and its file, and
+// what is said of all of them (region, smallest, median) is agreed on by reductions. From the slabs blocks
+// migrate to the owners of their cells; fixed ones go to everybody.
 
 #include "gcpdda/simulation/simulation.hpp"
 
-#include "gcpdda/contact/initial_friction.hpp"
+#include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/frequency_bound.hpp"
-#include "gcpdda/dynamics/integrate.hpp"
+#include "gcpdda/geometry/holds_point.hpp"
 #include "gcpdda/geometry/polygon.hpp"
+#include "gcpdda/io/block_file.hpp"
+#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/model/fidelity.hpp"
+#include "gcpdda/model/stiffness.hpp"
+#include "gcpdda/parallel/migration.hpp"
+#include "gcpdda/parallel/packing.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
 
 namespace gcpdda {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+void stop_on_errors(const Diagnostics &diagnostics) {
+  if (has_errors(diagnostics)) {
+    throw SceneError(diagnostics);
+  }
+}
+
+double agreed_max(const Communicator &communicator, double value) {
+  communicator.max(std::span(&value, 1));
+  return value;
+}
+
+std::int64_t agreed_sum(const Communicator &communicator, std::int64_t value) {
+  communicator.sum(std::span(&value, 1));
+  return value;
+}
+
+/// The (n/2)-th of everybody's positive numbers in ascending order. Positive doubles sort like their bits, so
+/// bisecting the bits finds it exactly, whoever holds it.
+double agreed_median(const Communicator &communicator, std::span<const double> sizes) {
+  const std::int64_t wanted = agreed_sum(communicator, static_cast<std::int64_t>(sizes.size())) / 2;
+  std::uint64_t low = 0;
+  std::uint64_t high = std::bit_cast<std::uint64_t>(infinite);
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    const auto at_most = std::count_if(sizes.begin(), sizes.end(), [&](double size) {
+      return std::bit_cast<std::uint64_t>(size) <= middle;
+    });
+    if (agreed_sum(communicator, at_most) > wanted) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return std::bit_cast<double>(low);
+}
+
+} // namespace
 
 Simulation::Simulation(const Communicator &communicator, Scene scene)
     : communicator_(communicator), scene_(std::move(scene)), ghosts_(communicator),
@@ -21,35 +74,101 @@ Simulation::Simulation(const Communicator &communicator, Scene scene)
   distribute();
   find_bound();
   plan_ = plan_time(scene_.run, scene_.output, bound_.time_step, notes_);
-  if (has_errors(notes_)) {
-    throw SceneError(notes_);
-  }
+  make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity,
+                      stiffest_joint(scene_.joints));
   refresh();
   find_initial_state();
+  stop_on_errors(notes_);
 }
 
-// Everybody knows the whole list of blocks and keeps its own; cells are weighted first by blocks, then, once
-// the neighbourhoods are known, by counted contact work.
+// Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
 void Simulation::distribute() {
-  lay_grid();
+  stop_on_errors(open_block_file(communicator_, scene_));
+  const std::vector<SceneBlock> slab = load_slab();
+  resolve_stiffness(slab);
+  place_monitors(slab);
+  lay_grid(slab);
   std::vector<std::int64_t> weights(static_cast<std::size_t>(map_.grid.num_cells()), 0);
-  for (const SceneBlock &block : scene_.blocks) {
+  for (const SceneBlock &block : slab) {
     if (!block.fixed) {
       ++weights[static_cast<std::size_t>(map_.grid.cell_of(polygon_moments(block.vertices).centroid))];
     }
   }
+  communicator_.sum(weights);
   map_ = partition_cells(map_.grid, weights, communicator_.size(), &partition_);
-  take_blocks();
+  take_blocks(slab);
+  std::vector<RegionRecord> none;
+  migrate(communicator_, map_, blocks_, none);
   map_ = partition_cells(map_.grid, count_contact_work(), communicator_.size(), &partition_);
 }
 
+std::vector<SceneBlock> Simulation::load_slab() {
+  const std::int64_t num_listed = num_blocks() - scene_.block_file.num_blocks;
+  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+  const std::int64_t last = slab_begin(num_blocks(), communicator_.size(), communicator_.rank() + 1);
+  std::vector<SceneBlock> slab;
+  slab.reserve(static_cast<std::size_t>(last - first));
+  for (std::int64_t id = first; id < std::min(last, num_listed); ++id) {
+    slab.push_back(block_of(scene_, id));
+  }
+  if (!scene_.block_file.path.empty()) {
+    stop_on_errors(read_block_file(communicator_, scene_, std::max(first, num_listed) - num_listed,
+                                   std::max(last, num_listed) - num_listed, slab));
+  }
+  return slab;
+}
+
+void Simulation::resolve_stiffness(std::span<const SceneBlock> slab) {
+  const auto by_overlap = [](const JointLaw &law) { return law.allowed_overlap > 0.0; };
+  if (std::none_of(scene_.joints.laws.begin(), scene_.joints.laws.end(), by_overlap)) {
+    return;
+  }
+  const auto is_mobile = [](const SceneBlock &block) { return !block.fixed; };
+  const bool any_mobile = agreed_sum(communicator_, std::count_if(slab.begin(), slab.end(), is_mobile)) > 0;
+  SizeSurvey survey = survey_sizes(scene_, slab, !any_mobile);
+  survey.densest = agreed_max(communicator_, survey.densest);
+  survey.high = agreed_max(communicator_, survey.high);
+  survey.low = -agreed_max(communicator_, -survey.low);
+  gcpdda::resolve_stiffness(scene_, survey, agreed_median(communicator_, survey.sizes));
+  contacts_ = ContactForces({scene_.joints, scene_.run.contact_damping, scene_.run.potential});
+}
+
+// A point belongs to the block with the smallest id that holds it.
+void Simulation::place_monitors(std::span<const SceneBlock> slab) {
+  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+  for (Monitor &monitor : scene_.monitors) {
+    if (!monitor.is_point) {
+      if (monitor.block >= num_blocks()) {
+        notes_.push_back({Severity::error, monitor.where, fmt::format("no block is named '{}'", monitor.name),
+                          fmt::format("the scene has {} blocks", num_blocks()), "check the name"});
+      }
+      continue;
+    }
+    std::int64_t minus_id = std::numeric_limits<std::int64_t>::min();
+    for (std::size_t k = 0; k < slab.size(); ++k) {
+      if (holds_point(slab[k].vertices, monitor.point)) {
+        minus_id = std::max(minus_id, -(first + static_cast<std::int64_t>(k)));
+      }
+    }
+    communicator_.max(std::span(&minus_id, 1));
+    monitor.block = -minus_id;
+    if (minus_id == std::numeric_limits<std::int64_t>::min()) {
+      notes_.push_back({Severity::error, monitor.where,
+                        fmt::format("no block holds the point ({}, {}) of monitor '{}'", monitor.point.x,
+                                    monitor.point.y, monitor.name),
+                        "a monitored point follows the block it lies in", "check 'point'"});
+    }
+  }
+  stop_on_errors(notes_);
+}
+
 // About two cells a mobile block: fine enough to balance, coarse enough that most blocks stay in theirs.
-void Simulation::lay_grid() {
+void Simulation::lay_grid(std::span<const SceneBlock> slab) {
   Aabb region;
-  double smallest_mobile = std::numeric_limits<double>::infinity();
-  thinnest_ = std::numeric_limits<double>::infinity();
+  double smallest_mobile = infinite;
+  thinnest_ = infinite;
   std::int64_t num_mobile = 0;
-  for (const SceneBlock &block : scene_.blocks) {
+  for (const SceneBlock &block : slab) {
     region.include(bounding_box(block.vertices));
     thinnest_ = std::min(thinnest_, narrowest_width(block.vertices));
     if (!block.fixed) {
@@ -57,24 +176,50 @@ void Simulation::lay_grid() {
       ++num_mobile;
     }
   }
+  std::array<double, 6> largest{-region.low.x, -region.low.y,    region.high.x,
+                                region.high.y, -smallest_mobile, -thinnest_};
+  communicator_.max(largest);
+  region = {{-largest[0], -largest[1]}, {largest[2], largest[3]}};
+  smallest_mobile = -largest[4];
+  thinnest_ = -largest[5];
+  num_mobile = agreed_sum(communicator_, num_mobile);
   constexpr double skin_per_size = 0.1;
   base_skin_ = num_mobile > 0 ? skin_per_size * std::sqrt(smallest_mobile) : 0.0;
   map_.grid = CellGrid::over(region, std::max(std::int64_t{64} * communicator_.size(), 2 * num_mobile));
 }
 
-void Simulation::take_blocks() {
-  for (const bool fixed : {false, true}) {
-    for (std::size_t k = 0; k < scene_.blocks.size(); ++k) {
-      const SceneBlock &block = scene_.blocks[k];
-      const bool here =
-          fixed || map_.rank_of(polygon_moments(block.vertices).centroid) == communicator_.rank();
-      if (block.fixed == fixed && here) {
-        append_block(blocks_, BlockId{static_cast<std::int64_t>(k)}, block,
-                     scene_.materials[static_cast<std::size_t>(block.material)]);
-        ++(fixed ? blocks_.num_fixed : blocks_.num_owned);
-      }
+// Mobile blocks of the slab become owned rows, to be migrated; everybody gets all fixed ones.
+void Simulation::take_blocks(std::span<const SceneBlock> slab) {
+  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+  BlockSystem fixed;
+  for (std::size_t k = 0; k < slab.size(); ++k) {
+    const SceneBlock &block = slab[k];
+    const Material &material = scene_.materials[static_cast<std::size_t>(block.material)];
+    const FidelityChoice choice =
+        choose_fidelity(block, signed_area(block.vertices), material,
+                        stiffness_bound(scene_.joints, block.material).normal, scene_.run);
+    fidelity_.num_rigid += choice.kind == BlockKind::rigid ? 1 : 0;
+    fidelity_.num_deformable += choice.kind == BlockKind::deformable ? 1 : 0;
+    double &worst = choice.kind == BlockKind::deformable ? fidelity_.worst_deformable : fidelity_.worst_rigid;
+    if (!block.fixed && !block.driven) {
+      worst = std::max(worst, choice.rigid_error);
     }
+    append_block(block.fixed ? fixed : blocks_, BlockId{first + static_cast<std::int64_t>(k)}, block,
+                 material, choice.kind, scene_.run.plane_strain);
   }
+  fidelity_.num_rigid = agreed_sum(communicator_, fidelity_.num_rigid);
+  fidelity_.num_deformable = agreed_sum(communicator_, fidelity_.num_deformable);
+  fidelity_.worst_rigid = agreed_max(communicator_, fidelity_.worst_rigid);
+  fidelity_.worst_deformable = agreed_max(communicator_, fidelity_.worst_deformable);
+  blocks_.num_owned = blocks_.num_rows();
+  Bytes mine;
+  for (std::size_t row = 0; row < fixed.num_rows(); ++row) {
+    pack_row(fixed, row, mine);
+  }
+  for (const Bytes &message : communicator_.all_gather(mine)) { // slabs ascend with the ranks, and so do ids
+    unpack_rows(message, blocks_);
+  }
+  blocks_.num_fixed = blocks_.num_rows() - blocks_.num_owned;
 }
 
 // By cell: one for each block and two for each of its candidate pairs in the initial configuration.
@@ -100,17 +245,26 @@ std::vector<std::int64_t> Simulation::count_contact_work() {
 
 void Simulation::find_bound() {
   double omega_squared = 0.0;
+  std::int64_t limiting = std::numeric_limits<std::int64_t>::max();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const StiffnessBound stiffness = stiffness_bound(scene_.joints, blocks_.properties[row].material);
-    omega_squared = std::max(omega_squared,
-                             contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential));
+    const double own = contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential,
+                                               elasticity_of(scheme_, scene_.run.elasticity));
+    if (own > omega_squared) {
+      omega_squared = own;
+      limiting = blocks_.properties[row].id.value;
+    }
   }
+  const double mine = omega_squared;
   communicator_.max(std::span(&omega_squared, 1));
+  std::int64_t minus_id = mine == omega_squared && omega_squared > 0.0 ? -limiting : -num_blocks();
+  communicator_.max(std::span(&minus_id, 1));
+  bound_.block = minus_id == -num_blocks() ? -1 : -minus_id;
   // A block that is alone can never touch.
   bound_.omega_max = num_blocks() > 1 ? std::sqrt(omega_squared) : 0.0;
 
-  // In a system of rigid blocks the fastest mode is damped more than one joint.
-  constexpr double modal_damping_factor = 1.4;
+  // In a system of blocks the fastest mode is damped more than one joint.
+  const double modal_damping_factor = fidelity_.num_deformable > 0 ? 2.4 : 1.4;
   bound_.damping_ratio = modal_damping_factor * scene_.run.contact_damping;
   bound_.limit = stability_limit(scheme_, bound_.damping_ratio);
   if (bound_.limit <= 0.0) {
@@ -125,55 +279,6 @@ void Simulation::find_bound() {
   }
   bound_.time_step = bound_.omega_max > 0.0 ? scene_.run.safety * bound_.limit / bound_.omega_max
                                             : std::numeric_limits<double>::infinity();
-}
-
-void Simulation::accelerate_owned() {
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    RigidDof force = sum_contacts(blocks_, candidates_, contacts_.pairs(), row).force;
-    force.u += blocks_.properties[row].mass * gravity();
-    blocks_.acceleration[row] = accelerate(blocks_.properties[row], force);
-  }
-}
-
-// a_0 = M^-1 F(0): constant acceleration is then exact from the first step.
-void Simulation::find_initial_state() {
-  evaluate_contacts();
-  if (scene_.run.initial_friction == InitialFriction::consistent) {
-    find_initial_friction();
-  }
-  gather_forces();
-  accelerate_owned();
-  report();
-  counters_.evaluations = 0; // these two are of steps
-  counters_.contact_steps = 0;
-}
-
-void Simulation::find_initial_friction() {
-  InitialStick stick(blocks_, candidates_, contacts_, history_);
-  ghosts_.copy(stick.contact_counts());
-  const auto agreed_residual = [&] {
-    accelerate_owned();
-    ghosts_.copy(blocks_.acceleration);
-    double residual = stick.residual(blocks_);
-    communicator_.max(std::span(&residual, 1));
-    return residual;
-  };
-  constexpr int num_sweeps = 50;
-  const double before = agreed_residual();
-  double after = before;
-  for (int sweep = 0; sweep < num_sweeps && after > 0.0; ++sweep) {
-    stick.sweep(blocks_);
-    after = agreed_residual();
-  }
-  if (before > 0.0 && !(after < before)) {
-    stick.reset();
-    notes_.push_back(
-        {Severity::info,
-         {},
-         "friction starts at zero",
-         fmt::format("{} sweeps did not bring the initial stick forces nearer to equilibrium", num_sweeps),
-         ""});
-  }
 }
 
 } // namespace gcpdda

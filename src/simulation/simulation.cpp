@@ -1,7 +1,7 @@
 #include "gcpdda/simulation/simulation.hpp"
 
-#include "gcpdda/dynamics/integrate.hpp"
 #include "gcpdda/parallel/migration.hpp"
+#include "gcpdda/simulation/half_works.hpp"
 
 #include <algorithm>
 
@@ -17,7 +17,8 @@ void Simulation::step() {
   gather_forces();
   {
     const auto scope = phases_.measure(Phase::update);
-    if (const auto row = solve_and_update(blocks_, forces_, scheme_, plan_.time_step)) {
+    if (const auto row =
+            solve_and_update(blocks_, forces_, scheme_, plan_.time_step, scene_.run.elasticity)) {
       keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0});
     }
   }
@@ -43,9 +44,9 @@ void Simulation::refresh() {
   const auto scope = phases_.measure(Phase::refresh);
   std::vector<RegionRecord> memory;
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    if (history_.regions[k].state != ContactState::open) {
+    for (std::size_t i = history_.begin[k]; i < history_.begin[k + 1]; ++i) {
       memory.push_back({blocks_.properties[candidates_.pairs[k].lower.value].id,
-                        blocks_.properties[candidates_.pairs[k].higher.value].id, history_.regions[k]});
+                        blocks_.properties[candidates_.pairs[k].higher.value].id, history_.regions[i]});
     }
   }
   const std::int64_t left = migrate(communicator_, map_, blocks_, memory);
@@ -56,6 +57,10 @@ void Simulation::refresh() {
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     reach = std::max(reach, motion_bound(blocks_, row, plan_.time_step));
     blocks_.refreshed[row] = blocks_.displacement[row];
+    if (blocks_.is_deformable(row)) {
+      Deformation &d = blocks_.deformation_of(row);
+      d.refreshed = d.gradient;
+    }
   }
   communicator_.max(std::span(&reach, 1));
   skin_ = std::max(base_skin_, steps_in_skin * reach);
@@ -88,25 +93,75 @@ void Simulation::evaluate_contacts() {
   }
 }
 
-// Sum on each block in the order of its partners' ids; the ledger's works go on by the trapezoid over
-// increments of x*.
+// Sum on each block in the order of its partners' ids. The works of the ledger go by the trapezoid over
+// increments of x*: half with the forces of the last evaluation, half with those of this one.
 void Simulation::gather_forces() {
   const auto scope = phases_.measure(Phase::forces);
-  forces_.resize(blocks_.num_owned);
+  add_half_works();
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    blocks_.ledger[row].load_work += anchor_half_work(blocks_, row);
+  }
+  forces_.rigid.resize(blocks_.num_owned);
+  forces_.gradient.resize(blocks_.deformation.size());
   const Vec2 gravity_now = gravity();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    const BlockContactSum sum = sum_contacts(blocks_, candidates_, contacts_.pairs(), row);
-    forces_[row] = sum.force;
-    const Vec2 weight = blocks_.properties[row].mass * gravity_now;
-    forces_[row].u += weight;
-    const RigidDof increment = blocks_.trial[row] - blocks_.trial_previous[row];
+    gather_block(row, gravity_now);
+    if (blocks_.is_deformable(row)) {
+      gather_gradient(row);
+    }
+  }
+  if (scene_.run.local_damping > 0.0) {
+    apply_local_damping(blocks_, forces_, scene_.run.local_damping);
+  }
+  add_half_works();
+}
+
+void Simulation::gather_block(std::size_t row, Vec2 gravity_now) {
+  const BlockProperties &block = blocks_.properties[row];
+  BlockLedger &ledger = blocks_.ledger[row];
+  const BlockContactSum sum = sum_contacts(blocks_, candidates_, contacts_, row);
+  ledger.shear_force = sum.shear;
+  ledger.damping_force = sum.damping;
+  if (block.keeps_its_velocity()) {
+    ledger.load_force = -1.0 * sum.force;
+    forces_.rigid[row] = {};
+    return;
+  }
+  ledger.gravity_force = block.mass * gravity_now;
+  ledger.load_force = {};
+  for (const MaterialLoad &load : blocks_.loads_of(row)) {
+    const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
+    ledger.load_force += {load.force, cross(arm, load.force)};
+  }
+  forces_.rigid[row] = sum.force + ledger.load_force;
+  forces_.rigid[row].u += ledger.gravity_force;
+}
+
+// What works on F; the moments of the rigid part are in it.
+void Simulation::gather_gradient(std::size_t row) {
+  Deformation &d = blocks_.deformation_of(row);
+  BlockLedger &ledger = blocks_.ledger[row];
+  const BlockGradientSum sum = sum_gradient_forces(blocks_, candidates_, contacts_, row);
+  d.shear_force = sum.shear;
+  d.damping_force = sum.damping;
+  d.load_force = {};
+  for (const MaterialLoad &load : blocks_.loads_of(row)) {
+    d.load_force += outer(load.force, load.point);
+  }
+  forces_.gradient[blocks_.deformation_begin[row]] = sum.force + d.load_force;
+  for (RigidDof *force : {&ledger.shear_force, &ledger.damping_force, &ledger.load_force}) {
+    force->r = 0.0;
+  }
+}
+
+void Simulation::add_half_works() {
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     BlockLedger &ledger = blocks_.ledger[row];
-    ledger.shear_work += 0.5 * work(ledger.shear_force + sum.shear, increment);
-    ledger.damping_work += 0.5 * work(ledger.damping_force + sum.damping, increment);
-    ledger.gravity_work += 0.5 * dot(ledger.gravity_force + weight, increment.u);
-    ledger.gravity_force = weight;
-    ledger.shear_force = sum.shear;
-    ledger.damping_force = sum.damping;
+    const HalfWorks half = half_works(blocks_, row);
+    ledger.shear_work += half.shear;
+    ledger.damping_work += half.damping;
+    ledger.load_work += half.load;
+    ledger.gravity_work += half.gravity;
   }
 }
 
@@ -119,13 +174,13 @@ void Simulation::report() {
   std::int64_t crossing = 0;
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
     const CandidatePair &pair = candidates_.pairs[k];
-    const PairForce &force = contacts_.pairs()[k];
-    if (force.touching && counts_here(pair)) {
+    const auto regions = contacts_.of_pair(k);
+    if (!regions.empty() && counts_here(pair)) {
       ++counters_.contact_steps;
       const bool higher_is_ghost =
           pair.higher.value >= blocks_.num_owned && !blocks_.is_fixed(pair.higher.value);
       crossing += higher_is_ghost ? 1 : 0;
-      counters_.cross_rank_contacts_formed += higher_is_ghost && force.born ? 1 : 0;
+      counters_.cross_rank_contacts_formed += higher_is_ghost && regions.front().born ? 1 : 0;
     }
   }
   counters_.cross_rank_contacts = std::max(counters_.cross_rank_contacts, crossing);
@@ -135,9 +190,8 @@ void Simulation::report() {
   double status = 0.0;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const BlockProperties &block = blocks_.properties[row];
-    const RigidDof moved = blocks_.displacement[row] - blocks_.refreshed[row];
     const double ahead = motion_bound(blocks_, row, plan_.time_step);
-    if (norm(moved.u) + block.radius * std::abs(moved.r) + ahead > 0.5 * skin_) {
+    if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
       status = needs_refresh;
     }
     if (ahead > thinnest_ && num_blocks() > 1) {

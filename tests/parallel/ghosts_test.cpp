@@ -170,6 +170,14 @@ RigidDof moved(std::size_t id, int round) {
   return {{number(0), number(1)}, number(2)};
 }
 
+/// Gradient of a deformable block in a round.
+Mat2 stretched(std::size_t id, int round) {
+  const auto number = [&](int which) {
+    return 0.1 * testing::hashed(static_cast<std::int64_t>(id), round, which);
+  };
+  return {1.0 + number(3), number(4), number(5), 1.0 + number(6)};
+}
+
 TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
   const Communicator world = Communicator::world();
   const CellGrid grid = CellGrid::over({{0.0, 0.0}, {region, region}}, 400);
@@ -181,13 +189,23 @@ TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
       c.whole.trial_previous[id] = c.whole.trial[id];
       c.whole.trial[id] = moved(id, round);
       c.whole.velocity[id] = testing::any_bits(random);
+      if (c.whole.is_deformable(id)) {
+        Deformation &d = c.whole.deformation_of(id);
+        d.trial_previous = d.trial;
+        d.trial = stretched(id, round);
+        d.rate = 1e3 * stretched(id, round + 1000);
+      }
     }
     pose(c.whole, 0, c.whole.num_rows());
     for (std::size_t row = 0; row < c.mine.num_owned; ++row) { // and what it owns
       c.mine.trial_previous[row] = c.mine.trial[row];
       c.mine.trial[row] = c.whole.trial[c.id_of(row)];
       c.mine.velocity[row] = c.whole.velocity[c.id_of(row)];
+      if (c.mine.is_deformable(row)) {
+        c.mine.deformation_of(row) = c.whole.deformation_of(c.id_of(row));
+      }
     }
+    pose(c.mine, 0, c.mine.num_owned);
     c.ghosts.update(c.mine);
     expect_bits_of_whole(c);
     for (std::size_t row = c.mine.num_owned; row < c.mine.first_fixed(); ++row) {

@@ -46,12 +46,15 @@ RegionMemory evaluated(RegionMemory memory, const Pair &pair, int step) {
   memory.shear = 1.25 * memory.shear + hashed(pair.first, pair.second, step);
   memory.longest = std::max(memory.longest, hashed(pair.second, pair.first, step));
   memory.slip += 1e-3 * memory.longest;
+  memory.position = {hashed(step, pair.first, 1), hashed(step, pair.second, 2)};
+  memory.higher_stretch = step % 3;
   memory.state = hashed(pair.first, step, 9) < 0.5 ? ContactState::stick : ContactState::slip;
   return memory;
 }
 
 bool operator==(const RegionMemory &a, const RegionMemory &b) {
-  return a.shear == b.shear && a.longest == b.longest && a.slip == b.slip && a.state == b.state;
+  return a.shear == b.shear && a.longest == b.longest && a.slip == b.slip && a.state == b.state &&
+         a.is_same_region(b);
 }
 
 using Memories = std::map<Pair, RegionMemory>;

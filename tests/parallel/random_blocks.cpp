@@ -19,7 +19,8 @@ template <class T> void put_words(std::vector<std::uint64_t> &words, const T &va
 // By field: it has padding. A new field must be added here, which the size reminds of.
 void put_words(std::vector<std::uint64_t> &words, const BlockProperties &p) {
   static_assert(sizeof(BlockProperties) == 72);
-  for (const std::int64_t whole : {p.id.value, std::int64_t{p.material}, static_cast<std::int64_t>(p.kind)}) {
+  for (const std::int64_t whole :
+       {p.id.value, std::int64_t{p.material}, static_cast<std::int64_t>(p.kind), std::int64_t{p.is_convex}}) {
     words.push_back(static_cast<std::uint64_t>(whole));
   }
   for (const double real : {p.area, p.mass, p.inertia, p.radius, p.width, p.centroid.x, p.centroid.y}) {
@@ -46,10 +47,13 @@ std::vector<std::uint64_t> bits_of_row(const BlockSystem &system, std::size_t ro
   std::vector<std::uint64_t> words;
   std::apply([&](auto... field) { (put_words(words, (system.*field)[row]), ...); },
              BlockSystem::row_fields());
-  for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
-    std::apply([&](auto... field) { (put_words(words, (system.*field)[k]), ...); },
-               BlockSystem::shape_fields());
-  }
+  const auto put_list = [&](auto begins, auto... fields) {
+    words.push_back((system.*begins)[row + 1] - (system.*begins)[row]);
+    for (std::size_t k = (system.*begins)[row]; k < (system.*begins)[row + 1]; ++k) {
+      (put_words(words, (system.*fields)[k]), ...);
+    }
+  };
+  std::apply([&](auto... list) { (std::apply(put_list, list), ...); }, BlockSystem::lists());
   return words;
 }
 
@@ -62,7 +66,7 @@ RigidDof any_bits(std::mt19937_64 &random) {
 BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double region) {
   std::mt19937_64 random(seed);
   BlockSystem system;
-  const Material material{"rock", 2600.0, 0.0, 0.0};
+  const Material material{"rock", 2600.0, 1e9, 0.25};
   for (int k = 0; k < num_mobile + num_fixed; ++k) {
     const double radius = k == 0 ? 0.7 * region : region * 0.005 * std::pow(100.0, uniform(random, 0.0, 0.7));
     const Vec2 centre{uniform(random, 0.0, region), uniform(random, 0.0, region)};
@@ -70,8 +74,27 @@ BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double r
     SceneBlock block;
     block.vertices = random_polygon(static_cast<unsigned>(random()), num_vertices, radius, centre);
     block.fixed = k >= num_mobile;
-    append_block(system, BlockId{k}, block, material);
+    // Every third deforms, some have loads or fixed points.
+    for (int i = 0; i < k % 4; ++i) {
+      block.loads.push_back({centre, {uniform(random, -1.0, 1.0), 1.0 * i}});
+    }
+    for (int i = 0; i < k % 5 - 2; ++i) {
+      block.fixed_points.push_back(block.vertices[static_cast<std::size_t>(i)]);
+    }
+    const BlockKind kind = block.fixed  ? BlockKind::fixed
+                           : k % 3 == 1 ? BlockKind::deformable
+                                        : BlockKind::rigid;
+    append_block(system, BlockId{k}, block, material, kind);
     const auto row = static_cast<std::size_t>(k);
+    if (kind == BlockKind::deformable) {
+      const Mat2 trial = system.deformation_of(row).trial; // poses the block: no bits whatever
+      fill_with_any_bits(system.deformation_of(row), random);
+      system.deformation_of(row).trial = trial;
+      system.deformation_of(row).gradient = trial;
+      system.matrix.emplace_back();
+      fill_with_any_bits(system.matrix.back(), random);
+      system.matrix_begin.back() = static_cast<std::uint32_t>(system.matrix.size());
+    }
     if (block.fixed) {
       ++system.num_fixed;
       continue;

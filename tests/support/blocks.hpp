@@ -3,65 +3,13 @@
 // Blocks without a scene, for tests of single modules.
 
 #include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/contact/overlap.hpp"
 #include "gcpdda/model/block_system.hpp"
+#include "support/shapes.hpp"
 
-#include <random>
 #include <utility>
 #include <vector>
 
 namespace gcpdda::testing {
-
-/// A convex polygon that owns what a ConvexView looks at; normals and lengths from its edges.
-struct Shape {
-  std::vector<Vec2> vertex;
-  std::vector<Vec2> normal;
-  std::vector<double> length;
-
-  [[nodiscard]] ConvexView view() const { return {vertex, normal, length, bounding_box(vertex)}; }
-};
-
-inline Shape shape_of(std::vector<Vec2> vertices) {
-  Shape shape;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Vec2 edge = vertices[(i + 1) % vertices.size()] - vertices[i];
-    const double length = norm(edge);
-    shape.normal.push_back({edge.y / length, -edge.x / length});
-    shape.length.push_back(length);
-  }
-  shape.vertex = std::move(vertices);
-  return shape;
-}
-
-/// The same block at another place, its normals turned, not recomputed.
-inline Shape moved(const Shape &shape, double angle, Vec2 about, Vec2 by) {
-  Shape result = shape;
-  const Rotation turn = Rotation::of(angle);
-  for (Vec2 &v : result.vertex) {
-    v = about + by + turn(v - about);
-  }
-  for (Vec2 &n : result.normal) {
-    n = turn(n);
-  }
-  return result;
-}
-
-/// Contact integrals of two blocks for k_n/2 = 1; zero where they do not meet.
-inline RegionIntegrals contact_of(const Shape &first, const Shape &second,
-                                  PotentialKind potential = PotentialKind::exact) {
-  Overlap overlap;
-  return overlap.find(first.view(), second.view(), potential) ? overlap.integrate() : RegionIntegrals{};
-}
-
-/// Torque of the force on the first block.
-inline double torque_about(const RegionIntegrals &region, Vec2 point) {
-  return region.dyad[1] - region.dyad[2] + cross(region.origin - point, region.force);
-}
-
-/// The standard distributions differ between libraries; the engine does not.
-inline double uniform(std::mt19937 &engine, double low, double high) {
-  return low + (high - low) * (static_cast<double>(engine()) / 4294967296.0);
-}
 
 /// Mobile blocks and then fixed ones as rows of one rank, ids in this order, posed at rest.
 inline BlockSystem system_of(const std::vector<std::vector<Vec2>> &mobile,
@@ -115,23 +63,34 @@ struct ContactBench {
     candidates = make_candidates(system, pairs, forces.parameters(), {}, history);
   }
 
+  /// What evaluate() saw of the first region.
+  struct Seen : RegionForce {
+    bool touching = false;
+  };
+
   /// Forces at the present trial configuration; the last one becomes the previous one.
-  const PairForce &evaluate() {
+  const Seen &evaluate() {
     pose(system, 0, system.num_rows());
     report = forces.evaluate(system, candidates, history);
     for (std::size_t row = 0; row < system.num_owned; ++row) {
       system.trial_previous[row] = system.trial[row];
     }
-    return forces.pairs().front();
+    seen = {};
+    if (!forces.regions().empty()) {
+      static_cast<RegionForce &>(seen) = forces.regions().front();
+      seen.touching = true;
+    }
+    return seen;
   }
   /// Move one row's trial configuration and evaluate.
-  const PairForce &move(std::size_t row, RigidDof by) {
+  const Seen &move(std::size_t row, RigidDof by) {
     system.trial[row] += by;
     return evaluate();
   }
   [[nodiscard]] const RegionMemory &memory() const { return history.regions.front(); }
 
   ForceReport report;
+  Seen seen;
 };
 
 } // namespace gcpdda::testing

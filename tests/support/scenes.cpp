@@ -1,7 +1,6 @@
 #include "support/scenes.hpp"
 
 #include "gcpdda/io/scene_reader.hpp"
-#include "gcpdda/model/stiffness.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -23,7 +22,6 @@ Scene checked(SceneReading reading) {
     }
     throw std::runtime_error(text);
   }
-  resolve_stiffness(reading.scene);
   return reading.scene;
 }
 

@@ -7,7 +7,7 @@
 
 namespace gcpdda::testing {
 
-/// The scene of a TOML text, stiffnesses resolved; throws with all diagnostics if it is bad.
+/// The scene of a TOML text; throws with all diagnostics if it is bad.
 Scene scene_of(const std::string &toml, const std::vector<std::string> &sets = {});
 
 /// A scene that ships with the program, run/scenes/<name>.toml.

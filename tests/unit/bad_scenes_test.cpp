@@ -201,10 +201,6 @@ vertices = [[8, 0], [9, 0], [9, 1]]
      {R"(17:12: error: block 'slider' crosses itself, two of its edges meet away from a common vertex, list the vertices in order around the block)"}},
     {"TwiceAround", 17, R"(vertices = [[10, 0], [-8, 6], [3, -10], [3, 10], [-8, -6]])",
      {R"(17:12: error: block 'slider' crosses itself, two of its edges meet away from a common vertex, list the vertices in order around the block)"}},
-    {"NotConvex", 17, R"(vertices = [[1, 1], [2, 1], [2, 2], [1.5, 1.2], [1, 2]])",
-     {R"(17:12: error: block 'slider' is not convex: this version computes convex blocks, split it into convex blocks)"}},
-    {"FixedNotConvex", 12, R"(vertices = [[0, 0], [0, 1], [2, 0.5], [4, 1], [4, 0]])",
-     {R"(12:12: error: block 'base' is not convex: this version computes convex blocks, split it into convex blocks)"}},
     {"FixedWithVelocity", 13, R"(fixed = true
 velocity = [1, 0, 0])",
      {R"(14:12: error: block 'base' is fixed but has a velocity, a fixed block never moves, leave one of fixed and velocity out)"}},
@@ -271,40 +267,12 @@ block = "slider"
 [[monitor]]
 block = "slider")",
      {R"(17:9: error: block 'slider' is monitored twice, keep one of them)"}},
-    {"MonitorPoint", 13, R"(fixed = true
-[[monitor]]
-name = "roof"
-point = [1, 2])",
-     {R"(14:1: error: 'block' in [[monitor]] is missing, it is required, for example block = "slider")",
-      R"(15:1: error: 'name' in [[monitor]] is not available in this version, leave it out)",
-      R"(16:1: error: 'point' in [[monitor]] is not available in this version, leave it out)"}},
-    {"BlockLoad", 13, R"(fixed = true
-[[block.load]]
-force = [0, -1])",
-     {R"(14:9: error: 'load' in block 'base' is not available in this version, leave it out)"}},
-    {"FixedPoints", 13, R"(fixed_points = [[0, 0]]
-prescribed_velocity = [1, 0, 0])",
-     {R"(13:1: error: 'fixed_points' in block 'base' is not available in this version, leave it out)",
-      R"(14:1: error: 'prescribed_velocity' in block 'base' is not available in this version, leave it out)"}},
-    {"WallPyramidBlocks", 3, R"([[wall]]
-[[pyramid]]
-[blocks]
-file = "blocks.h5"
-[material.granite])",
-     {R"(3:3: error: 'wall' is not available in this version, leave it out)",
-      R"(4:3: error: 'pyramid' is not available in this version, leave it out)",
-      R"(5:2: error: 'blocks' is not available in this version, leave it out)"}},
-    {"LocalDamping", 2, R"(duration = 2.0
-local_damping = 0.1)",
-     {R"(3:17: error: 'local_damping' in [run] is not available in this version, leave it out or write 0)"}},
+    {"LocalDampingOne", 2, R"(duration = 2.0
+local_damping = 1)",
+     {R"(3:17: error: 'local_damping' in [run] is 1, it must be at least 0 and below 1, for example local_damping = 0.0)"}},
     {"GravityRampNegative", 2, R"(duration = 2.0
 gravity_ramp = -1)",
      {R"(3:16: error: 'gravity_ramp' in [run] is -1, it must be at least 0 and at most 1e+12, for example gravity_ramp = 0.0)"}},
-    {"RunDeformable", 2, R"(duration = 2.0
-fidelity = "deformable")",
-     {R"(3:12: error: deformable blocks are not available in this version, use "rigid")"}},
-    {"BlockDeformable", 13, R"(fidelity = "deformable")",
-     {R"(13:12: error: deformable blocks are not available in this version, use "rigid")"}},
     {"MonitorEnergy", 13, R"(fixed = true
 [[monitor]]
 block = "energy"
@@ -353,7 +321,8 @@ TEST(BadScene, NothingAtAll) {
       "s.toml:1:1: error: 'run' is missing, it is required, write [run]",
       "s.toml:1:1: error: 'material' is missing, it is required, write [material.granite]",
       "s.toml:1:1: error: 'joint' is missing, it is required, write [joint.default]",
-      "s.toml:1:1: error: 'block' is missing, it is required, write [[block]]"};
+      "s.toml:1:1: error: the scene has no blocks, at least one block, wall, pyramid or block file is "
+      "required, write [[block]], [[wall]], [[pyramid]] or [blocks]"};
   EXPECT_EQ(messages(""), expected);
 }
 
@@ -403,7 +372,7 @@ density = inf
 [run]
 scheme = "newmark-dda"
 contact_time = "start"
-local_damping = 0.1
+local_damping = -0.1
 )";
   const std::vector<std::string> expected{
       "s.toml:2:9: error: no block is named 'slidr', did you mean 'slider'?",
@@ -428,8 +397,8 @@ local_damping = 0.1
       "s.toml:19:1: error: 'duration' in [run] is missing, it is required, for example duration = 2.0",
       "s.toml:21:16: error: 'contact_time' in [run] has no meaning for this scheme, it belongs to "
       "generalized-alpha, leave it out",
-      "s.toml:22:17: error: 'local_damping' in [run] is not available in this version, leave it out or write "
-      "0"};
+      "s.toml:22:17: error: 'local_damping' in [run] is -0.1, it must be at least 0 and below 1, for example "
+      "local_damping = 0.0"};
   EXPECT_EQ(messages(text), expected);
 }
 

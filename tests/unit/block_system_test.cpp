@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace gcpdda {
@@ -102,15 +103,98 @@ TEST(BlockSystem, NormalsPointOutAndEdgesFollow) {
   }
 }
 
-/// Three blocks of different vertex counts with every field filled differently.
+const Material elastic_rock{"rock", 2600.0, 4e9, 0.3};
+
+SceneBlock block_of(const std::vector<Vec2> &vertices) {
+  SceneBlock block;
+  block.vertices = vertices;
+  return block;
+}
+
+// S is the polygon's second moment; the stiffness area * D of both plane states, from the compliance
+// [std] eps = [1 -nu; -nu 1] sigma/E (plane stress) and E/(1 - nu^2), nu/(1 - nu) in their places (strain).
+TEST(BlockSystem, ConstantsOfADeformableBlock) {
+  for (const bool plane_strain : {false, true}) {
+    BlockSystem system;
+    SceneBlock block = block_of(rectangle({1.0, 1.0}, {4.0, 3.0}));
+    block.velocity = {1.0, 2.0, 3.0};
+    append_block(system, BlockId{0}, block, elastic_rock, BlockKind::deformable, plane_strain);
+    ASSERT_TRUE(system.is_deformable(0));
+    EXPECT_FALSE(system.has_matrix(0));
+    const Deformation &d = system.deformation_of(0);
+    EXPECT_NEAR(d.second_moment.xx, 2600.0 * 2.0 * 27.0 / 12.0, 1e-11);
+    EXPECT_NEAR(d.second_moment.yy, 2600.0 * 3.0 * 8.0 / 12.0, 1e-11);
+    EXPECT_NEAR(d.second_moment.xy, 0.0, 1e-11);
+    EXPECT_EQ(d.rate, (Mat2{0.0, -3.0, 3.0, 0.0}));
+    const double nu = plane_strain ? 0.3 / 0.7 : 0.3;
+    const double modulus = plane_strain ? 4e9 / 0.91 : 4e9;
+    // Stress along x alone of 1 Pa.
+    const double along = (1.0 / modulus) * d.stiffness_direct - (nu / modulus) * d.stiffness_cross;
+    const double across = (1.0 / modulus) * d.stiffness_cross - (nu / modulus) * d.stiffness_direct;
+    EXPECT_NEAR(along, 6.0, 1e-13);
+    EXPECT_NEAR(across, 0.0, 1e-13);
+    EXPECT_NEAR(d.stiffness_shear, 6.0 * 4e9 / 2.6, 1e-4);
+  }
+}
+
+// Its points stand where x = x_c + F X says, its normals on the current edges.
+TEST(BlockSystem, PoseOfADeformableBlock) {
+  BlockSystem system;
+  append_block(system, BlockId{0}, block_of(triangle), elastic_rock, BlockKind::deformable);
+  Deformation &d = system.deformation_of(0);
+  d.trial = {0.1, -1.2, 0.9, 0.2}; // turned by some 90 degrees, stretched and sheared
+  d.gradient = {1.0, 0.5, 0.0, 1.0};
+  system.trial[0] = {{2.0, -1.0}, 77.0};
+  pose(system, 0, 1);
+  const Vec2 centre{3.0, -0.5};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2 expected = centre + d.trial(triangle[k] - Vec2{1.0, 0.5});
+    EXPECT_NEAR(norm(system.vertex[k] - expected), 0.0, 16.0 * epsilon);
+    const Vec2 edge = system.vertex[(k + 1) % 3] - system.vertex[k];
+    EXPECT_NEAR(system.edge_length[k], norm(edge), 16.0 * epsilon);
+    EXPECT_NEAR(norm(edge - system.edge_length[k] * perp(system.normal[k])), 0.0, 16.0 * epsilon);
+    EXPECT_GE(system.vertex[k].x, system.box[0].low.x);
+    const Vec2 sheared = Vec2{1.0, 0.5} + d.gradient(triangle[k] - Vec2{1.0, 0.5});
+    EXPECT_NEAR(norm(current_vertices(system, 0)[k] - sheared), 0.0, 16.0 * epsilon);
+  }
+  EXPECT_LE(norm(system.trial_inverse[0] * d.trial - Mat2::identity()), 16.0 * epsilon);
+}
+
+TEST(BlockSystem, AttachmentsInReferenceAxes) {
+  BlockSystem system;
+  SceneBlock block = block_of(triangle);
+  block.fixed_points = {{0.0, 0.0}};
+  block.loads = {{{3.0, 0.0}, {5.0, -7.0}}, {{1.0, 0.5}, {1.0, 1.0}}};
+  append_block(system, BlockId{0}, block, elastic_rock, BlockKind::rigid);
+  append_block(system, BlockId{1}, block_of(triangle), elastic_rock, BlockKind::rigid);
+  ASSERT_EQ(system.loads_of(0).size(), 2U);
+  EXPECT_LE(norm(system.loads_of(0)[0].point - Vec2{2.0, -0.5}), 4.0 * epsilon);
+  EXPECT_EQ(system.loads_of(0)[0].force, (Vec2{5.0, -7.0}));
+  ASSERT_EQ(system.anchors_of(0).size(), 1U);
+  EXPECT_LE(norm(system.anchors_of(0)[0].point - Vec2{-1.0, -0.5}), 4.0 * epsilon);
+  EXPECT_TRUE(system.loads_of(1).empty());
+  EXPECT_TRUE(system.anchors_of(1).empty());
+  block.fixed = true;
+  append_block(system, BlockId{2}, block, elastic_rock, BlockKind::fixed);
+  EXPECT_TRUE(system.anchors_of(2).empty()) << "a fixed block is held anyway";
+}
+
+/// Three blocks of different vertex counts, one deformable, with every field filled differently.
 BlockSystem filled_system() {
-  BlockSystem system = system_of({random_polygon(1, 3, 1.0, {}), random_polygon(2, 8, 1.0, {5.0, 0.0}),
-                                  random_polygon(3, 5, 1.0, {9.0, 0.0})},
-                                 {});
+  BlockSystem system;
+  SceneBlock held = block_of(random_polygon(1, 3, 1.0, {}));
+  held.fixed_points = {{0.1, 0.2}};
+  held.loads = {{{0.2, 0.1}, {1.0, 2.0}}, {{0.0, 0.1}, {3.0, 4.0}}};
+  append_block(system, BlockId{0}, held, elastic_rock, BlockKind::rigid);
+  append_block(system, BlockId{1}, block_of(random_polygon(2, 8, 1.0, {5.0, 0.0})), elastic_rock,
+               BlockKind::deformable);
+  append_block(system, BlockId{2}, block_of(random_polygon(3, 5, 1.0, {9.0, 0.0})), elastic_rock,
+               BlockKind::rigid);
+  system.num_owned = 3;
   std::mt19937 engine(7);
-  const auto dof = [&] {
-    return RigidDof{{uniform(engine, -1.0, 1.0), uniform(engine, -1.0, 1.0)}, uniform(engine, -1.0, 1.0)};
-  };
+  const auto number = [&] { return uniform(engine, -1.0, 1.0); };
+  const auto dof = [&] { return RigidDof{{number(), number()}, number()}; };
+  const auto matrix = [&] { return Mat2{number(), number(), number(), number()}; };
   for (std::size_t row = 0; row < 3; ++row) {
     system.displacement[row] = dof();
     system.velocity[row] = dof();
@@ -118,10 +202,33 @@ BlockSystem filled_system() {
     system.trial[row] = dof();
     system.trial_previous[row] = dof();
     system.refreshed[row] = dof();
-    system.ledger[row] = {dof(), dof(), dof().u, dof().r, dof().r, dof().r};
+    system.ledger[row] = {dof(), dof(), dof(), dof(), dof().u, number(), number(), number(), number()};
     system.properties[row].material = static_cast<std::int32_t>(row) + 4;
   }
+  Deformation &d = system.deformation[0];
+  for (Mat2 *field :
+       {&d.gradient, &d.rate, &d.acceleration, &d.trial, &d.trial_previous, &d.refreshed, &d.second_moment,
+        &d.internal, &d.shear_force, &d.damping_force, &d.load_force, &d.anchor_force}) {
+    *field = matrix();
+  }
+  system.matrix_begin = {0, 1, 2, 2};
+  for (int k = 0; k < 2; ++k) {
+    BlockMatrix &own = system.matrix.emplace_back();
+    for (double &entry : own.factor) {
+      entry = number();
+    }
+  }
+  system.anchor[0].stiffness = number();
+  system.anchor[0].held = {number(), number()};
   return system;
+}
+
+/// Bytes, so that no field is forgotten: these structures are numbers without gaps.
+template <class T> void expect_same_bytes(std::span<const T> a, std::span<const T> b) {
+  ASSERT_EQ(a.size(), b.size());
+  if (!a.empty()) {
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size_bytes()), 0);
+  }
 }
 
 void expect_same_row(const BlockSystem &a, std::size_t i, const BlockSystem &b, std::size_t j) {
@@ -130,30 +237,26 @@ void expect_same_row(const BlockSystem &a, std::size_t i, const BlockSystem &b, 
   EXPECT_EQ(p.id, q.id);
   EXPECT_EQ(p.material, q.material);
   EXPECT_EQ(p.kind, q.kind);
+  EXPECT_EQ(p.is_convex, q.is_convex);
   EXPECT_EQ(p.area, q.area);
   EXPECT_EQ(p.mass, q.mass);
   EXPECT_EQ(p.inertia, q.inertia);
   EXPECT_EQ(p.radius, q.radius);
   EXPECT_EQ(p.width, q.width);
   EXPECT_EQ(p.centroid, q.centroid);
-  EXPECT_EQ(a.displacement[i], b.displacement[j]);
-  EXPECT_EQ(a.velocity[i], b.velocity[j]);
-  EXPECT_EQ(a.acceleration[i], b.acceleration[j]);
-  EXPECT_EQ(a.trial[i], b.trial[j]);
-  EXPECT_EQ(a.trial_previous[i], b.trial_previous[j]);
-  EXPECT_EQ(a.refreshed[i], b.refreshed[j]);
-  EXPECT_EQ(a.ledger[i].shear_force, b.ledger[j].shear_force);
-  EXPECT_EQ(a.ledger[i].damping_force, b.ledger[j].damping_force);
-  EXPECT_EQ(a.ledger[i].gravity_force, b.ledger[j].gravity_force);
-  EXPECT_EQ(a.ledger[i].shear_work, b.ledger[j].shear_work);
-  EXPECT_EQ(a.ledger[i].damping_work, b.ledger[j].damping_work);
-  EXPECT_EQ(a.ledger[i].gravity_work, b.ledger[j].gravity_work);
-  ASSERT_EQ(a.num_vertices(i), b.num_vertices(j));
-  for (std::size_t k = 0; k < a.num_vertices(i); ++k) {
-    EXPECT_EQ(a.of_row(a.reference_vertex, i)[k], b.of_row(b.reference_vertex, j)[k]);
-    EXPECT_EQ(a.of_row(a.reference_normal, i)[k], b.of_row(b.reference_normal, j)[k]);
-    EXPECT_EQ(a.of_row(a.edge_length, i)[k], b.of_row(b.edge_length, j)[k]);
+  for (const auto field : {&BlockSystem::displacement, &BlockSystem::velocity, &BlockSystem::acceleration,
+                           &BlockSystem::trial, &BlockSystem::trial_previous, &BlockSystem::refreshed}) {
+    EXPECT_EQ((a.*field)[i], (b.*field)[j]);
   }
+  expect_same_bytes(std::span(&a.ledger[i], 1), std::span(&b.ledger[j], 1));
+  const auto expect_same_list = [&](auto begins, auto... fields) {
+    const auto slice = [&](const BlockSystem &system, auto field, std::size_t row) {
+      return std::span(system.*field)
+          .subspan((system.*begins)[row], (system.*begins)[row + 1] - (system.*begins)[row]);
+    };
+    (expect_same_bytes(slice(a, fields, i), slice(b, fields, j)), ...);
+  };
+  std::apply([&](auto... list) { (std::apply(expect_same_list, list), ...); }, BlockSystem::lists());
 }
 
 TEST(BlockSystem, AppendedRowsKeepEveryBit) {
@@ -167,6 +270,9 @@ TEST(BlockSystem, AppendedRowsKeepEveryBit) {
   expect_same_row(to, 4, from, 0);
   expect_same_row(to, 5, from, 1);
   expect_same_row(to, 1, from, 1);
+  EXPECT_TRUE(to.is_deformable(5));
+  EXPECT_FALSE(to.is_deformable(4));
+  EXPECT_EQ(to.loads_of(4).size(), 2U);
 }
 
 TEST(BlockSystem, PackedRowsKeepEveryBit) {

@@ -1,5 +1,7 @@
 #include "gcpdda/dynamics/frequency_bound.hpp"
 
+#include "gcpdda/dynamics/deformable.hpp"
+#include "gcpdda/dynamics/integrate.hpp"
 #include "support/blocks.hpp"
 #include "support/scenes.hpp"
 
@@ -7,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace gcpdda {
 namespace {
@@ -143,7 +146,7 @@ TEST(FrequencyBound, BoundsTheContactsOwnStiffness) {
       bench.evaluate();
       Eigen::Matrix<double, 6, 1> f;
       for (std::size_t row = 0; row < 2; ++row) {
-        const RigidDof sum = sum_contacts(bench.system, bench.candidates, bench.forces.pairs(), row).force;
+        const RigidDof sum = sum_contacts(bench.system, bench.candidates, bench.forces, row).force;
         f.segment<3>(static_cast<Eigen::Index>(3 * row)) << sum.u.x, sum.u.y, sum.r;
       }
       return f;
@@ -163,6 +166,95 @@ TEST(FrequencyBound, BoundsTheContactsOwnStiffness) {
   }
   EXPECT_GT(touching, 100);
   RecordProperty("largest_share_of_bound", std::to_string(sharpest));
+}
+
+/// A unit square in its own row of a system.
+BlockSystem unit_square(BlockKind kind, double modulus, bool driven = false) {
+  SceneBlock block;
+  block.vertices = rectangle({0.0, 0.0}, {1.0, 1.0});
+  block.driven = driven;
+  BlockSystem system;
+  append_block(system, BlockId{0}, block, {"rock", density, modulus, 0.0}, kind);
+  system.num_owned = 1;
+  pose(system, 0, 1);
+  return system;
+}
+
+// Without shear springs the fastest mode of a square stretches it against both neighbours: 2 k/2 over m/12.
+TEST(FrequencyBound, OfADeformableSquare) {
+  constexpr double modulus = 1e7;
+  const BlockSystem system = unit_square(BlockKind::deformable, modulus);
+  const double exact = 12.0 * normal_stiffness / density;
+  EXPECT_NEAR(contact_frequency_bound(system, 0, normal_stiffness, 0.0), exact, 1e-13 * exact);
+  const double elastic = 12.0 * modulus / density;
+  EXPECT_NEAR(contact_frequency_bound(system, 0, normal_stiffness, 0.0, Elasticity::explicit_),
+              exact + elastic, 1e-13 * (exact + elastic));
+  EXPECT_EQ(contact_frequency_bound(unit_square(BlockKind::rigid, modulus, true), 0, 1.0, 1.0), 0.0);
+}
+
+/// Largest omega^2 of a row of unit squares with flush joints, normal springs only, free ends; unknowns (u,
+/// eps_x), which the other four do not see.
+double largest_of_chain(int num_blocks, bool deformable) {
+  const int n = 2 * num_blocks;
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd mass(n);
+  for (int i = 0; i < num_blocks; ++i) {
+    mass[2 * i] = density;
+    mass[2 * i + 1] = deformable ? density / 12.0 : 1e12 * density;
+    if (i > 0) {
+      Eigen::VectorXd gap = Eigen::VectorXd::Zero(n);
+      gap.segment<4>(2 * i - 2) << -1.0, -0.5, 1.0, -0.5;
+      stiffness += normal_stiffness * gap * gap.transpose();
+    }
+  }
+  const Eigen::VectorXd scale = mass.cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues().maxCoeff();
+}
+
+// 4 k/m and 12 k/m are what long chains reach, as cos^2(pi/2N) does 1: the bound of deformable blocks is
+// sharp.
+TEST(FrequencyBound, OfChainsIsReached) {
+  const double unit = normal_stiffness / density;
+  EXPECT_NEAR(largest_of_chain(50, false), 4.0 * unit, 0.004 * unit);
+  EXPECT_LT(largest_of_chain(50, false), 4.0 * unit);
+  EXPECT_NEAR(largest_of_chain(50, true), 12.0 * unit, 0.012 * unit);
+  const double bound =
+      contact_frequency_bound(unit_square(BlockKind::deformable, 1.0), 0, normal_stiffness, 0.0);
+  EXPECT_LE(largest_of_chain(50, true), bound);
+}
+
+/// Largest stretch in 2000 steps of a square between two mirrored neighbours that stretch alike: each face
+/// meets the spring 2 k of half a joint.
+double largest_stretch(double share_of_limit, double modulus, Elasticity elasticity) {
+  BlockSystem system = unit_square(BlockKind::deformable, modulus);
+  const Scheme scheme = make_scheme(SchemeKind::generalized_alpha, 0.8, ContactTime::leapfrog);
+  const double omega = std::sqrt(contact_frequency_bound(system, 0, normal_stiffness, 0.0, elasticity));
+  const double time_step = share_of_limit * stability_limit(scheme, 0.0) / omega;
+  make_block_matrices(system, scheme, time_step, elasticity, normal_stiffness);
+  Deformation &d = system.deformation[0];
+  constexpr double start = 1e-8;
+  d.gradient.xx = d.trial.xx = 1.0 + start;
+  double largest = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    predict(system, scheme, time_step);
+    BlockForces forces{{{}}, {{}}};
+    forces.gradient[0].xx = -normal_stiffness * (d.trial.xx - 1.0);
+    if (solve_and_update(system, forces, scheme, time_step, elasticity)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    largest = std::max(largest, std::abs(d.gradient.xx - 1.0) / start);
+  }
+  return largest;
+}
+
+TEST(FrequencyBound, IsTheLimitOfTheStep) {
+  for (const double modulus : {1e-3 * normal_stiffness, normal_stiffness, 10.0 * normal_stiffness}) {
+    EXPECT_LT(largest_stretch(0.98, modulus, Elasticity::explicit_), 20.0) << modulus;
+    EXPECT_GT(largest_stretch(1.02, modulus, Elasticity::explicit_), 1e6) << modulus;
+    EXPECT_LT(largest_stretch(0.98, modulus, Elasticity::implicit), 20.0) << modulus;
+  }
+  EXPECT_GT(largest_stretch(1.02, 1e-3 * normal_stiffness, Elasticity::implicit), 1e6);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 // Energy of the contact field, and its behaviour along paths: conservation, continuity, degenerate cases.
 
-#include "support/blocks.hpp"
 #include "support/scenes.hpp"
+#include "support/shapes.hpp"
 
 #include <gtest/gtest.h>
 

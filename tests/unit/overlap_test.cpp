@@ -1,7 +1,7 @@
 // The contact integral of two convex blocks against independent ways to the same number.
 
-#include "support/blocks.hpp"
 #include "support/scenes.hpp"
+#include "support/shapes.hpp"
 
 #include "gcpdda/geometry/polygon.hpp"
 
@@ -235,7 +235,7 @@ RegionEdges needed_edges(const Shape &own, const Shape &other) {
   for (std::size_t i = 0; i < overlap.pieces().size(); ++i) {
     const Piece &piece = overlap.pieces()[i];
     for (std::size_t e = 0; e < n; ++e) {
-      if (i < overlap.num_first()) {
+      if (i < overlap.regions().front().middle) {
         needed[e] = needed[e] || piece.normal == own.normal[e];
         continue;
       }

@@ -215,13 +215,55 @@ TEST(NarrowestWidth, DoesNotDependOnPlaceOrDirection) {
   EXPECT_NEAR(narrowest_width(mapped(plate, Rotation::of(0.7))), 0.25, 1e-14);
 }
 
-// The arrow is narrowest across the diagonal of its hull, which is none of its own edges.
-TEST(NarrowestWidth, OfAConcaveShapeIsThatOfItsHull) {
-  const Polygon hull{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 3.0}, {0.0, 3.0}};
-  EXPECT_NEAR(narrowest_width(l_shape), narrowest_width(hull), rounding);
+TEST(NarrowestWidth, OfAConcaveShapeIsThatOfItsThinnestPart) {
+  EXPECT_NEAR(narrowest_width(l_shape), 1.0, rounding) << "the legs";
+  const Polygon thin_leg{{0.0, 0.0}, {3.0, 0.0}, {3.0, 0.2}, {1.0, 0.2}, {1.0, 3.0}, {0.0, 3.0}};
+  EXPECT_NEAR(narrowest_width(thin_leg), 0.2, rounding);
+  const Polygon prongs{{0.0, 0.0}, {3.0, 0.0}, {3.0, 2.0}, {2.6, 2.0},
+                       {2.6, 1.0}, {1.0, 1.0}, {1.0, 2.0}, {0.0, 2.0}};
+  EXPECT_NEAR(narrowest_width(prongs), 0.4, rounding);
+  // Between two re-entrant vertices, an hourglass.
+  const Polygon hourglass{{0.0, 0.0}, {2.0, 0.0}, {1.25, 1.0}, {2.0, 2.0}, {0.0, 2.0}, {0.75, 1.0}};
+  EXPECT_NEAR(narrowest_width(hourglass), 0.5, rounding);
   const Polygon arrow{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}, {9.0, 1.0}};
-  const Polygon arrow_hull{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}};
-  EXPECT_NEAR(narrowest_width(arrow), narrowest_width(arrow_hull), rounding);
+  EXPECT_NEAR(narrowest_width(arrow), 1.0, rounding) << "at its bend";
+}
+
+// The size of a dent, of a step or of the gap between two prongs is not a width; from their bottom through
+// the interior to the next wall is one.
+TEST(NarrowestWidth, OfAConcaveShapeMindsTheInteriorOnly) {
+  const Polygon hull{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {0.0, 4.0}};
+  const Polygon dented{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {2.0, 3.9}, {0.0, 4.0}};
+  EXPECT_NEAR(narrowest_width(dented), 2.0, rounding);
+  const Polygon stepped{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {2.0, 4.0}, {2.0, 3.99}, {0.0, 3.99}};
+  EXPECT_NEAR(narrowest_width(stepped), 2.0, rounding);
+  const Polygon slit{{0.0, 0.0},  {4.0, 0.0},  {4.0, 4.0},  {2.01, 4.0},
+                     {2.01, 2.5}, {1.99, 2.5}, {1.99, 4.0}, {0.0, 4.0}};
+  EXPECT_NEAR(narrowest_width(slit), 1.99, rounding);
+  for (std::ptrdiff_t first = 0; first < 8; ++first) {
+    EXPECT_EQ(narrowest_width(started_at(slit, first)), narrowest_width(slit));
+  }
+  EXPECT_NEAR(narrowest_width(mapped(slit, Rotation::of(0.7))), 1.99, 1e-14);
+  EXPECT_NEAR(narrowest_width(hull), 4.0, rounding);
+}
+
+// The arrow's hull is narrowest across its diagonal, which is none of its own edges; nothing inside is
+// thinner.
+TEST(NarrowestWidth, OfAConcaveShapeIsAtMostThatOfItsHull) {
+  const Polygon wide_arrow{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}, {5.1, 5.0}};
+  const Polygon hull{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}};
+  EXPECT_LE(narrowest_width(wide_arrow), narrowest_width(hull));
+  EXPECT_NEAR(narrowest_width(wide_arrow), 4.9, rounding);
+}
+
+TEST(ReentrantVertices, AreTheRightTurns) {
+  EXPECT_EQ(reentrant_vertices(unit_square), std::vector<bool>(4, false));
+  EXPECT_EQ(
+      reentrant_vertices(Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 2.0}, {0.0, 2.0}}),
+      (std::vector<bool>{false, false, false, true, false, false}));
+  EXPECT_EQ(reentrant_vertices(Polygon{{0.0, 0.0}, {0.5, 1e-13}, {1.0, 0.0}, {0.5, 1.0}}),
+            std::vector<bool>(4, false))
+      << "a dent of rounding";
 }
 
 } // namespace

@@ -13,6 +13,8 @@
 namespace gcpdda {
 namespace {
 
+const Monitor slider{"slider", 0, false, {}, {}};
+
 namespace fs = std::filesystem;
 
 std::string read_text(const fs::path &path) {
@@ -39,12 +41,12 @@ protected:
 };
 
 TEST_F(ResultFiles, HistoryHasUnitsAndSeventeenDigits) {
-  HistoryWriter writer(folder_, {"slider"});
+  HistoryWriter writer(folder_, {slider});
   EXPECT_EQ(std::count_if(fs::directory_iterator(folder_ / "history"), {}, [](const auto &) { return true; }),
             2);
-  writer.write_block(0, 0.1, {{1.0, -2.0}, 1.0 / 3.0, {4, 5, 6}, {7, 8, 9}, {1e-300, 1e10}});
+  writer.write_monitor(0, 0.1, {{1.0, -2.0}, 1.0 / 3.0, {4, 5, 6}, {7, 8, 9}, {1e-300, 1e10}});
   writer.flush();
-  writer.write_block(0, 0.25, {});
+  writer.write_monitor(0, 0.25, {});
   writer.write_energy(0.5, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
   writer.flush();
   writer.flush();
@@ -61,10 +63,10 @@ TEST_F(ResultFiles, HistoryHasUnitsAndSeventeenDigits) {
 }
 
 TEST_F(ResultFiles, HistoryOnAFullDiskIsAFileError) {
-  HistoryWriter writer(folder_, {"slider"});
+  HistoryWriter writer(folder_, {slider});
   fs::remove(folder_ / "history/slider.csv");
   fs::create_symlink("/dev/full", folder_ / "history/slider.csv");
-  writer.write_block(0, 0.0, {});
+  writer.write_monitor(0, 0.0, {});
   EXPECT_THROW(writer.flush(), FileError);
 }
 
@@ -165,8 +167,8 @@ void write_small_run(const fs::path &directory, int num_contacts = 2) {
     contacts.push_back({0, 1, i, 0, 1, {}, {}, 0, 0, 0, 0});
   }
   writer.write_contacts(1, 1.0, contacts);
-  HistoryWriter history(directory, {"slider"});
-  history.write_block(0, 0.0, {});
+  HistoryWriter history(directory, {slider});
+  history.write_monitor(0, 0.0, {});
   history.flush();
 }
 

@@ -130,8 +130,8 @@ BlockSystem free_block() {
 template <class Force>
 void advance(BlockSystem &system, const Scheme &scheme, double time_step, Force &&force) {
   predict(system, scheme, time_step);
-  const std::vector<RigidDof> forces{{{force(system.trial[0].u.x, system.velocity[0].u.x), 0.0}, 0.0}};
-  ASSERT_FALSE(solve_and_update(system, forces, scheme, time_step));
+  const BlockForces forces{{{{force(system.trial[0].u.x, system.velocity[0].u.x), 0.0}, 0.0}}, {}};
+  ASSERT_FALSE(solve_and_update(system, forces, scheme, time_step, Elasticity::implicit));
 }
 
 // The columns of the matrix that the product's step applies to unit states, with dt = 1, and its spectrum.
@@ -247,8 +247,9 @@ TEST(Schemes, BrokenStateIsKeptAndReported) {
   BlockSystem block = free_block();
   const Scheme scheme = alpha(0.8, ContactTime::leapfrog);
   const RigidDof before = block.displacement[0];
-  const std::vector<RigidDof> forces{{{std::numeric_limits<double>::quiet_NaN(), 0.0}, 0.0}};
-  EXPECT_EQ(solve_and_update(block, forces, scheme, 0.1), std::optional<std::size_t>(0));
+  const BlockForces forces{{{{std::numeric_limits<double>::quiet_NaN(), 0.0}, 0.0}}, {}};
+  EXPECT_EQ(solve_and_update(block, forces, scheme, 0.1, Elasticity::implicit),
+            std::optional<std::size_t>(0));
   EXPECT_EQ(block.displacement[0], before);
 }
 

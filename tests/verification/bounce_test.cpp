@@ -21,12 +21,7 @@ Vec2 trial_velocity(const Simulation &simulation, int block) {
 }
 
 bool touching(const Simulation &simulation) {
-  for (const PairForce &pair : simulation.contacts().pairs()) {
-    if (pair.touching) {
-      return true;
-    }
-  }
-  return false;
+  return !simulation.contacts().regions().empty();
 }
 
 constexpr int num_phases = 12;

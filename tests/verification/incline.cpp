@@ -20,7 +20,7 @@ std::array<double, 2> imbalance(const Incline &incline, BlockSystem &system, dou
   if (!overlap.find(view_of(system, 0), view_of(system, 1), PotentialKind::exact)) {
     throw std::runtime_error("the sliding square has lost its plane");
   }
-  const RegionIntegrals region = overlap.integrate();
+  const RegionIntegrals region = overlap.integrate(overlap.regions().front());
   const double half = 0.5 * incline.normal_stiffness;
   const Vec2 normal_force = half * region.force;
   const Vec2 normal = (1.0 / norm(normal_force)) * normal_force;

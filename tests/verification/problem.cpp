@@ -21,11 +21,12 @@ std::string head(const Setting &s) {
 duration = {:.17g}
 time_step = {}
 gravity = [{:.17g}, {:.17g}]
-fidelity = "rigid"
+fidelity = "{}"
 contact_damping = {:.17g}
 {}
 [material.rock]
 density = {:.17g}
+{}
 [joint.default]
 normal_stiffness = {:.17g}
 friction_angle_deg = {:.17g}
@@ -33,8 +34,12 @@ friction_angle_deg = {:.17g}
 interval = {:.17g}
 )",
                      s.duration, s.time_step > 0.0 ? fmt::format("{:.17g}", s.time_step) : "\"auto\"",
-                     s.gravity.x, s.gravity.y, s.damping, s.run_keys, rock_density, s.normal_stiffness,
-                     s.friction_deg, s.time_step > 0.0 ? s.duration : s.duration / 100.0);
+                     s.gravity.x, s.gravity.y, s.fidelity, s.damping, s.run_keys, rock_density,
+                     s.youngs_modulus > 0.0
+                         ? fmt::format("youngs_modulus = {:.17g}\npoissons_ratio = {:.17g}", s.youngs_modulus,
+                                       s.poissons_ratio)
+                         : "",
+                     s.normal_stiffness, s.friction_deg, s.time_step > 0.0 ? s.duration : s.duration / 100.0);
 }
 
 std::size_t row_of(const Simulation &simulation, int block) {

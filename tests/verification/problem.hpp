@@ -25,6 +25,9 @@ struct Setting {
   double friction_deg = 0.0;
   double damping = 0.05;
   std::string run_keys{}; ///< more lines of [run]
+  std::string fidelity = "rigid";
+  double youngs_modulus = 0.0; ///< Pa; 0: none given
+  double poissons_ratio = 0.0;
 };
 std::string head(const Setting &setting);
 

@@ -23,6 +23,7 @@ struct CandidatePair {
   double damping = 0.0;         ///< c'/2 of the normal dashpot, Pa s/m
   double mass = 0.0;            ///< m_A m_B/(m_A + m_B), kg per metre
   double allowed_overlap = 0.0; ///< half the narrowest width: deeper than this the force reverses, m
+  bool is_convex = true;        ///< both blocks are: one region at most
 };
 
 /// A candidate pair as one of its blocks sees it.
@@ -50,12 +51,13 @@ struct ContactParameters {
 /// Box of every row at t_n; a mobile block's is inflated by half the skin.
 std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin);
 
-/// All pairs with at least one owned mobile block whose boxes meet, by a background grid, as (row, row) with
-/// the lower id first, sorted by ids.
+/// All pairs with at least one owned block whose boxes meet and of which one can be moved, by a background
+/// grid, as (row, row) with the lower id first, sorted by ids.
 std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &system,
                                                           std::span<const Aabb> boxes);
 
-/// The candidates of those pairs, and the memory of each taken from `memory` (any order, duplicates allowed).
+/// The candidates of those pairs, and the memory of each taken from `memory` (any order of pairs, duplicates
+/// allowed).
 Candidates make_candidates(const BlockSystem &system,
                            std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
@@ -67,5 +69,8 @@ struct StiffnessBound {
   double tangential = 0.0;
 };
 StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material);
+
+/// Largest normal stiffness of all laws, Pa/m.
+double stiffest_joint(const JointLaws &joints);
 
 } // namespace gcpdda

@@ -2,8 +2,8 @@
 
 // Contact forces of all candidate pairs at the trial configuration.
 //
-// Two convex blocks have one contact region. With N the normal force on the block of lower id and P = int p
-// ds:
+// Two convex blocks have one contact region; with a re-entrant vertex a pair can have several (regions.hpp),
+// each with its own spring. With N the normal force of a region on the block of lower id and P = int p ds:
 //     n_r = N/|N|,   t_r = perp(n_r),   l = extent of the pieces along t_r,
 //     x_r = int p x ds / P, always in the hull of the patch.
 // (The line of action of a resultant runs away when normals nearly cancel.)
@@ -12,11 +12,13 @@
 // the two blocks' material points now at x_r:
 //     du = (increment of A at x_r) - (increment of B at x_r),
 //     F_t += k_t du.t_r,   k_t = ratio k_n max(l so far),
-// in the form increment of u + (I - R(-dtheta)) r, which never subtracts world positions: a block at rest
-// then creeps by 1e-15 and not 5e-12 m per 100 s. Velocities times dt would feed energy into a sticking
-// block, and a k_t that follows the current l gains energy in every cycle of opening. F_t is cut at
-// cap = |N| tan(phi) + c l first; the dashpot adds to it and the sum is cut again. A region's spring turns
-// with t_r, dies with the region, and gets no increment in the step of its birth.
+// in the form increment of u + (F*_n - F*_{n-1}) X, for rigid blocks (I - R(-dtheta)) r, which never
+// subtracts world positions: a block at rest then creeps by 1e-15 and not 5e-12 m per 100 s. Velocities times
+// dt would feed energy into a sticking block, and a k_t that follows the current l gains energy in every
+// cycle of opening. F_t is cut at cap = |N| tan(phi) + c l first; the dashpot adds to it and the sum is cut
+// again. A region's spring turns with t_r, dies with the region, and gets no increment in the step of its
+// birth. Of several regions of a pair each finds its memory among those between the same stretches of the two
+// outlines, the nearest one in the lower block's axes, if it lies within reach of the old and the new extent.
 //
 // The normal dashpot is distributed: on each piece with outward normal n of its own block and u = -n_r (lower
 // block) or n_r (higher), w = max(0, u.n), the traction q = max(-s w p, (c'/2) w (v_own - v_other).u) acts
@@ -36,19 +38,18 @@
 
 namespace gcpdda {
 
-/// Force on the lower block of a pair and what is known about its contact; the higher block gets the opposite
-/// at the same points.
-struct PairForce {
-  bool touching = false;
-  bool born = false;             ///< not touching at the evaluation before
+/// One touching region: force on the lower block of its pair and what is known about it; the higher block
+/// gets the opposite at the same points.
+struct RegionForce {
+  std::uint32_t pair = 0;        ///< number of the candidate
+  bool born = false;             ///< not there at the evaluation before
   bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
-  Vec2 origin;                   ///< what dyad and moments are about
+  Vec2 origin;                   ///< what dyads are about
   Vec2 force;                    ///< normal, friction and dashpot, N/m
-  std::array<double, 4> dyad{};  ///< int (x - origin) df: xx, xy, yx, yy, N
-  Vec2 shear_force;              ///< elastic part of friction in `force`
-  double shear_moment = 0.0;     ///< about origin
+  Mat2 dyad;                     ///< int (x - origin) df^T, N
+  Vec2 shear_force;              ///< elastic part of friction in `force`; acts at `point`
   Vec2 damping_force;            ///< dashpots in `force`
-  double damping_moment = 0.0;
+  Mat2 damping_dyad;
   Vec2 point;                ///< x_r
   Vec2 normal;               ///< n_r
   double normal_force = 0.0; ///< |N|
@@ -59,11 +60,11 @@ struct PairForce {
   double extent_end = 0.0;
 };
 
-/// How trial configurations moved since the last evaluation, by row.
+/// How a trial configuration moved since the last evaluation: the material point now at x_c + r by
+/// u + turn(r).
 struct TrialIncrement {
   Vec2 u;
-  double sine = 0.0;
-  double one_minus_cosine = 0.0;
+  Mat2 turn;
 };
 
 /// Something a step cannot go on with.
@@ -107,28 +108,34 @@ public:
   /// which moves on to this configuration.
   ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history);
 
-  /// By pair, in candidate order.
-  [[nodiscard]] const std::vector<PairForce> &pairs() const { return forces_; }
+  /// All touching regions in candidate order; region i is that of history.regions[i].
+  [[nodiscard]] std::span<const RegionForce> regions() const { return forces_; }
+  /// Those of one pair.
+  [[nodiscard]] std::span<const RegionForce> of_pair(std::size_t pair) const {
+    return std::span(forces_).subspan(begin_[pair], begin_[pair + 1] - begin_[pair]);
+  }
 
-  /// Replace the shear of a touching pair, friction alone; for the initial state.
-  void set_shear(std::size_t pair, double shear);
+  /// Replace the shear of a region, friction alone; for the initial state.
+  void set_shear(std::size_t region, double shear);
 
 private:
   struct RelativeVelocity;
 
-  void evaluate_pair(const BlockSystem &system, const CandidatePair &pair, RegionMemory &memory,
-                     PairForce &force);
-  /// Normal force, direction and size of the overlap; false if the blocks do not touch.
-  bool find_region(const BlockSystem &system, const CandidatePair &pair, PairForce &force);
+  void evaluate_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
+                     std::span<RegionMemory> old);
+  /// Normal force, direction and size of a region; false if it carries nothing.
+  bool measure(const CandidatePair &pair, const Region &region, RegionForce &force) const;
   void add_friction(const BlockSystem &system, const CandidatePair &pair, const RelativeVelocity &velocity,
-                    RegionMemory &memory, PairForce &force);
-  void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
-                          PairForce &force) const;
-  void add_shear(PairForce &force, double elastic, double viscous) const;
+                    RegionMemory &memory, RegionForce &force);
+  void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity, const Region &region,
+                          RegionForce &force) const;
+  void add_shear(RegionForce &force, double elastic, double viscous) const;
 
   ContactParameters parameters_;
   Overlap overlap_;
-  std::vector<PairForce> forces_;
+  std::vector<RegionForce> forces_;
+  std::vector<std::uint32_t> begin_{0};
+  ContactHistory next_;
   std::vector<TrialIncrement> increments_;
 };
 
@@ -139,23 +146,35 @@ struct BlockContactSum {
   RigidDof damping; ///< dashpots in it
 };
 BlockContactSum sum_contacts(const BlockSystem &system, const Candidates &candidates,
-                             std::span<const PairForce> forces, std::size_t row);
+                             const ContactForces &contacts, std::size_t row);
+
+/// What the same contacts do to F of a deformable row: int t X^T, N.
+struct BlockGradientSum {
+  Mat2 force;
+  Mat2 shear;
+  Mat2 damping;
+};
+BlockGradientSum sum_gradient_forces(const BlockSystem &system, const Candidates &candidates,
+                                     const ContactForces &contacts, std::size_t row);
 
 /// (1/area) int sym(x f) of a block's contacts about its trial centroid: xx, yy, xy in Pa, tension positive.
 std::array<double, 3> mean_stress(const BlockSystem &system, const Candidates &candidates,
-                                  std::span<const PairForce> forces, std::size_t row);
+                                  const ContactForces &contacts, std::size_t row);
 
-/// One contact's part of a block's force and dyad about the block's trial centroid.
+/// One region's part of a block's force and dyad about the block's trial centroid.
 struct ContactPart {
   Vec2 force;
-  std::array<double, 4> dyad{};
+  Mat2 dyad;
 };
-ContactPart contact_part(const PairForce &force, bool is_lower, Vec2 centroid);
+ContactPart contact_part(const RegionForce &force, bool is_lower, Vec2 centroid);
 
 /// Slide along t_r of the last evaluation's contact point when the system has moved on to its next trial
 /// configuration.
-double coming_slide(const BlockSystem &system, const CandidatePair &pair, const PairForce &force);
+double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force);
 
-ConvexView view_of(const BlockSystem &system, std::size_t row);
+/// Material point X of a block that is now at x, in the trial configuration.
+Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x);
+
+BlockView view_of(const BlockSystem &system, std::size_t row);
 
 } // namespace gcpdda

@@ -35,7 +35,7 @@ public:
 
 private:
   struct Region {
-    std::size_t pair = 0;
+    std::size_t number = 0; ///< of the region
     Vec2 tangent;
     Vec2 arm_lower;
     Vec2 arm_higher;

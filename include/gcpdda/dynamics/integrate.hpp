@@ -4,34 +4,52 @@
 #include "gcpdda/model/block_system.hpp"
 
 #include <optional>
-#include <span>
+#include <vector>
 
 namespace gcpdda {
 
-/// Trial configuration of rows [0, num_owned); the one before becomes trial_previous. Vertices are posed.
+/// Contact forces and loads of owned blocks at the trial configuration, weight included.
+struct BlockForces {
+  std::vector<RigidDof> rigid; ///< (num_owned); r is not used for deformable rows
+  /// int t X^T of deformable rows (N), by entry of BlockSystem::deformation; entries of other rows unused.
+  std::vector<Mat2> gradient;
+};
+
+/// Trial configuration of rows [0, num_owned); the one before becomes trial_previous. Vertices are posed. The
+/// angles r of a deformable row, of displacement and trial, are those of F's rotation, unwrapped.
 void predict(BlockSystem &system, const Scheme &scheme, double time_step);
 
-/// a = M^-1 f of one block.
+/// a = M^-1 f of one rigid block.
 inline RigidDof accelerate(const BlockProperties &block, const RigidDof &force) {
   return {(1.0 / block.mass) * force.u, force.r / block.inertia};
 }
 
+/// a_n = M^-1 f of all owned rows, elastic forces of deformable rows (at their trial configuration) included:
+/// the consistent start. Anchored points do not accelerate.
+void accelerate(BlockSystem &system, const BlockForces &forces);
+
 /// Largest distance (m) a point of the block may move before the next trial configuration has been left
 /// behind.
-inline double motion_bound(const BlockSystem &system, std::size_t row, double time_step) {
-  const double radius = system.properties[row].radius;
-  const RigidDof &v = system.velocity[row];
-  const RigidDof &a = system.acceleration[row];
-  return time_step * (norm(v.u) + radius * std::abs(v.r)) +
-         time_step * time_step * (norm(a.u) + radius * std::abs(a.r));
-}
+double motion_bound(const BlockSystem &system, std::size_t row, double time_step);
 
-/// Advance rows [0, num_owned) from t_n to t_{n+1} under their total forces: one 3x3 system each, diagonal
-/// about the centroid. A block whose new state is not finite keeps its old one.
+/// Largest distance (m) a point of the block has moved since the last refresh of the neighbourhood.
+double moved_since_refresh(const BlockSystem &system, std::size_t row);
+
+/// Non-viscous damping, for static problems: every generalised force loses `share` of its size against the
+/// velocity it works on, f - share |f| sign(v), on F in its turning axes. The force of anchors of the last
+/// step counts in f. What is taken is added to the ledger's damping forces. Driven blocks are left alone.
+void apply_local_damping(BlockSystem &system, BlockForces &forces, double share);
+
+/// Advance rows [0, num_owned) from t_n to t_{n+1} under their total forces: one system each, diagonal for a
+/// rigid block without fixed points, else by its own factorised matrix. A block whose new state is not finite
+/// keeps its old one; so does one that has been turned inside out (det F <= 0). Needs make_block_matrices().
 ///
-/// @param forces  (num_owned) contact forces and loads at the trial configuration
-/// @return first row whose new state is not finite
-std::optional<std::size_t> solve_and_update(BlockSystem &system, std::span<const RigidDof> forces,
-                                            const Scheme &scheme, double time_step);
+/// Of deformable rows velocity.r and acceleration.r become the mean spin and its rate, for output. The
+/// elastic and anchor forces that were applied are noted; of the anchors' work the half over the increment of
+/// x* that ends here, the other half is the caller's after the next predict().
+///
+/// @return first row whose new state is broken
+std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
+                                            const Scheme &scheme, double time_step, Elasticity elasticity);
 
 } // namespace gcpdda

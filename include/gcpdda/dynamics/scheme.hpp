@@ -38,6 +38,16 @@ struct Scheme {
 /// @param contact_time     used by generalized_alpha
 Scheme make_scheme(SchemeKind kind, double spectral_radius, ContactTime contact_time);
 
+/// Whether nothing can be taken implicitly: q_{n+1-af} does not depend on q''_{n+1}.
+inline bool is_explicit(const Scheme &scheme) {
+  return (1.0 - scheme.alpha_f) * scheme.beta == 0.0;
+}
+
+/// Where the elastic force is taken indeed: an explicit scheme has no choice.
+inline Elasticity elasticity_of(const Scheme &scheme, Elasticity wanted) {
+  return is_explicit(scheme) ? Elasticity::explicit_ : wanted;
+}
+
 /// Spectral radius of the amplification matrix of one oscillator on a contact spring, W = omega dt, with a
 /// dashpot of ratio xi taken at v_n.
 double amplification(const Scheme &scheme, double frequency, double damping_ratio);

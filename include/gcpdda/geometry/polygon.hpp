@@ -31,8 +31,12 @@ bool is_simple(std::span<const Vec2> vertices);
 /// All turns are left turns or straight up to rounding (counter-clockwise vertices).
 bool is_convex(std::span<const Vec2> vertices);
 
-/// Smallest distance between two parallel lines that enclose the polygon's convex hull (m). The minimum is
-/// reached flush with an edge of the hull; for a convex polygon every edge is one.
+/// The vertices that keep a polygon from being convex: where the boundary turns right.
+std::vector<bool> reentrant_vertices(std::span<const Vec2> vertices);
+
+/// How thin a polygon is (m). Convex: the smallest distance between two parallel lines that enclose it, one
+/// of them flush with an edge. Otherwise that of the convex hull, or the distance from a re-entrant vertex
+/// through the interior to another edge where that is smaller (the leg of an L, the prong of a U).
 double narrowest_width(std::span<const Vec2> vertices);
 
 } // namespace gcpdda

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
 #include <array>
@@ -76,7 +77,7 @@ private:
   std::vector<std::pair<int, double>> frames_;
 };
 
-/// One row of history/<name>.csv of a block, without its time.
+/// One row of history/<name>.csv, without its time; a point has position and the first two velocities only.
 struct BlockHistoryRow {
   Vec2 position;
   double rotation = 0.0;
@@ -103,15 +104,15 @@ struct EnergyRow {
 /// Writes history/*.csv. Lives on the root rank only; no member is collective.
 class HistoryWriter {
 public:
-  HistoryWriter(std::filesystem::path directory, const std::vector<std::string> &block_monitors);
-  void write_block(std::size_t monitor, double time, const BlockHistoryRow &row);
+  HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors);
+  void write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row);
   void write_energy(double time, const EnergyRow &row);
   /// What has been written is on its way to the disk; throws FileError when the disk is full.
   void flush();
 
 private:
   std::filesystem::path directory_;
-  std::vector<std::string> names_;
+  std::vector<Monitor> monitors_;
   std::vector<std::string> pending_; ///< text not yet appended, per monitor; energy last
 };
 

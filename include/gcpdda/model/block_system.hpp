@@ -2,9 +2,12 @@
 
 #include "gcpdda/base/ids.hpp"
 #include "gcpdda/geometry/aabb.hpp"
+#include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/scene.hpp"
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,22 +47,72 @@ struct BlockProperties {
   BlockId id;
   std::int32_t material = 0;
   BlockKind kind = BlockKind::rigid;
+  bool is_convex = true;
   double area = 0.0;    ///< m2
-  double mass = 0.0;    ///< kg per metre; infinite for a fixed block
-  double inertia = 0.0; ///< about the centroid, kg m2 per metre; infinite for a fixed block
+  double mass = 0.0;    ///< kg per metre; infinite for a fixed or driven block
+  double inertia = 0.0; ///< about the centroid, kg m2 per metre; infinite for a fixed or driven block
   double radius = 0.0;  ///< largest centroid-to-vertex distance, m
   double width = 0.0;   ///< narrowest width, m
   Vec2 centroid;        ///< at t = 0, m
+
+  /// Whatever acts on it.
+  [[nodiscard]] bool keeps_its_velocity() const { return std::isinf(mass); }
+};
+
+/// Everything a deformable block has beyond a rigid one. Its points are x = x_c + F X, X in its reference
+/// axes; F = R (I + E). With S = rho int X X^T dA its kinetic energy is m v^2/2 + tr(F' S F'^T)/2: a constant
+/// mass, without centrifugal terms.
+struct Deformation {
+  Mat2 gradient = Mat2::identity(); ///< F_n
+  Mat2 rate;                        ///< F'_n, 1/s
+  Mat2 acceleration;                ///< F''_n, 1/s2
+  Mat2 trial = Mat2::identity();    ///< F*_n, where contact forces are taken
+  Mat2 trial_previous = Mat2::identity();
+  Mat2 refreshed = Mat2::identity(); ///< F at the last refresh of the neighbourhood
+  Mat2 second_moment;                ///< S, kg m2 per metre
+  /// Stiffness area * D of (eps_x, eps_y, gamma_xy) is [a b 0; b a 0; 0 0 c], N.
+  double stiffness_direct = 0.0; ///< a
+  double stiffness_cross = 0.0;  ///< b
+  double stiffness_shear = 0.0;  ///< c
+  // Of the last evaluation, for output and ledger: forces that work on F (N), sum of t X^T.
+  Mat2 internal;      ///< P: the elastic force applied, K (E_{n+1-af} - E*) included
+  Mat2 shear_force;   ///< elastic part of friction
+  Mat2 damping_force; ///< dashpots
+  Mat2 load_force;    ///< point loads
+  Mat2 anchor_force;  ///< fixed points
+};
+
+/// A dead load at a material point.
+struct MaterialLoad {
+  Vec2 point; ///< X, reference axes, m
+  Vec2 force; ///< N per metre
+};
+
+/// A material point held by a stiff spring, taken implicitly.
+struct Anchor {
+  Vec2 point;             ///< X, reference axes, m
+  double stiffness = 0.0; ///< Pa (N/m per metre)
+  Vec2 held;              ///< displacement of the spring's fixed end from the point at t = 0, m
+};
+
+/// Constant factorisation L D L^T of a block's own matrix over its degrees of freedom (u, v, r, eps_x, eps_y,
+/// gamma_xy) in axes that turn with it; a rigid block uses the first three. Row by row below the diagonal of
+/// L, D on it.
+struct BlockMatrix {
+  std::array<double, 21> factor{};
 };
 
 /// What the energy ledger carries for one block: forces of the last evaluation and their work so far over
 /// increments of the trial configuration.
 struct BlockLedger {
   RigidDof shear_force;   ///< elastic part of friction
-  RigidDof damping_force; ///< dashpots
+  RigidDof damping_force; ///< dashpots and local damping
+  RigidDof load_force;    ///< point loads; of a driven block what drives it
+  RigidDof anchor_force;  ///< fixed points; a deformable block's turning part stands in its Deformation
   Vec2 gravity_force;
   double shear_work = 0.0;
   double damping_work = 0.0;
+  double load_work = 0.0;
   double gravity_work = 0.0;
 };
 
@@ -88,13 +141,24 @@ struct BlockSystem {
   std::vector<std::uint32_t> vertex_begin{0};
   std::vector<Vec2> reference_vertex; ///< relative to the centroid
   std::vector<Vec2> reference_normal;
-  std::vector<double> edge_length;
+  std::vector<double> edge_length; ///< current; pose() changes that of deformable blocks only
+
+  // What only some blocks have, flat in the same way: row i owns [begin[i], begin[i + 1]).
+  std::vector<std::uint32_t> deformation_begin{0}; ///< one entry for a deformable block, none for others
+  std::vector<Deformation> deformation;
+  std::vector<std::uint32_t> matrix_begin{0}; ///< one entry for deformable blocks and those with anchors
+  std::vector<BlockMatrix> matrix;
+  std::vector<std::uint32_t> load_begin{0};
+  std::vector<MaterialLoad> load;
+  std::vector<std::uint32_t> anchor_begin{0};
+  std::vector<Anchor> anchor;
 
   // Derived from the trial configuration, see pose().
   std::vector<Vec2> trial_centroid;
   std::vector<Vec2> vertex;
   std::vector<Vec2> normal;
   std::vector<Aabb> box;
+  std::vector<Mat2> trial_inverse; ///< F*^-1, by entry of `deformation`
 
   [[nodiscard]] std::size_t num_rows() const { return properties.size(); }
   [[nodiscard]] std::size_t num_mobile() const { return num_owned + num_ghosts; }
@@ -102,6 +166,22 @@ struct BlockSystem {
   [[nodiscard]] bool is_fixed(std::size_t row) const { return row >= first_fixed(); }
   [[nodiscard]] std::size_t num_vertices(std::size_t row) const {
     return vertex_begin[row + 1] - vertex_begin[row];
+  }
+
+  [[nodiscard]] bool is_deformable(std::size_t row) const {
+    return deformation_begin[row + 1] > deformation_begin[row];
+  }
+  [[nodiscard]] bool has_matrix(std::size_t row) const { return matrix_begin[row + 1] > matrix_begin[row]; }
+  /// Of a deformable row.
+  [[nodiscard]] const Deformation &deformation_of(std::size_t row) const {
+    return deformation[deformation_begin[row]];
+  }
+  [[nodiscard]] Deformation &deformation_of(std::size_t row) { return deformation[deformation_begin[row]]; }
+  [[nodiscard]] std::span<const MaterialLoad> loads_of(std::size_t row) const {
+    return {load.data() + load_begin[row], load_begin[row + 1] - load_begin[row]};
+  }
+  [[nodiscard]] std::span<const Anchor> anchors_of(std::size_t row) const {
+    return {anchor.data() + anchor_begin[row], anchor_begin[row + 1] - anchor_begin[row]};
   }
 
   template <class T>
@@ -120,15 +200,24 @@ struct BlockSystem {
                            &BlockSystem::acceleration, &BlockSystem::trial, &BlockSystem::trial_previous,
                            &BlockSystem::refreshed, &BlockSystem::ledger);
   }
-  /// Every field with one entry a vertex that cannot be derived.
-  static constexpr auto shape_fields() {
-    return std::make_tuple(&BlockSystem::reference_vertex, &BlockSystem::reference_normal,
-                           &BlockSystem::edge_length);
+  /// Every field with any number of entries a row that cannot be derived: the offsets, then the fields that
+  /// share them.
+  static constexpr auto lists() {
+    return std::make_tuple(std::make_tuple(&BlockSystem::vertex_begin, &BlockSystem::reference_vertex,
+                                           &BlockSystem::reference_normal, &BlockSystem::edge_length),
+                           std::make_tuple(&BlockSystem::deformation_begin, &BlockSystem::deformation),
+                           std::make_tuple(&BlockSystem::matrix_begin, &BlockSystem::matrix),
+                           std::make_tuple(&BlockSystem::load_begin, &BlockSystem::load),
+                           std::make_tuple(&BlockSystem::anchor_begin, &BlockSystem::anchor));
   }
 };
 
-/// Append the row of a scene's block at rest in its initial configuration. The ranges' counts are the
-/// caller's.
+/// Append the row of a scene's block in its initial configuration. A deformable kind needs the material's
+/// elastic constants. Its own matrix, where it has one, is made later (dynamics/deformable.hpp); the ranges'
+/// counts are the caller's.
+void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material,
+                  BlockKind kind, bool plane_strain = true);
+/// The same, fixed or rigid as the block says.
 void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material);
 
 /// Append a copy of another system's row. The ranges' counts are the caller's.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gcpdda/base/ids.hpp"
+#include "gcpdda/geometry/vec2.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -8,14 +9,23 @@
 
 namespace gcpdda {
 
-enum class ContactState : std::uint8_t { open = 0, stick = 1, slip = 2 };
+enum class ContactState : std::uint8_t { stick = 1, slip = 2 };
 
 /// Memory of one contact region. Alive from its first evaluation with an overlap to its last.
 struct RegionMemory {
   double shear = 0.0;   ///< F_t: along -t_r on the lower block, along t_r on the higher one, N/m
   double longest = 0.0; ///< largest extent along t_r so far, m: the tangential stiffness never falls
   double slip = 0.0;    ///< accumulated sliding distance, m
-  ContactState state = ContactState::open;
+  Vec2 position;        ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
+  std::int32_t lower_stretch = 0;  ///< stretches of the outlines between re-entrant vertices that face each
+  std::int32_t higher_stretch = 0; ///< other; 0 for a convex block
+  ContactState state = ContactState::stick;
+
+  /// Two copies of one region, not two regions of a pair.
+  [[nodiscard]] bool is_same_region(const RegionMemory &other) const {
+    return lower_stretch == other.lower_stretch && higher_stretch == other.higher_stretch &&
+           position == other.position;
+  }
 };
 
 /// A memory with its identity, as it travels with a block.
@@ -25,8 +35,10 @@ struct RegionRecord {
   RegionMemory memory;
 };
 
-/// Contact memory in the order of the candidate pairs; one region a pair of convex blocks.
+/// Contact memory in the order of the candidate pairs: pair k has regions [begin[k], begin[k + 1]). Only
+/// living regions are listed: at most one of two convex blocks.
 struct ContactHistory {
+  std::vector<std::uint32_t> begin{0};
   std::vector<RegionMemory> regions;
 };
 

@@ -17,6 +17,8 @@ enum class ContactTime { leapfrog, start, predictor, predictor_end };
 enum class PotentialKind { exact, linear };
 enum class Fidelity { automatic, rigid, deformable };
 enum class InitialFriction { consistent, zero };
+/// Where within the step the elastic force of a deformable block is taken.
+enum class Elasticity { implicit, explicit_ };
 
 struct Material {
   std::string name;
@@ -39,7 +41,15 @@ struct RunSettings {
   double accepted_error = 0.01;
   InitialFriction initial_friction = InitialFriction::consistent;
   double contact_damping = 0.05; ///< ratio xi
+  double local_damping = 0.0;    ///< share of the net force taken against the motion; static problems only
   bool plane_strain = true;
+  Elasticity elasticity = Elasticity::implicit;
+};
+
+/// A constant force (N per metre) at a material point (world coordinates at t = 0).
+struct PointLoad {
+  Vec2 point;
+  Vec2 force;
 };
 
 /// A block as the scene states it: world coordinates at t = 0, counter-clockwise.
@@ -49,6 +59,33 @@ struct SceneBlock {
   std::vector<Vec2> vertices;
   std::array<double, 3> velocity{}; ///< vx, vy (m/s), omega (rad/s)
   bool fixed = false;
+  bool driven = false; ///< keeps `velocity` whatever acts on it
+  Fidelity fidelity = Fidelity::automatic;
+  std::vector<Vec2> fixed_points; ///< points of the block that are held where they are at t = 0
+  std::vector<PointLoad> loads;
+  SourcePosition where;
+};
+
+/// A wall or pyramid of equal bricks: blocks made from their number, so that nobody has to hold them all
+/// (generators.hpp).
+struct BrickGenerator {
+  enum class Kind { wall, pyramid };
+  Kind kind = Kind::wall;
+  std::string name;
+  std::int32_t material = 0;
+  Vec2 origin; ///< lower left corner, m
+  std::int64_t rows = 1;
+  std::int64_t columns = 1; ///< walls only; a pyramid has as many bricks in its base as rows
+  Vec2 block_size;          ///< m
+  double bond = 0.5;        ///< walls only: shift of every second row, in brick widths
+  double gap = 0.0;         ///< between neighbours of a row, m
+  SourcePosition where;
+};
+
+/// Blocks that stay in an HDF5 file; each rank reads its part.
+struct BlockFile {
+  std::string path;            ///< as the program opens it; empty without one
+  std::int64_t num_blocks = 0; ///< 0 until the file has been looked at
   SourcePosition where;
 };
 
@@ -58,9 +95,13 @@ struct OutputSettings {
   bool contacts = true;
 };
 
+/// A block or a point whose history is written.
 struct Monitor {
   std::string name;        ///< file stem of its history
-  std::int64_t block = -1; ///< BlockId
+  std::int64_t block = -1; ///< BlockId; of a point -1 until the block that holds it has been found
+  bool is_point = false;
+  Vec2 point; ///< world coordinates at t = 0
+  SourcePosition where;
 };
 
 /// The whole input after validation; every rank holds the same one.
@@ -69,7 +110,9 @@ struct Scene {
   RunSettings run;
   std::vector<Material> materials; ///< in file order
   JointLaws joints;
-  std::vector<SceneBlock> blocks; ///< in BlockId order
+  std::vector<SceneBlock> blocks;         ///< of the scene file, the first BlockIds
+  std::vector<BrickGenerator> generators; ///< the next ones
+  BlockFile block_file;                   ///< the last ones
   OutputSettings output;
   std::vector<Monitor> monitors;
   std::string resolved; ///< the scene after --set, as TOML text

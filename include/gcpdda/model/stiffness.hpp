@@ -2,7 +2,23 @@
 
 #include "gcpdda/model/scene.hpp"
 
+#include <limits>
+#include <span>
+#include <vector>
+
 namespace gcpdda {
+
+/// What the stiffness of an allowed overlap follows from; surveys of several lists of blocks combine by
+/// largest, smallest and concatenation.
+struct SizeSurvey {
+  double densest = 0.0;                                 ///< kg/m3
+  double low = std::numeric_limits<double>::infinity(); ///< extent along gravity, m
+  double high = -std::numeric_limits<double>::infinity();
+  std::vector<double> sizes; ///< sqrt(area) of each block, m
+};
+
+/// Over the blocks that are fixed, or over those that are not.
+SizeSurvey survey_sizes(const Scene &scene, std::span<const SceneBlock> blocks, bool fixed);
 
 /// Put a number into every law that was given as an allowed overlap e:
 ///
@@ -11,6 +27,8 @@ namespace gcpdda {
 /// rho the densest material in use, g = |gravity|, h the extent of the mobile blocks along gravity, L the
 /// median of their sqrt(area). The extent is a pressure head: the deepest joint then closes by about e.
 /// Without mobile blocks the fixed ones stand in (nothing can touch, any positive number does).
-void resolve_stiffness(Scene &scene);
+///
+/// @param median_size  of the surveyed blocks, the (n/2)-th in ascending order from 0, m
+void resolve_stiffness(Scene &scene, const SizeSurvey &survey, double median_size);
 
 } // namespace gcpdda

@@ -34,6 +34,9 @@ public:
   /// Owners' trial configurations and velocities to their ghosts; ghosts are posed.
   void update(BlockSystem &system);
 
+  /// Owners' accelerations to their ghosts.
+  void copy_accelerations(BlockSystem &system);
+
   /// Owners' entries of any array with one entry a row to their ghosts.
   template <class T> void copy(std::vector<T> &per_row) {
     pack([&](std::size_t row, std::byte *to) { std::memcpy(to, &per_row[row], sizeof(T)); }, sizeof(T));

@@ -2,7 +2,9 @@
 
 #include "gcpdda/base/phase_timer.hpp"
 #include "gcpdda/contact/contact_forces.hpp"
+#include "gcpdda/dynamics/integrate.hpp"
 #include "gcpdda/dynamics/scheme.hpp"
+#include "gcpdda/model/generators.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "gcpdda/parallel/ghosts.hpp"
@@ -48,14 +50,23 @@ struct StepBound {
   bool always_unstable = false;
   double time_step = 0.0;     ///< safety * limit / omega_max, s
   double damping_ratio = 0.0; ///< modal ratio the limit was computed with
+  std::int64_t block = -1;    ///< the one that sets omega_max; the first of several
+};
+
+/// Which blocks the scene's fidelity made rigid and which deformable; all ranks together.
+struct FidelityReport {
+  std::int64_t num_rigid = 0;
+  std::int64_t num_deformable = 0;
+  double worst_rigid = 0.0;      ///< largest share of compliance a rigid block leaves out
+  double worst_deformable = 0.0; ///< what the deformable ones would leave out at most
 };
 
 /// One run in memory: the state of this rank's blocks and the step. Construction distributes the blocks and
 /// finds the consistent initial state; all public members are collective unless const.
 class Simulation {
 public:
-  /// @param scene  valid, the same on all ranks; its contact laws have stiffnesses
-  /// @throws SceneError when no step fits
+  /// @param scene  valid by itself, the same on all ranks
+  /// @throws SceneError with all that is wrong with the block file, the overlaps, the monitors and the step
   Simulation(const Communicator &communicator, Scene scene);
 
   /// Advance all blocks from t_n to t_{n+1}.
@@ -73,13 +84,14 @@ public:
   [[nodiscard]] const Candidates &candidates() const { return candidates_; }
   [[nodiscard]] const ContactHistory &history() const { return history_; }
   [[nodiscard]] const ContactForces &contacts() const { return contacts_; }
-  [[nodiscard]] const std::vector<RigidDof> &forces() const { return forces_; }
+  [[nodiscard]] const BlockForces &forces() const { return forces_; }
   [[nodiscard]] const DomainMap &domain_map() const { return map_; }
   [[nodiscard]] const PartitionReport &partition() const { return partition_; }
   [[nodiscard]] const Ghosts &ghosts() const { return ghosts_; }
   [[nodiscard]] const Scheme &scheme() const { return scheme_; }
   [[nodiscard]] const TimePlan &plan() const { return plan_; }
   [[nodiscard]] const StepBound &bound() const { return bound_; }
+  [[nodiscard]] const FidelityReport &fidelity() const { return fidelity_; }
   [[nodiscard]] const Counters &counters() const { return counters_; }
   [[nodiscard]] const PhaseTimes &phases() const { return phases_; }
   [[nodiscard]] PhaseTimes &phases() { return phases_; }
@@ -87,34 +99,43 @@ public:
   [[nodiscard]] const Diagnostics &notes() const { return notes_; }
   /// This rank writes what is known of the pair: one rank for each pair.
   [[nodiscard]] bool counts_here(const CandidatePair &pair) const;
-  [[nodiscard]] std::int64_t num_blocks() const { return static_cast<std::int64_t>(scene_.blocks.size()); }
+  [[nodiscard]] std::int64_t num_blocks() const { return gcpdda::num_blocks(scene_); }
 
   /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On
   /// return the state is as before.
   template <class Look> void look_ahead(Look &&look) {
     const std::vector<RigidDof> trial = blocks_.trial;
     const std::vector<RigidDof> previous = blocks_.trial_previous;
+    const std::vector<Deformation> deformation = blocks_.deformation;
     predict_next();
     look(blocks_);
     blocks_.trial = trial;
     blocks_.trial_previous = previous;
+    blocks_.deformation = deformation;
     pose(blocks_, 0, blocks_.num_mobile());
   }
 
 private:
   void distribute();
-  void lay_grid();
-  void take_blocks();
+  [[nodiscard]] std::vector<SceneBlock> load_slab();
+  void resolve_stiffness(std::span<const SceneBlock> slab);
+  void lay_grid(std::span<const SceneBlock> slab);
+  void take_blocks(std::span<const SceneBlock> slab);
+  void place_monitors(std::span<const SceneBlock> slab);
   [[nodiscard]] std::vector<std::int64_t> count_contact_work();
   void find_bound();
   [[nodiscard]] Vec2 gravity() const;
   void find_initial_state();
+  void check_initial_overlaps();
   void find_initial_friction();
   void accelerate_owned();
   void refresh();
   void predict_next();
   void evaluate_contacts();
   void gather_forces();
+  void gather_block(std::size_t row, Vec2 gravity_now);
+  void gather_gradient(std::size_t row);
+  void add_half_works();
   void report();
   void agree_on_fault();
 
@@ -127,7 +148,8 @@ private:
   Candidates candidates_;
   ContactHistory history_;
   ContactForces contacts_;
-  std::vector<RigidDof> forces_; ///< of owned rows at the last evaluation, loads included
+  BlockForces forces_; ///< at the last evaluation
+  FidelityReport fidelity_;
   Scheme scheme_;
   StepBound bound_;
   TimePlan plan_;

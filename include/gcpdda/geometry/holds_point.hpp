@@ -1,0 +1,12 @@
+#pragma once
+
+#include "gcpdda/geometry/vec2.hpp"
+
+#include <span>
+
+namespace gcpdda {
+
+/// The point lies in a simple polygon or on its boundary, up to 1e-9 of the polygon's size.
+bool holds_point(std::span<const Vec2> vertices, Vec2 point);
+
+} // namespace gcpdda

@@ -1,0 +1,123 @@
+#include "gcpdda/contact/overlap.hpp"
+
+#include "convex_cut.hpp"
+#include "field_energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gcpdda {
+
+namespace {
+
+/// int over the region of the distance to the boundary of a convex polygon: cut the region into the cells in
+/// which one edge line is nearest.
+double integrate_distance(const Polygon &region, std::span<const Vec2> vertex, std::span<const Vec2> normal) {
+  double sum = 0.0;
+  double largest = 0.0;
+  for (const Vec2 x : vertex) {
+    largest = std::max({largest, std::abs(x.x), std::abs(x.y)});
+  }
+  // Collinear edges share a line up to the rounding of their vertices: the first of them takes the whole
+  // cell.
+  const double same_line = 64.0 * std::numeric_limits<double>::epsilon() * largest;
+  for (std::size_t i = 0; i < vertex.size(); ++i) {
+    const auto depth = [&](std::size_t line, Vec2 x) { return dot(normal[line], vertex[line] - x); };
+    Polygon cell = region;
+    for (std::size_t j = 0; j < vertex.size() && cell.size() >= 3; ++j) {
+      const auto margin = [&](Vec2 x) { return depth(j, x) - depth(i, x); };
+      if (j == i) {
+        continue;
+      }
+      if (std::all_of(cell.begin(), cell.end(), [&](Vec2 x) { return std::abs(margin(x)) <= same_line; })) {
+        if (j < i) {
+          cell.clear();
+        }
+      } else {
+        cell = keep_positive(cell, margin);
+      }
+    }
+    if (cell.size() >= 3) {
+      sum += integrate_linear(cell, [&](Vec2 x) { return depth(i, x); });
+    }
+  }
+  return sum;
+}
+
+/// Points of the world in a block's reference axes.
+Polygon to_reference(std::span<const Vec2> vertex, const DeformedFrame &frame) {
+  Polygon mapped;
+  for (const Vec2 x : vertex) {
+    mapped.push_back(frame.inverse(x - frame.centre));
+  }
+  return mapped;
+}
+
+bool is_convex_and_rigid(const BlockView &block) {
+  return block.is_convex && !block.frame;
+}
+
+/// The part of `region` inside a convex polygon.
+Polygon common_part(Polygon region, std::span<const Vec2> vertex, std::span<const Vec2> normal) {
+  for (std::size_t j = 0; j < vertex.size() && region.size() >= 3; ++j) {
+    region = keep_positive(region, [&](Vec2 x) { return dot(normal[j], vertex[j] - x); });
+  }
+  return region;
+}
+
+Polygon common_part(Polygon region, const Polygon &other) {
+  for (std::size_t j = 0; j < other.size() && region.size() >= 3; ++j) {
+    const Vec2 a = other[j];
+    const Vec2 along = other[(j + 1) % other.size()] - a;
+    region = keep_positive(region, [&](Vec2 x) { return cross(along, x - a); });
+  }
+  return region;
+}
+
+/// int over the overlap of the field of `block`, over the world. There dA = J dA_ref, so J cancels and the
+/// integral is that of the reference distance over the overlap mapped back.
+double field_energy(const BlockView &block, const BlockView &other) {
+  const std::span<const Vec2> vertex = block.frame ? block.frame->vertex : block.vertex;
+  const std::span<const Vec2> normal = block.frame ? block.frame->normal : block.normal;
+  const Polygon outline = block.frame ? to_reference(other.vertex, *block.frame)
+                                      : Polygon(other.vertex.begin(), other.vertex.end());
+  double sum = 0.0;
+  if (block.is_convex) {
+    for (const Polygon &part : convex_parts(outline)) {
+      const Polygon region = common_part(part, vertex, normal);
+      sum += region.size() < 3 ? 0.0 : integrate_distance(region, vertex, normal);
+    }
+    return sum;
+  }
+  const FieldEnergy field(vertex, normal);
+  const std::vector<Polygon> other_parts = convex_parts(outline);
+  for (const Polygon &own_part : convex_parts(vertex)) {
+    for (const Polygon &part : other_parts) {
+      if (bounding_box(own_part).meets(bounding_box(part))) {
+        sum += field.integrate(common_part(own_part, part));
+      }
+    }
+  }
+  return sum;
+}
+
+} // namespace
+
+double overlap_energy(const BlockView &first, const BlockView &second) {
+  if (!first.box.meets(second.box)) {
+    return 0.0;
+  }
+  if (!is_convex_and_rigid(first) || !is_convex_and_rigid(second)) {
+    return field_energy(first, second) + field_energy(second, first);
+  }
+  const Polygon region =
+      common_part(Polygon(first.vertex.begin(), first.vertex.end()), second.vertex, second.normal);
+  if (region.size() < 3) {
+    return 0.0;
+  }
+  return integrate_distance(region, first.vertex, first.normal) +
+         integrate_distance(region, second.vertex, second.normal);
+}
+
+} // namespace gcpdda

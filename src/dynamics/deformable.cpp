@@ -1,0 +1,71 @@
+#include "gcpdda/dynamics/deformable.hpp"
+
+#include <cmath>
+
+namespace gcpdda {
+
+Mat2 rotation_of(const Mat2 &gradient) {
+  const double c = gradient.xx + gradient.yy;
+  const double s = gradient.yx - gradient.xy;
+  const double size = std::sqrt(c * c + s * s);
+  return {c / size, -s / size, s / size, c / size};
+}
+
+double angle_of(const Mat2 &gradient) {
+  return angle_between(Mat2::identity(), gradient);
+}
+
+double angle_between(const Mat2 &from, const Mat2 &to) {
+  const Vec2 a{from.xx + from.yy, from.yx - from.xy};
+  const Vec2 b{to.xx + to.yy, to.yx - to.xy};
+  return std::atan2(cross(a, b), dot(a, b));
+}
+
+double spin_of(const Mat2 &gradient, const Mat2 &rate) {
+  return motion_dof(rate * inverse(gradient)).r;
+}
+
+double spin_rate_of(const Mat2 &gradient, const Mat2 &rate, const Mat2 &acceleration) {
+  const Mat2 back = inverse(gradient);
+  const Mat2 velocity_gradient = rate * back;
+  return motion_dof(acceleration * back - velocity_gradient * velocity_gradient).r;
+}
+
+Mat2 elastic_stress(const Deformation &d, const Mat2 &strain) {
+  const double shear = d.stiffness_shear * (strain.xy + strain.yx);
+  return {d.stiffness_direct * strain.xx + d.stiffness_cross * strain.yy, shear, shear,
+          d.stiffness_cross * strain.xx + d.stiffness_direct * strain.yy};
+}
+
+Mat2 elastic_force(const Deformation &d, const Mat2 &gradient) {
+  const Mat2 turn = rotation_of(gradient);
+  const Mat2 stretch = transposed(turn) * gradient;
+  const Mat2 stress = elastic_stress(d, stretch - Mat2::identity());
+  const Mat2 product = stress * stretch;
+  const double no_torque = (product.xy - product.yx) / (stretch.xx + stretch.yy);
+  return turn * Mat2{stress.xx, stress.xy - no_torque, stress.yx + no_torque, stress.yy};
+}
+
+double strain_energy(const Deformation &d, const Mat2 &gradient) {
+  const Mat2 strain = transposed(rotation_of(gradient)) * gradient - Mat2::identity();
+  return 0.5 * contract(elastic_stress(d, strain), strain);
+}
+
+double applied_strain_energy(const Deformation &d) {
+  const GradientDof h = force_dof(transposed(rotation_of(d.trial)) * d.internal);
+  const double a = d.stiffness_direct;
+  const double b = d.stiffness_cross;
+  return 0.5 * ((a * (h.ex * h.ex + h.ey * h.ey) - 2.0 * b * h.ex * h.ey) / (a * a - b * b) +
+                h.gxy * h.gxy / d.stiffness_shear);
+}
+
+double kinetic_energy(const Deformation &d, const Mat2 &rate) {
+  return 0.5 * contract(rate * d.second_moment, rate);
+}
+
+std::array<double, 3> mean_cauchy_stress(const Deformation &d, double area) {
+  const Mat2 stress = (1.0 / (area * determinant(d.trial))) * (d.internal * transposed(d.trial));
+  return {stress.xx, stress.yy, 0.5 * (stress.xy + stress.yx)};
+}
+
+} // namespace gcpdda

@@ -1,0 +1,56 @@
+#include "gcpdda/dynamics/deformable.hpp"
+#include "gcpdda/dynamics/integrate.hpp"
+
+#include <cmath>
+
+namespace gcpdda {
+
+namespace {
+
+/// -|f| sign(v).
+double against(double force, double velocity) {
+  return velocity == 0.0 ? 0.0 : -std::copysign(force, velocity);
+}
+
+/// On a deformable block's F, in its turning axes: there an eigenmode of a block at rest is one component or
+/// a few, whatever way it lies.
+Mat2 damp_gradient(const Deformation &d, const Mat2 &force, double share) {
+  const Mat2 turn = rotation_of(d.trial);
+  const Mat2 back = transposed(turn);
+  const GradientDof f = force_dof(back * (force - elastic_force(d, d.trial) + d.anchor_force));
+  const GradientDof v = motion_dof(back * d.rate);
+  return share * (turn * force_matrix({against(f.r, v.r), against(f.ex, v.ex), against(f.ey, v.ey),
+                                       against(f.gxy, v.gxy)}));
+}
+
+} // namespace
+
+// The force of anchors is known only after the step; without that of the step before, a block that hangs at
+// rest would count its whole weight as out of balance, and be held wherever it is like by friction.
+void apply_local_damping(BlockSystem &system, BlockForces &forces, double share) {
+  if (share == 0.0) {
+    return;
+  }
+  for (std::size_t i = 0; i < system.num_owned; ++i) {
+    if (system.properties[i].keeps_its_velocity()) {
+      continue;
+    }
+    BlockLedger &ledger = system.ledger[i];
+    RigidDof &force = forces.rigid[i];
+    const RigidDof f = force + ledger.anchor_force;
+    const RigidDof &v = system.velocity[i];
+    RigidDof taken = share * RigidDof{{against(f.u.x, v.u.x), against(f.u.y, v.u.y)}, against(f.r, v.r)};
+    if (system.is_deformable(i)) {
+      taken.r = 0.0;
+      Deformation &d = system.deformation_of(i);
+      Mat2 &gradient = forces.gradient[system.deformation_begin[i]];
+      const Mat2 taken_gradient = damp_gradient(d, gradient, share);
+      gradient += taken_gradient;
+      d.damping_force += taken_gradient;
+    }
+    force += taken;
+    ledger.damping_force += taken;
+  }
+}
+
+} // namespace gcpdda

@@ -1,0 +1,222 @@
+#include "block_file_layout.hpp"
+
+#include "edit_distance.hpp"
+#include "hdf5_input.hpp"
+#include "scene_keys.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gcpdda::block_file {
+
+namespace {
+
+constexpr std::size_t most_members = 256; ///< of a file that are worth a "did you mean"
+
+std::string type_in_words(const hdf5::Datatype &type) {
+  const std::size_t bits = 8 * H5Tget_size(type.get());
+  switch (H5Tget_class(type.get())) {
+  case H5T_FLOAT:
+    return fmt::format("{}-bit reals", bits);
+  case H5T_INTEGER:
+    return fmt::format("{}{}-bit integers", H5Tget_sign(type.get()) == H5T_SGN_NONE ? "unsigned " : "", bits);
+  case H5T_STRING:
+    return "text";
+  case H5T_ENUM:
+    return "enumerated values, such as booleans";
+  default:
+    return "something that is no number";
+  }
+}
+
+class Look {
+public:
+  explicit Look(const BlockFile &file) : block_file_(&file) {}
+
+  Overview take() {
+    if (open()) {
+      list_members();
+      for (std::size_t i = 0; i < count; ++i) {
+        look_at_dataset(static_cast<Dataset>(i));
+      }
+      compare_rows();
+    }
+    return std::move(overview_);
+  }
+
+private:
+  void fault(std::string what, std::string why, std::string hint) {
+    overview_.faults.push_back(
+        {Severity::error, {block_file_->path, 0, 0}, std::move(what), std::move(why), std::move(hint)});
+  }
+
+  bool open() {
+    const std::string &path = block_file_->path;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored) || !std::ifstream(path)) {
+      overview_.faults.push_back({Severity::error, block_file_->where,
+                                  fmt::format("cannot open the block file '{}'", path),
+                                  "no such file or no right to read it",
+                                  "check the path, which starts from the folder of the scene"});
+      return false;
+    }
+    if (H5Fis_hdf5(path.c_str()) <= 0) {
+      fault("this is no HDF5 file", "[blocks] file names one", "check the path or write the blocks as HDF5");
+      return false;
+    }
+    try {
+      file_ = hdf5::open_to_read(path);
+    } catch (const FileError &) {
+      fault("the file is damaged or cut short", fmt::format("HDF5 says: {}", hdf5::last_error()),
+            "write or copy it again");
+      return false;
+    }
+    return true;
+  }
+
+  void list_members() {
+    const auto append = [](hid_t, const char *name, const H5L_info_t *, void *names) -> herr_t {
+      auto &list = *static_cast<std::vector<std::string> *>(names);
+      list.emplace_back(name);
+      return list.size() < most_members ? 0 : 1;
+    };
+    H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append, &members_);
+    std::erase_if(members_, [](const std::string &name) {
+      return std::any_of(layout.begin(), layout.end(), [&](const auto &rule) { return rule.name == name; });
+    });
+  }
+
+  void look_at_dataset(Dataset which) {
+    const DatasetRule &rule = layout[which];
+    const std::string name(rule.name);
+    if (H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) <= 0) {
+      report_missing(rule);
+      return;
+    }
+    const hdf5::Dataset dataset(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT));
+    if (dataset.get() < 0) {
+      fault(fmt::format("'/{}' is not a dataset", name),
+            fmt::format("it must hold {} {}", words_of(rule.number), shape_of(rule)),
+            "write it as a dataset");
+      return;
+    }
+    const hdf5::Datatype type(H5Dget_type(dataset.get()));
+    const std::string found = type_in_words(type);
+    if (found != words_of(rule.number)) {
+      fault(fmt::format("'/{}' holds {}", name, found), fmt::format("it must hold {}", words_of(rule.number)),
+            "convert it where the file is written");
+    }
+    if (const auto rows = rows_of(rule, dataset)) {
+      if (is_filled(rule, dataset, *rows)) {
+        rows_[which] = *rows;
+      }
+    }
+  }
+
+  void report_missing(const DatasetRule &rule) {
+    const std::string name(rule.name);
+    std::string near;
+    for (const std::string &member : members_) {
+      near = near.empty() && nearest_word(member, {name}) == name ? member : near;
+    }
+    if (rule.required) {
+      fault(fmt::format("'/{}' is missing", name),
+            fmt::format("it must hold {} {}", words_of(rule.number), shape_of(rule)),
+            near.empty() ? "write it" : fmt::format("did you mean it by '/{}'?", near));
+    } else if (!near.empty()) {
+      fault(fmt::format("unknown dataset '/{}'", near), "", fmt::format("did you mean '/{}'?", name));
+    }
+  }
+
+  std::optional<std::int64_t> rows_of(const DatasetRule &rule, const hdf5::Dataset &dataset) {
+    const hdf5::Dataspace space(H5Dget_space(dataset.get()));
+    const int dimensions = std::max(0, H5Sget_simple_extent_ndims(space.get()));
+    std::vector<hsize_t> shape(static_cast<std::size_t>(dimensions));
+    H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+    const bool fits = rule.columns == 1 ? shape.size() == 1 : shape.size() == 2 && shape[1] == rule.columns;
+    if (fits) {
+      return static_cast<std::int64_t>(shape[0]);
+    }
+    fault(fmt::format("'/{}' has shape ({})", rule.name, fmt::join(shape, ", ")),
+          fmt::format("it must be {}", shape_of(rule)), "reshape it where the file is written");
+    return std::nullopt;
+  }
+
+  // A few bytes can claim any shape; nothing compresses to less than a two-thousandth.
+  bool is_filled(const DatasetRule &rule, const hdf5::Dataset &dataset, std::int64_t rows) {
+    const hdf5::Datatype type(H5Dget_type(dataset.get()));
+    const double bytes =
+        static_cast<double>(rows) * static_cast<double>(rule.columns * H5Tget_size(type.get()));
+    const auto stored = static_cast<double>(H5Dget_storage_size(dataset.get()));
+    constexpr double densest = 2000.0;
+    if (bytes <= densest * stored) {
+      return true;
+    }
+    fault(fmt::format("'/{}' is not filled", rule.name),
+          fmt::format("the file stores {:.0f} of its {:.0f} bytes", stored, bytes),
+          "write all rows before the file is closed");
+    return false;
+  }
+
+  void compare_rows() {
+    if (const auto found = rows_.find(offsets); found != rows_.end()) {
+      overview_.num_blocks = found->second - 1;
+      if (overview_.num_blocks < 1) {
+        fault("the file has no blocks", "'/offsets' has one entry more than there are blocks",
+              "write at least one block, or leave [blocks] out");
+        return;
+      }
+      for (const auto &[which, rows] : rows_) {
+        if (layout[which].rows == Rows::blocks && rows != overview_.num_blocks) {
+          fault(fmt::format("'/{}' has {} rows", layout[which].name, rows),
+                fmt::format("'/offsets' has {} entries, which makes {} blocks", found->second,
+                            overview_.num_blocks),
+                "write one row for each block");
+        }
+      }
+    }
+    if (const auto found = rows_.find(points); found != rows_.end()) {
+      overview_.num_points = found->second;
+    }
+  }
+
+  const BlockFile *block_file_;
+  const hdf5::QuietErrors quiet_;
+  hdf5::File file_;
+  std::vector<std::string> members_;     ///< of the file, those that are not in the layout
+  std::map<Dataset, std::int64_t> rows_; ///< of the datasets without faults of shape
+  Overview overview_;
+};
+
+} // namespace
+
+std::string_view words_of(Number number) {
+  constexpr std::array<std::string_view, 4> words{"64-bit reals", "64-bit integers", "32-bit integers",
+                                                  "unsigned 8-bit integers"};
+  return words[static_cast<std::size_t>(number)];
+}
+
+std::string_view shape_of(const DatasetRule &rule) {
+  if (rule.rows == Rows::points) {
+    return "(n, 2)";
+  }
+  if (rule.rows == Rows::blocks_and_one) {
+    return "(nb + 1)";
+  }
+  return rule.columns == 1 ? "(nb)" : "(nb, 3)";
+}
+
+Overview look_at(const BlockFile &file) {
+  return Look(file).take();
+}
+
+} // namespace gcpdda::block_file

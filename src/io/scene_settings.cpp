@@ -1,0 +1,96 @@
+// The tables [run] and [output].
+
+#include "scene_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gcpdda::scene_text {
+
+namespace {
+
+void fault(const SceneSource &source, const toml::node &node, std::string what, std::string why,
+           std::string hint) {
+  source.faults.add(node.source(), std::move(what), std::move(why), std::move(hint));
+}
+
+// Keys that only some schemes have.
+void check_scheme_keys(const SceneSource &source, const Section &run, SchemeKind scheme) {
+  if (!run.known("scheme")) {
+    return;
+  }
+  const bool implicit = scheme == SchemeKind::generalized_alpha;
+  if (const toml::node *node = run.given("contact_time"); node != nullptr && !implicit) {
+    fault(source, *node, run.subject("contact_time") + " has no meaning for this scheme",
+          "it belongs to generalized-alpha", "leave it out");
+  }
+  const bool has_radius = implicit || scheme == SchemeKind::explicit_generalized_alpha;
+  if (const toml::node *node = run.given("spectral_radius"); node != nullptr && !has_radius) {
+    fault(source, *node, run.subject("spectral_radius") + " has no meaning for this scheme",
+          "it belongs to generalized-alpha and explicit-generalized-alpha", "leave it out");
+  }
+}
+
+} // namespace
+
+RunSettings read_run(const SceneSource &source) {
+  const Section run = section(source.root, "run", source.faulty);
+  RunSettings settings;
+  run.read("duration", settings.duration);
+  run.read("gravity", settings.gravity);
+  run.read("gravity_ramp", settings.gravity_ramp);
+  const toml::node *time_step = run.sound("time_step");
+  if (time_step != nullptr && !time_step->is_string()) {
+    settings.time_step = as_number(*time_step);
+  }
+  run.read("safety", settings.safety);
+  run.read_choice("run", "scheme", settings.scheme);
+  run.read("spectral_radius", settings.spectral_radius);
+  run.read_choice("run", "contact_time", settings.contact_time);
+  run.read_choice("run", "potential", settings.potential);
+  run.read_choice("run", "fidelity", settings.fidelity);
+  run.read("accepted_error", settings.accepted_error);
+  run.read_choice("run", "initial_friction", settings.initial_friction);
+  run.read("contact_damping", settings.contact_damping);
+  run.read("local_damping", settings.local_damping);
+  run.read_choice("run", "elasticity", settings.elasticity);
+  settings.plane_strain = run.text("plane").value_or("strain") == "strain";
+  check_scheme_keys(source, run, settings.scheme);
+  return settings;
+}
+
+OutputSettings read_output(const SceneSource &source, double duration) {
+  const Section output = section(source.root, "output", source.faulty);
+  OutputSettings settings;
+  settings.interval = duration / 100.0;
+  output.read("interval", settings.interval);
+  settings.history_interval = settings.interval;
+  output.read("history_interval", settings.history_interval);
+  output.read("contacts", settings.contacts);
+
+  const bool duration_known = duration > 0.0;
+  const bool interval_known =
+      output.sound("interval") != nullptr || (output.given("interval") == nullptr && duration_known);
+  constexpr double most_frames = 1e6;
+  if (duration_known && interval_known && duration / settings.interval >= most_frames) {
+    fault(source, *output.given("interval"),
+          fmt::format("{} makes {:.0f} frames", output.subject("interval"), duration / settings.interval),
+          "frame numbers have six digits", fmt::format("use at least {:g}", duration / most_frames * 2.0));
+  }
+  if (const toml::node *node = output.sound("history_interval"); node != nullptr && interval_known) {
+    const double longer = std::max(settings.interval, settings.history_interval);
+    const double ratio = longer / std::min(settings.interval, settings.history_interval);
+    if (std::abs(ratio - std::round(ratio)) > 1e-9 * ratio) {
+      fault(source, *node,
+            fmt::format("{} is {}", output.subject("history_interval"), settings.history_interval),
+            fmt::format("it must divide interval ({}) or be a multiple of it", settings.interval),
+            fmt::format("for example history_interval = {}", settings.interval));
+    }
+  }
+  return settings;
+}
+
+} // namespace gcpdda::scene_text

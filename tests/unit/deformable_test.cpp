@@ -1,0 +1,325 @@
+// Pieces of the deformable block, one by one; how it moves is in verification/deformable_block_test.cpp.
+
+#include "gcpdda/dynamics/deformable.hpp"
+
+#include "gcpdda/dynamics/integrate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace gcpdda {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double pi = std::numbers::pi;
+constexpr double modulus = 5e8;
+constexpr double ratio = 0.3;
+constexpr double density = 2500.0;
+
+double next(std::mt19937 &engine) {
+  return -1.0 + 2.0 * static_cast<double>(engine()) / 4294967296.0;
+}
+
+Mat2 turn_by(double angle) {
+  const Rotation r = Rotation::of(angle);
+  return {r.c, -r.s, r.s, r.c};
+}
+
+Mat2 random_gradient(std::mt19937 &engine, double strain) {
+  const Mat2 stretch{1.0 + strain * next(engine), strain * next(engine), strain * next(engine),
+                     1.0 + strain * next(engine)};
+  return turn_by(pi * next(engine)) * stretch;
+}
+
+Scheme usual_scheme() {
+  return make_scheme(SchemeKind::generalized_alpha, 0.8, ContactTime::leapfrog);
+}
+
+/// One lopsided block as row 0, at rest.
+BlockSystem one_block(BlockKind kind = BlockKind::deformable, bool plane_strain = true) {
+  BlockSystem system;
+  SceneBlock block;
+  block.vertices = {{0.0, 0.0}, {2.0, 0.3}, {1.7, 1.2}, {-0.2, 1.0}};
+  append_block(system, BlockId{0}, block, {"rock", density, modulus, ratio}, kind, plane_strain);
+  system.num_owned = 1;
+  pose(system, 0, 1);
+  return system;
+}
+
+BlockForces no_forces(const BlockSystem &system) {
+  return {std::vector<RigidDof>(system.num_owned), std::vector<Mat2>(system.deformation.size())};
+}
+
+void put(BlockSystem &system, const Mat2 &gradient) {
+  Deformation &d = system.deformation[0];
+  d.gradient = d.trial = d.trial_previous = gradient;
+  pose(system, 0, 1);
+}
+
+TEST(Gradient, ComponentsComeBackAndDoTheSameWork) {
+  std::mt19937 engine(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Mat2 g = random_gradient(engine, 0.5);
+    const Mat2 h = random_gradient(engine, 0.5);
+    EXPECT_LE(norm(motion_matrix(motion_dof(g)) - g), 4.0 * epsilon);
+    EXPECT_LE(norm(force_matrix(force_dof(h)) - h), 4.0 * epsilon);
+    const GradientDof f = force_dof(h);
+    const GradientDof m = motion_dof(g);
+    EXPECT_NEAR(f.r * m.r + f.ex * m.ex + f.ey * m.ey + f.gxy * m.gxy, contract(h, g), 16.0 * epsilon);
+  }
+}
+
+TEST(Gradient, PolarDecomposition) {
+  std::mt19937 engine(2);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Mat2 f = random_gradient(engine, 0.4);
+    const Mat2 stretch = transposed(rotation_of(f)) * f;
+    EXPECT_NEAR(stretch.xy, stretch.yx, 4.0 * epsilon);
+    EXPECT_GT(stretch.xx, 0.0);
+    EXPECT_LE(norm(rotation_of(f) - turn_by(angle_of(f))), 4.0 * epsilon);
+    const double angle = pi * next(engine);
+    EXPECT_NEAR(angle_between(f, turn_by(angle) * f), angle, 8.0 * epsilon);
+  }
+  EXPECT_EQ(angle_between(random_gradient(engine, 0.0), {}), 0.0) << "undefined, but a number";
+}
+
+// P is the slope of the energy in every direction, so it has no torque; both turn with the block.
+TEST(ElasticForce, IsTheSlopeOfTheEnergyAndHasNoTorque) {
+  std::mt19937 engine(3);
+  for (const bool plane_strain : {false, true}) {
+    const BlockSystem system = one_block(BlockKind::deformable, plane_strain);
+    const Deformation &d = system.deformation[0];
+    for (int trial = 0; trial < 50; ++trial) {
+      const Mat2 f = random_gradient(engine, 0.2);
+      const Mat2 force = elastic_force(d, f);
+      const Mat2 along = random_gradient(engine, 0.5);
+      constexpr double h = 1e-5; // truncation h^2, rounding epsilon/h
+      const double slope = (strain_energy(d, f + h * along) - strain_energy(d, f - h * along)) / (2.0 * h);
+      EXPECT_NEAR(slope, contract(force, along), 1e-8 * d.stiffness_direct);
+      const Mat2 moment = force * transposed(f);
+      EXPECT_NEAR(moment.xy, moment.yx, 8.0 * epsilon * norm(force));
+      const Mat2 turn = turn_by(1.0);
+      EXPECT_LE(norm(elastic_force(d, turn * f) - turn * force), 16.0 * epsilon * d.stiffness_direct);
+    }
+  }
+}
+
+TEST(Energies, OfKnownStates) {
+  BlockSystem system = one_block();
+  Deformation &d = system.deformation[0];
+  constexpr double spin = 3.0;
+  const double turning = 0.5 * system.properties[0].inertia * spin * spin;
+  EXPECT_NEAR(kinetic_energy(d, {0.0, -spin, spin, 0.0}), turning, 8.0 * epsilon * turning);
+  constexpr double stretch = 1e-3;
+  const double stored = 0.5 * d.stiffness_direct * stretch * stretch;
+  EXPECT_NEAR(strain_energy(d, turn_by(0.7) * Mat2{1.0 + stretch, 0.0, 0.0, 1.0}), stored,
+              1e3 * epsilon / stretch * stored);
+  std::mt19937 engine(5);
+  put(system, random_gradient(engine, 0.01));
+  accelerate(system, no_forces(system)); // applies P*
+  const double trial = strain_energy(d, d.trial);
+  EXPECT_NEAR(applied_strain_energy(d), trial, 1e-11 * trial);
+}
+
+// Fields that follow a rotating and stretching motion F = R(w t)(I + t A).
+TEST(Spin, AndItsRateOfAKnownMotion) {
+  const Mat2 a{0.1, 0.05, 0.05, -0.2};
+  constexpr double w = 2.0;
+  const auto motion = [&](double t) { return turn_by(w * t) * (Mat2::identity() + t * a); };
+  const double t = 0.4;
+  constexpr double h = 1e-4;
+  const Mat2 rate = (0.5 / h) * (motion(t + h) - motion(t - h));
+  const Mat2 acceleration = (1.0 / (h * h)) * (motion(t + h) + motion(t - h) - 2.0 * motion(t));
+  // Commuting symmetric factors add no spin of their own.
+  EXPECT_NEAR(spin_of(motion(t), rate), w, 1e-7);
+  EXPECT_NEAR(spin_rate_of(motion(t), rate, acceleration), 0.0, 1e-6);
+}
+
+// M g = R^T (G - P): the same as F'' S = G - P, and P is kept for output.
+TEST(Accelerate, DeformableRows) {
+  std::mt19937 engine(4);
+  BlockSystem system = one_block();
+  put(system, random_gradient(engine, 0.01));
+  BlockForces forces = no_forces(system);
+  forces.rigid[0].u = {3e3, -1e3};
+  forces.gradient[0] = 1e4 * random_gradient(engine, 0.5);
+  accelerate(system, forces);
+  const Deformation &d = system.deformation[0];
+  EXPECT_EQ(d.internal, elastic_force(d, d.trial));
+  EXPECT_LE(norm(d.acceleration * d.second_moment + d.internal - forces.gradient[0]),
+            32.0 * epsilon * norm(d.internal));
+  EXPECT_NEAR(system.acceleration[0].u.x, 3e3 / system.properties[0].mass, 1e-15);
+}
+
+// Dead loads at rest: the first step from a consistent start finds the same acceleration again.
+TEST(Accelerate, AgreesWithTheFirstStep) {
+  for (const Elasticity elasticity : {Elasticity::implicit, Elasticity::explicit_}) {
+    BlockSystem system = one_block();
+    BlockForces forces = no_forces(system);
+    forces.gradient[0] = {2e4, 5e3, -1e4, 3e3};
+    accelerate(system, forces);
+    const Mat2 start = system.deformation[0].acceleration;
+    constexpr double time_step = 1e-9; // so short that elasticity does not answer yet
+    make_block_matrices(system, usual_scheme(), time_step, elasticity, 1e9);
+    predict(system, usual_scheme(), time_step);
+    ASSERT_FALSE(solve_and_update(system, forces, usual_scheme(), time_step, elasticity));
+    EXPECT_LE(norm(system.deformation[0].acceleration - start), 1e-9 * norm(start));
+  }
+}
+
+TEST(Predict, KeepsTheUnwrappedAngle) {
+  BlockSystem system = one_block();
+  Deformation &d = system.deformation[0];
+  const double angle = 6.0 * pi + 3.1; // 0.04 rad short of where atan2 jumps
+  put(system, turn_by(angle));
+  system.displacement[0].r = angle;
+  d.rate = 100.0 * (Mat2{0.0, -1.0, 1.0, 0.0} * d.gradient);
+  constexpr double time_step = 1e-3;
+  predict(system, usual_scheme(), time_step);
+  // A chord along the tangent of the circle.
+  const double turned = std::atan(100.0 * usual_scheme().trial_velocity * time_step);
+  EXPECT_NEAR(system.trial[0].r, angle + turned, 32.0 * epsilon * angle);
+  make_block_matrices(system, usual_scheme(), time_step, Elasticity::explicit_, 1e9);
+  ASSERT_FALSE(solve_and_update(system, no_forces(system), usual_scheme(), time_step, Elasticity::explicit_));
+  EXPECT_NEAR(system.displacement[0].r, angle + 0.1, 1e-3);
+}
+
+TEST(SolveAndUpdate, KeepsABrokenDeformableBlock) {
+  const double bad = std::numeric_limits<double>::quiet_NaN();
+  for (const BlockForces &forces :
+       {BlockForces{{{{bad, 0.0}, 0.0}}, {{}}}, BlockForces{{{}}, {{0.0, bad, 0.0, 0.0}}},
+        BlockForces{{{}}, {{-1e13, 0.0, 0.0, 0.0}}}}) { // the last one turns it inside out
+    BlockSystem system = one_block();
+    make_block_matrices(system, usual_scheme(), 1e-3, Elasticity::implicit, 1e9);
+    predict(system, usual_scheme(), 1e-3);
+    EXPECT_EQ(solve_and_update(system, forces, usual_scheme(), 1e-3, Elasticity::implicit),
+              std::optional<std::size_t>(0));
+    EXPECT_EQ(system.deformation[0].gradient, Mat2::identity());
+    EXPECT_EQ(system.velocity[0], RigidDof{});
+  }
+}
+
+TEST(SolveAndUpdate, WantsTheMatrices) {
+  BlockSystem system = one_block();
+  EXPECT_ANY_THROW(solve_and_update(system, no_forces(system), usual_scheme(), 1e-3, Elasticity::implicit));
+}
+
+// No vertex leaves the bounds, whatever F does.
+TEST(MotionBound, HoldsForADeformableBlock) {
+  std::mt19937 engine(6);
+  for (int trial = 0; trial < 50; ++trial) {
+    BlockSystem system = one_block();
+    Deformation &d = system.deformation[0];
+    put(system, random_gradient(engine, 0.05));
+    d.rate = 20.0 * random_gradient(engine, 1.0);
+    d.acceleration = 300.0 * random_gradient(engine, 1.0);
+    system.velocity[0].u = {next(engine), next(engine)};
+    d.refreshed = d.gradient;
+    constexpr double time_step = 1e-3;
+    make_block_matrices(system, usual_scheme(), time_step, Elasticity::implicit, 1e9);
+    const std::vector<Vec2> before = current_vertices(system, 0);
+    const double bound = motion_bound(system, 0, time_step);
+    predict(system, usual_scheme(), time_step);
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      EXPECT_LE(norm(system.vertex[k] - before[k]), bound);
+    }
+    ASSERT_FALSE(
+        solve_and_update(system, no_forces(system), usual_scheme(), time_step, Elasticity::implicit));
+    const std::vector<Vec2> after = current_vertices(system, 0);
+    double farthest = 0.0;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      farthest = std::max(farthest, norm(after[k] - before[k]));
+    }
+    EXPECT_LE(farthest, moved_since_refresh(system, 0));
+    EXPECT_GT(farthest, 0.2 * moved_since_refresh(system, 0)); // not a bound that never bites
+  }
+}
+
+// A dead load G on a block at rest, [std]: plane stress eps = (sx - nu sy)/E; plane strain with E/(1 - nu^2)
+// and nu/(1 - nu) in their places. Local damping brings it there.
+TEST(StaticStretch, IsHookes) {
+  for (const bool plane_strain : {false, true}) {
+    for (const Elasticity elasticity : {Elasticity::implicit, Elasticity::explicit_}) {
+      BlockSystem system = one_block(BlockKind::deformable, plane_strain);
+      const double area = system.properties[0].area;
+      constexpr double sx = 2e5;
+      constexpr double sy = -5e4;
+      constexpr double sxy = 1e5;
+      constexpr double time_step = 1e-4;
+      make_block_matrices(system, usual_scheme(), time_step, elasticity, 1e9);
+      for (int k = 0; k < 100000; ++k) {
+        predict(system, usual_scheme(), time_step);
+        BlockForces forces = no_forces(system);
+        forces.gradient[0] = area * Mat2{sx, sxy, sxy, sy};
+        apply_local_damping(system, forces, 0.5);
+        ASSERT_FALSE(solve_and_update(system, forces, usual_scheme(), time_step, elasticity));
+      }
+      const double e = plane_strain ? modulus / (1.0 - ratio * ratio) : modulus;
+      const double nu = plane_strain ? ratio / (1.0 - ratio) : ratio;
+      const double shear = sxy * (1.0 + ratio) / modulus; // half of gamma
+      const Mat2 expected{1.0 + (sx - nu * sy) / e, shear, shear, 1.0 + (sy - nu * sx) / e};
+      // Turning, at which dead tractions swing the block to and fro with some 10 rad/s, settles last.
+      EXPECT_LE(norm(system.deformation[0].gradient - expected), 1e-11);
+      // Mean Cauchy stress is P F^T/(area det F).
+      const std::array<double, 3> stress = mean_cauchy_stress(system.deformation[0], area);
+      const Mat2 cauchy = (1.0 / determinant(expected)) * (Mat2{sx, sxy, sxy, sy} * transposed(expected));
+      EXPECT_NEAR(stress[0], cauchy.xx, 1e-8 * sx);
+      EXPECT_NEAR(stress[1], cauchy.yy, 1e-8 * sx);
+      EXPECT_NEAR(stress[2], 0.5 * (cauchy.xy + cauchy.yx), 1e-8 * sx);
+    }
+  }
+}
+
+TEST(LocalDamping, ShareOfZeroChangesNoBit) {
+  std::mt19937 engine(7);
+  BlockSystem system = one_block();
+  system.velocity[0] = {{1.0, -2.0}, 3.0};
+  system.deformation[0].rate = random_gradient(engine, 1.0);
+  BlockForces forces = no_forces(system);
+  forces.rigid[0] = {{1.0, 2.0}, 3.0};
+  forces.gradient[0] = random_gradient(engine, 1.0);
+  const BlockForces before = forces;
+  apply_local_damping(system, forces, 0.0);
+  EXPECT_EQ(forces.rigid, before.rigid);
+  EXPECT_EQ(forces.gradient, before.gradient);
+  EXPECT_EQ(system.ledger[0].damping_force, RigidDof{});
+}
+
+// Every component loses its share if it drives the motion and gains it if it brakes; the loss is on record.
+TEST(LocalDamping, TakesAShareOfEachComponent) {
+  std::mt19937 engine(8);
+  for (int trial = 0; trial < 20; ++trial) {
+    BlockSystem system = one_block();
+    put(system, random_gradient(engine, 0.1));
+    Deformation &d = system.deformation[0];
+    d.rate = random_gradient(engine, 1.0);
+    system.velocity[0].u = {next(engine), 0.0};
+    BlockForces forces = no_forces(system);
+    forces.rigid[0].u = {next(engine), 2.0};
+    forces.gradient[0] = 1e8 * random_gradient(engine, 1.0);
+    const BlockForces before = forces;
+    constexpr double share = 0.7;
+    apply_local_damping(system, forces, share);
+    const double fx = before.rigid[0].u.x;
+    EXPECT_DOUBLE_EQ(forces.rigid[0].u.x,
+                     fx - share * std::abs(fx) * std::copysign(1.0, system.velocity[0].u.x));
+    EXPECT_EQ(forces.rigid[0].u.y, 2.0) << "nothing moves that way";
+    const Mat2 back = transposed(rotation_of(d.trial));
+    const GradientDof f = force_dof(back * (before.gradient[0] - elastic_force(d, d.trial)));
+    const GradientDof taken = force_dof(back * d.damping_force);
+    const GradientDof v = motion_dof(back * d.rate);
+    const double rounding = 1e-13 * norm(forces.gradient[0]);
+    EXPECT_NEAR(taken.r, -share * std::abs(f.r) * std::copysign(1.0, v.r), rounding);
+    EXPECT_NEAR(taken.ex, -share * std::abs(f.ex) * std::copysign(1.0, v.ex), rounding);
+    EXPECT_NEAR(taken.ey, -share * std::abs(f.ey) * std::copysign(1.0, v.ey), rounding);
+    EXPECT_NEAR(taken.gxy, -share * std::abs(f.gxy) * std::copysign(1.0, v.gxy), rounding);
+    EXPECT_LE(norm(forces.gradient[0] - before.gradient[0] - d.damping_force), rounding);
+    EXPECT_LT(contract(d.damping_force, d.rate), 0.0);
+  }
+}
+
+} // namespace
+} // namespace gcpdda
