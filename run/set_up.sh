@@ -5,20 +5,23 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_mpi_yield_when_idle=1 OMP_NUM_THREADS=1
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+preset=release # of CMakePresets.json
 build=$top/build
 
-# Packages of run/packages.txt that are not installed.
+# missing_packages [tests]: packages of run/packages.txt that are not installed. Those that only the tests need have
+# the word tests behind them.
 missing_packages() {
-  local package
-  while read -r package; do
-    [ -n "$package" ] || continue
+  local package purpose
+  while read -r package purpose; do
+    [ -n "$package" ] && [[ -z "$purpose" || "$purpose" == "${1:-}" ]] || continue
     dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q '^install ok installed$' || echo "$package"
   done <"$top/run/packages.txt"
 }
 
+# install_packages [tests]
 install_packages() {
   local missing as_root=
-  missing=$(missing_packages)
+  missing=$(missing_packages "$@")
   [ -n "$missing" ] || return 0
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || {
@@ -33,8 +36,8 @@ install_packages() {
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
 }
 
-# build_targets TARGET...: Release; only what changed is built again.
+# build_targets TARGET...: of $preset into $build; only what changed is built again.
 build_targets() {
-  [ -f "$build/build.ninja" ] || cmake -S "$top" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release
+  [ -f "$build/build.ninja" ] || cmake -S "$top" -B "$build" --preset "$preset"
   cmake --build "$build" --target "$@"
 }

@@ -118,10 +118,46 @@ std::span<const Vec2> field_normals(const BlockView &block) {
 
 } // namespace
 
-void Overlap::clip_edges(const BlockView &own, const BlockView &other, PotentialKind potential) {
+// Over the common part C of the two boxes line j lies between low_j and high_j. Where low_j is above the
+// smallest high_k, line k is nearer all over C and line j can be left out: inside C nothing changes, and
+// nothing of the other block lies outside. If the other block has a point in C, an edge of this one cannot
+// leave it through a line left out, because that line does not enter C. If it has none, the lines kept may
+// meet outside C; a stretch found there does not lie in the other block's box, which tells it.
+bool Overlap::keep_lines(const BlockView &own, const BlockView &other) {
   const std::span<const Vec2> vertex = field_vertices(other);
   const std::span<const Vec2> normal = field_normals(other);
-  const std::size_t num_lines = vertex.size();
+  lines_.clear();
+  if (other.frame) {
+    for (std::size_t j = 0; j < vertex.size(); ++j) {
+      lines_.push_back({normal[j], vertex[j], static_cast<std::int32_t>(j)});
+    }
+    return true;
+  }
+  const Vec2 low{std::max(own.box.low.x, other.box.low.x), std::max(own.box.low.y, other.box.low.y)};
+  const Vec2 high{std::min(own.box.high.x, other.box.high.x), std::min(own.box.high.y, other.box.high.y)};
+  const Vec2 centre = 0.5 * (low + high);
+  const Vec2 half = 0.5 * (high - low);
+  double smallest_high = std::numeric_limits<double>::infinity();
+  alpha_.resize(vertex.size());
+  for (std::size_t j = 0; j < vertex.size(); ++j) {
+    const double middle = dot(normal[j], vertex[j] - centre);
+    const double spread = std::abs(normal[j].x) * half.x + std::abs(normal[j].y) * half.y;
+    smallest_high = std::min(smallest_high, middle + spread);
+    alpha_[j] = middle - spread;
+  }
+  for (std::size_t j = 0; j < vertex.size(); ++j) {
+    if (alpha_[j] <= smallest_high) {
+      lines_.push_back({normal[j], vertex[j], static_cast<std::int32_t>(j)});
+    }
+  }
+  return smallest_high > 0.0;
+}
+
+void Overlap::clip_edges(const BlockView &own, const BlockView &other, PotentialKind potential) {
+  if (!keep_lines(own, other)) {
+    return;
+  }
+  const std::size_t num_lines = lines_.size();
   alpha_.resize(num_lines);
   beta_.resize(num_lines);
   for (std::size_t e = 0; e < own.vertex.size(); ++e) {
@@ -132,8 +168,8 @@ void Overlap::clip_edges(const BlockView &own, const BlockView &other, Potential
     Vec2 a = in_field.edge.begin;
     const Vec2 tangent = in_field.edge.tangent;
     for (std::size_t j = 0; j < num_lines; ++j) {
-      alpha_[j] = dot(normal[j], vertex[j] - a);
-      beta_[j] = -dot(normal[j], tangent);
+      alpha_[j] = dot(lines_[j].normal, lines_[j].vertex - a);
+      beta_[j] = -dot(lines_[j].normal, tangent);
     }
     Inside in = positive_stretch(alpha_, beta_, in_field.edge.length);
     double anchor = 0.0;
@@ -142,13 +178,14 @@ void Overlap::clip_edges(const BlockView &own, const BlockView &other, Potential
       anchor = in.begin;
       a += in.begin * tangent;
       for (std::size_t j = 0; j < num_lines; ++j) {
-        alpha_[j] = dot(normal[j], vertex[j] - a);
+        alpha_[j] = dot(lines_[j].normal, lines_[j].vertex - a);
       }
       const double rounding = 16.0 * std::numeric_limits<double>::epsilon() *
                               (in_field.edge.length + std::max(std::abs(a.x), std::abs(a.y)));
       in = near_entry(alpha_, beta_, in, dot(in_field.edge.end - a, tangent), rounding);
     }
-    if (in.begin >= in.end) {
+    if (in.begin >= in.end ||
+        (!other.frame && !other.box.holds(a + (0.5 * (in.begin + in.end)) * tangent))) {
       continue;
     }
     const std::size_t line = in.entry != none ? in.entry : lowest_at_start(alpha_, beta_);
@@ -159,7 +196,7 @@ void Overlap::clip_edges(const BlockView &own, const BlockView &other, Potential
                       0.0,
                       in.entry != none,
                       static_cast<std::int32_t>(e),
-                      static_cast<std::int32_t>(line)};
+                      lines_[line].face};
     const std::size_t first_piece = pieces_.size();
     if (potential == PotentialKind::linear) {
       pieces_.push_back(chord(start, in.begin, in.end, in.leaves));
@@ -252,7 +289,7 @@ void Overlap::walk_envelope(Piece piece, std::size_t line, double s, double s_en
       return;
     }
     line = next;
-    piece.face = static_cast<std::int32_t>(line);
+    piece.face = lines_[line].face;
   }
 }
 

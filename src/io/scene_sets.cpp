@@ -53,7 +53,7 @@ std::optional<toml::table> parse(std::string_view text, const toml::source_path_
     return toml::parse(text, path ? std::string_view(*path) : std::string_view());
   } catch (const toml::parse_error &error) {
     where.begin = error.source().begin;
-    faults.add(where, "not valid TOML", std::string(error.description()),
+    faults.add(where, "not valid TOML", shown(error.description(), 200),
                "check quotes, brackets and = up to this place");
     return std::nullopt;
   }

@@ -71,6 +71,12 @@ OutputSettings read_output(const SceneSource &source, double duration) {
   output.read("history_interval", settings.history_interval);
   output.read("contacts", settings.contacts);
 
+  if (duration > 0.0 && settings.interval == 0.0) { // the smallest numbers have no hundredth
+    const Section run = section(source.root, "run", source.faulty);
+    fault(source, *run.given("duration"), fmt::format("{} is {}", run.subject("duration"), duration),
+          "a hundredth of it, which interval is by default, is 0", "use a longer one");
+    return settings;
+  }
   const bool duration_known = duration > 0.0;
   const bool interval_known =
       output.sound("interval") != nullptr || (output.given("interval") == nullptr && duration_known);
@@ -83,7 +89,7 @@ OutputSettings read_output(const SceneSource &source, double duration) {
   if (const toml::node *node = output.sound("history_interval"); node != nullptr && interval_known) {
     const double longer = std::max(settings.interval, settings.history_interval);
     const double ratio = longer / std::min(settings.interval, settings.history_interval);
-    if (std::abs(ratio - std::round(ratio)) > 1e-9 * ratio) {
+    if (!(std::abs(ratio - std::round(ratio)) <= 1e-9 * ratio)) { // so that an infinite one is at fault
       fault(source, *node,
             fmt::format("{} is {}", output.subject("history_interval"), settings.history_interval),
             fmt::format("it must divide interval ({}) or be a multiple of it", settings.interval),

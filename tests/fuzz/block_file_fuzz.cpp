@@ -27,6 +27,9 @@ namespace {
 using testing::BlockFileWriter;
 using Bytes = FuzzedDataProvider;
 
+/// Of a file; the types of the changes stay open for all files.
+constexpr unsigned open_kinds = H5F_OBJ_FILE | H5F_OBJ_DATASET | H5F_OBJ_GROUP | H5F_OBJ_ATTR;
+
 const std::array<std::string, 5> names{"points", "offsets", "material", "fixed", "velocity"};
 
 std::vector<SceneBlock> good_blocks(std::size_t count) {
@@ -88,8 +91,9 @@ void fit(BlockFileWriter::Dataset &dataset) {
     size *= static_cast<double>(extent);
     dataset.chunked = dataset.chunked && extent >= 2; // a chunk is 2 long
   }
-  dataset.chunked = dataset.chunked && !dataset.shape.empty();
   dataset.bytes.resize(size > most || holds_pointers(dataset.type) ? 0 : static_cast<std::size_t>(size));
+  // Many small chunks cost much time.
+  dataset.chunked = dataset.chunked && !dataset.shape.empty() && dataset.bytes.size() <= 4096;
 }
 
 hsize_t any_extent(Bytes &bytes) {
@@ -319,13 +323,14 @@ void run(Bytes bytes) {
   } catch (const FileError &error) {
     require(damaged, "a file that can be written can be read", error.what());
   }
-  require(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL) == 0 || damaged, "nothing stays open");
+  require(H5Fget_obj_count(H5F_OBJ_ALL, open_kinds) == 0 || damaged, "nothing stays open");
 }
 
 } // namespace
 } // namespace gcpdda::fuzz
 
 extern "C" int LLVMFuzzerInitialize(int *argc, char ***argv) {
+  setenv("OMPI_MCA_opal_signal", "", 1); // else Open MPI takes the crashes that libFuzzer keeps inputs of
   gcpdda::fuzz::mpi(argc, argv);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   return 0;

@@ -63,6 +63,8 @@ std::vector<std::string> messages(const std::string &text) {
 const std::vector<BadScene> bad_scenes{
     {"SyntaxError", 2, R"(duration = 2.0 s)",
      {R"(2:16: error: not valid TOML, Error while parsing key-value pair: expected a comment or whitespace, saw 's', check quotes, brackets and = up to this place)"}},
+    {"SyntaxErrorBeforeAControlCharacter", 2, "run = t\nru",
+     {"2:8: error: not valid TOML, Error while parsing boolean: expected 'true', saw 't ', check quotes, brackets and = up to this place"}},
     {"BrokenHeader", 3, R"([material.granite)",
      {R"(3:18: error: not valid TOML, Error while parsing table header: expected ']', saw '\n', check quotes, brackets and = up to this place)"}},
     {"HeaderWithoutKey", 3, R"([.granite])",
@@ -253,6 +255,13 @@ history_interval = 0.03)",
 [output]
 history_interval = 0.03)",
      {R"(15:20: error: 'history_interval' in [output] is 0.03, it must divide interval (0.02) or be a multiple of it, for example history_interval = 0.02)"}},
+    {"HistoryIntervalWithoutRatio", 13, R"(fixed = true
+[output]
+interval = 1
+history_interval = 5e-324)",
+     {R"(16:20: error: 'history_interval' in [output] is 5e-324, it must divide interval (1) or be a multiple of it, for example history_interval = 1)"}},
+    {"DurationWithoutHundredth", 2, R"(duration = 5e-324)",
+     {R"(2:12: error: 'duration' in [run] is 5e-324, a hundredth of it, which interval is by default, is 0, use a longer one)"}},
     {"TooManyFrames", 13, R"(fixed = true
 [output]
 interval = 1e-6)",

@@ -145,6 +145,16 @@ private:
   std::vector<Piece> pieces_;
   std::vector<DepthCurve> curves_;
   std::vector<Region> regions_;
+  /// An edge line of the other block that may be the nearest one somewhere.
+  struct Line {
+    Vec2 normal;
+    Vec2 vertex;
+    std::int32_t face = 0;
+  };
+  /// Fill lines_; false if the blocks cannot overlap.
+  bool keep_lines(const BlockView &own, const BlockView &other);
+
+  std::vector<Line> lines_;
   std::vector<double> alpha_;
   std::vector<double> beta_;
 };

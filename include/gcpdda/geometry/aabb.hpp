@@ -26,6 +26,9 @@ struct Aabb {
   [[nodiscard]] Aabb inflated(double by) const {
     return {{low.x - by, low.y - by}, {high.x + by, high.y + by}};
   }
+  [[nodiscard]] bool holds(Vec2 p) const {
+    return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y;
+  }
   [[nodiscard]] bool meets(const Aabb &b) const {
     return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y;
   }

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# run.sh [SECONDS [TARGET ...]]: builds the fuzz targets with clang and feeds each of them changed inputs for so many
+# seconds (20 by default). What makes new ways through the program is kept in build-fuzz/corpus and is where the next
+# run starts; an input that breaks something in build-fuzz/findings.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+source "$here/../../run/set_up.sh"
+
+seconds=${1:-20}
+targets=("${@:2}")
+[ ${#targets[@]} -gt 0 ] || targets=(scene_fuzz block_file_fuzz)
+preset=fuzz
+build=$top/build-fuzz
+build_targets "${targets[@]}"
+
+TMPDIR=$(mktemp -d)
+export TMPDIR # the block files
+trap 'rm -rf "$TMPDIR"' EXIT
+mkdir -p "$build/findings"
+declare -A options=(
+  [scene_fuzz]="-max_len=10000 -dict=$here/scene.dict $here/corpus/scene $top/run/scenes"
+  # The leak checker stumbles over the threads of MPI.
+  [block_file_fuzz]="-max_len=300 -len_control=0 -detect_leaks=0"
+)
+for target in "${targets[@]}"; do
+  echo "== $target, $seconds s =="
+  corpus=$build/corpus/$target
+  log=$build/$target.log
+  mkdir -p "$corpus"
+  # shellcheck disable=SC2086
+  if ! "$build/$target" "$corpus" ${options[$target]} -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+    -malloc_limit_mb=256 -artifact_prefix="$build/findings/$target-" >"$log" 2>&1; then
+    grep -av '^#' "$log" | tail -n 60
+    echo "$target found something: $build/$target FILE runs the input again (FILE: see 'Test unit written to')"
+    exit 1
+  fi
+  tail -n 1 "$log"
+done
