@@ -2,7 +2,7 @@
 
 #include "edit_distance.hpp"
 #include "hdf5_input.hpp"
-#include "scene_keys.hpp"
+#include "scene_faults.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -131,9 +131,10 @@ private:
     if (rule.required) {
       fault(fmt::format("'/{}' is missing", name),
             fmt::format("it must hold {} {}", words_of(rule.number), shape_of(rule)),
-            near.empty() ? "write it" : fmt::format("did you mean it by '/{}'?", near));
+            near.empty() ? "write it" : fmt::format("did you mean it by '/{}'?", scene_text::shown(near)));
     } else if (!near.empty()) {
-      fault(fmt::format("unknown dataset '/{}'", near), "", fmt::format("did you mean '/{}'?", name));
+      fault(fmt::format("unknown dataset '/{}'", scene_text::shown(near)), "",
+            fmt::format("did you mean '/{}'?", name));
     }
   }
 

@@ -97,14 +97,12 @@ void Simulation::evaluate_contacts() {
 // increments of x*: half with the forces of the last evaluation, half with those of this one.
 void Simulation::gather_forces() {
   const auto scope = phases_.measure(Phase::forces);
-  add_half_works();
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    blocks_.ledger[row].load_work += anchor_half_work(blocks_, row);
-  }
   forces_.rigid.resize(blocks_.num_owned);
   forces_.gradient.resize(blocks_.deformation.size());
   const Vec2 gravity_now = gravity();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    add_half_works(row);
+    blocks_.ledger[row].load_work += anchor_half_work(blocks_, row);
     gather_block(row, gravity_now);
     if (blocks_.is_deformable(row)) {
       gather_gradient(row);
@@ -113,7 +111,9 @@ void Simulation::gather_forces() {
   if (scene_.run.local_damping > 0.0) {
     apply_local_damping(blocks_, forces_, scene_.run.local_damping);
   }
-  add_half_works();
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    add_half_works(row);
+  }
 }
 
 void Simulation::gather_block(std::size_t row, Vec2 gravity_now) {
@@ -154,15 +154,13 @@ void Simulation::gather_gradient(std::size_t row) {
   }
 }
 
-void Simulation::add_half_works() {
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    BlockLedger &ledger = blocks_.ledger[row];
-    const HalfWorks half = half_works(blocks_, row);
-    ledger.shear_work += half.shear;
-    ledger.damping_work += half.damping;
-    ledger.load_work += half.load;
-    ledger.gravity_work += half.gravity;
-  }
+void Simulation::add_half_works(std::size_t row) {
+  BlockLedger &ledger = blocks_.ledger[row];
+  const HalfWorks half = half_works(blocks_, row);
+  ledger.shear_work += half.shear;
+  ledger.damping_work += half.damping;
+  ledger.load_work += half.load;
+  ledger.gravity_work += half.gravity;
 }
 
 // One reduction: does anybody need a refresh, has anybody failed.

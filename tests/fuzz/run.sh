@@ -19,8 +19,7 @@ trap 'rm -rf "$TMPDIR"' EXIT
 mkdir -p "$build/findings"
 declare -A options=(
   [scene_fuzz]="-max_len=10000 -dict=$here/scene.dict $here/corpus/scene $top/run/scenes"
-  # The leak checker stumbles over the threads of MPI.
-  [block_file_fuzz]="-max_len=300 -len_control=0 -detect_leaks=0"
+  [block_file_fuzz]="-max_len=300 -len_control=0"
 )
 for target in "${targets[@]}"; do
   echo "== $target, $seconds s =="

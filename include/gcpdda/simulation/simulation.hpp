@@ -135,7 +135,7 @@ private:
   void gather_forces();
   void gather_block(std::size_t row, Vec2 gravity_now);
   void gather_gradient(std::size_t row);
-  void add_half_works();
+  void add_half_works(std::size_t row);
   void report();
   void agree_on_fault();
 

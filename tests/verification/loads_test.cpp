@@ -1,0 +1,321 @@
+// Loads, fixed points, driven blocks, local damping and re-entrant blocks, through the whole Simulation.
+
+#include "incline.hpp"
+#include "problem.hpp"
+
+#include "gcpdda/dynamics/deformable.hpp"
+#include "gcpdda/simulation/energy_ledger.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gcpdda::testing {
+namespace {
+
+constexpr double modulus = 1e9; ///< E, Pa
+
+std::string load_toml(Vec2 point, Vec2 force) {
+  return fmt::format("[[block.load]]\npoint = [{:.17g}, {:.17g}]\nforce = [{:.17g}, {:.17g}]\n", point.x,
+                     point.y, force.x, force.y);
+}
+
+Setting elastic(Setting setting, const std::string &fidelity) {
+  setting.fidelity = fidelity;
+  setting.youngs_modulus = modulus;
+  setting.poissons_ratio = 0.25;
+  return setting;
+}
+
+std::string floor_toml() {
+  return block_toml("floor", rectangle({-9.0, -2.0}, {9.0, 0.0}), "fixed = true");
+}
+
+/// A right triangle with legs 3 m along x and 2 m along y, and what is known of it [std].
+struct Triangle {
+  Vec2 corner{4.0, -7.0};
+  double mass = 3.0 * rock_density;
+  Vec2 centroid = corner + Vec2{1.0, 2.0 / 3.0};
+  /// S = rho int X X^T dA: A b^2/18, A h^2/18, -A b h/36.
+  Mat2 second_moment = rock_density * Mat2{1.5, -0.5, -0.5, 2.0 / 3.0};
+
+  [[nodiscard]] std::string toml(const std::string &extra) const {
+    return block_toml("triangle", {corner, corner + Vec2{3.0, 0.0}, corner + Vec2{0.0, 2.0}}, extra);
+  }
+};
+
+// Newton and Euler for a rigid block; F'' S = f X^T for a deformable one, with the same torque. Round-off.
+TEST(DeadLoad, AcceleratesAFreeBlock) {
+  const Triangle triangle;
+  const Vec2 force{3e4, -7e4};
+  for (const std::string fidelity : {"rigid", "deformable"}) {
+    for (const Vec2 arm : {Vec2{}, Vec2{-1.0, 4.0 / 3.0}, Vec2{0.5, -0.25}}) {
+      const Setting setting = elastic({.duration = 1.0, .time_step = 1e-3, .gravity = {0.0, -2.0}}, fidelity);
+      const Simulation simulation(
+          Communicator::self(),
+          scene_of(head(setting) + triangle.toml(load_toml(triangle.centroid + arm, force))));
+      const BlockSystem &blocks = simulation.blocks();
+      const Vec2 expected = (1.0 / triangle.mass) * force + setting.gravity;
+      const double polar = triangle.second_moment.xx + triangle.second_moment.yy;
+      const std::string what = fmt::format("dead load, {}, arm ({:.2g}, {:.2g}): ", fidelity, arm.x, arm.y);
+      expect_below(what + "error of the acceleration", 1e-14,
+                   norm(blocks.acceleration[0].u - expected) / norm(expected));
+      double torque = polar * blocks.acceleration[0].r;
+      if (fidelity == "deformable") {
+        const Mat2 got = blocks.deformation_of(0).acceleration * triangle.second_moment;
+        expect_below(what + "error of F'' S over |f|", 1e-14, norm(got - outer(force, arm)) / norm(force));
+        torque = got.yx - got.xy;
+      }
+      expect_below(what + "error of the torque over |f|", 1e-14,
+                   std::abs(torque - cross(arm, force)) / norm(force));
+    }
+  }
+}
+
+// Constant acceleration: x = a t^2/2 but for the sum of 1000 rounded steps.
+TEST(DeadLoad, ThroughTheCentroidMovesABlockStraight) {
+  const Triangle triangle;
+  const Vec2 force{3e4, -7e4};
+  for (const std::string fidelity : {"rigid", "deformable"}) {
+    const Setting setting = elastic({.duration = 1.0, .time_step = 1e-3, .gravity = {}}, fidelity);
+    Simulation simulation(Communicator::self(),
+                          scene_of(head(setting) + triangle.toml(load_toml(triangle.centroid, force))));
+    EnergyLedger ledger(simulation);
+    run(simulation);
+    const Vec2 expected = (0.5 / triangle.mass) * force;
+    expect_below("dead load through the centroid, " + fidelity + ": error of the distance", 1e-12,
+                 norm(displacement_of(simulation, 0).u - expected) / norm(expected));
+    expect_below("dead load through the centroid, " + fidelity + ": turn, rad", 1e-12,
+                 std::abs(displacement_of(simulation, 0).r));
+    const EnergyRow row = ledger.row(simulation);
+    expect_below("dead load through the centroid, " + fidelity + ": residual over work", 1e-12,
+                 std::abs(row.residual / row.boundary_work));
+  }
+}
+
+// Off the centroid: a free rigid block tumbles under a load of fixed direction, a free deformable one too.
+// Work and kinetic energy agree to the leapfrog's O(dt^2).
+TEST(DeadLoad, OffTheCentroidKeepsTheEnergyLedger) {
+  const Triangle triangle;
+  for (const std::string fidelity : {"rigid", "deformable"}) {
+    std::vector<double> residual;
+    for (const double time_step : {2e-3, 1e-3}) {
+      const Setting setting = elastic({.duration = 2.0, .time_step = time_step, .gravity = {}}, fidelity);
+      Simulation simulation(Communicator::self(),
+                            scene_of(head(setting) + triangle.toml(load_toml(triangle.corner, {3e4, -7e4}))));
+      EnergyLedger ledger(simulation);
+      run(simulation);
+      EXPECT_GT(std::abs(displacement_of(simulation, 0).r), 1.0) << "it has tumbled";
+      const EnergyRow row = ledger.row(simulation);
+      EXPECT_GT(row.boundary_work, 1e4);
+      residual.push_back(std::abs(row.residual / row.boundary_work));
+    }
+    expect_below("tumbling under a dead load, " + fidelity + ": residual over work, dt = 1 ms", 1e-4,
+                 residual[1]);
+    expect_value("tumbling under a dead load, " + fidelity + ": residual of dt over that of dt/2", 4.0,
+                 residual[0] / residual[1], 0.1);
+  }
+}
+
+// Hooke [std]: at rest int t X^T = area sigma, and with E = U - I exactly linear. What oscillation is left
+// after 500 periods of local damping and the round-off of F - I, 1e-16/1e-4, stay below 1e-10.
+TEST(DeadLoad, OppositeLoadsStrainADeformableBlockByHooke) {
+  constexpr double tension = 1e5; // N/m on faces of 1 m: Pa
+  constexpr double shear = 4e4;   // Pa
+  constexpr double nu = 0.25;
+  for (const bool plane_strain : {true, false}) {
+    Setting setting = elastic({.duration = 2.0, .time_step = 2e-4, .gravity = {}}, "deformable");
+    setting.run_keys = "local_damping = 0.5\n";
+    setting.run_keys += plane_strain ? "plane = \"strain\"\n" : "plane = \"stress\"\n";
+    // 2 m x 1 m; the resultants of the shear tractions are 2 tau on the long faces, tau on the short ones.
+    const std::string loads =
+        load_toml({1.0, 0.0}, {tension, shear}) + load_toml({-1.0, 0.0}, {-tension, -shear}) +
+        load_toml({0.0, 0.5}, {2.0 * shear, 0.0}) + load_toml({0.0, -0.5}, {-2.0 * shear, 0.0});
+    Simulation simulation(
+        Communicator::self(),
+        scene_of(head(setting) + block_toml("slab", rectangle({-1.0, -0.5}, {1.0, 0.5}), loads)));
+    run(simulation);
+    const Deformation &d = simulation.blocks().deformation_of(0);
+    const Mat2 strain = transposed(rotation_of(d.gradient)) * d.gradient - Mat2::identity();
+    const std::string what = fmt::format("Hooke, plane {}: ", plane_strain ? "strain" : "stress");
+    const double along = plane_strain ? 1.0 - nu * nu : 1.0;
+    const double across = plane_strain ? nu * (1.0 + nu) : nu;
+    expect_value(what + "eps_x", along * tension / modulus, strain.xx, 1e-10);
+    expect_value(what + "eps_y", -across * tension / modulus, strain.yy, 1e-10);
+    expect_value(what + "gamma_xy", 2.0 * (1.0 + nu) * shear / modulus, strain.xy + strain.yx, 1e-10);
+    EXPECT_LE(std::abs(displacement_of(simulation, 0).r), 1e-12);
+  }
+}
+
+// A driven block hits a free one. It keeps its path: v t but for the rounded sum. Momentum: the free block
+// has got all of the driving force, so the work is v m v'; exact in the leapfrog. Energy: O(W^2) of the
+// impact, with the bound of a single bounce (A6), and the loss of the dashpots.
+TEST(DrivenBlock, PushesAFreeOne) {
+  constexpr double speed = 0.8;
+  constexpr double k_n = 1e8;
+  for (const double damping : {0.0, 0.1}) {
+    for (const double w : {0.05, 0.1}) {
+      const double dt = w / std::sqrt(k_n / rock_density);
+      const Setting setting{.duration = 40.0 / w * dt,
+                            .time_step = dt,
+                            .gravity = {},
+                            .normal_stiffness = k_n,
+                            .damping = damping};
+      Simulation simulation(Communicator::self(),
+                            scene_of(head(setting) +
+                                     block_toml("ram", rectangle({-1.0, -0.5}, {0.0, 1.5}),
+                                                fmt::format("prescribed_velocity = [{}, 0.0, 0.0]", speed)) +
+                                     block_toml("square", rectangle({0.001, 0.0}, {1.001, 1.0}))));
+      EnergyLedger ledger(simulation);
+      double off_path = 0.0;
+      while (!simulation.finished()) {
+        simulation.step();
+        const RigidDof &moved = displacement_of(simulation, 0);
+        off_path = std::max({off_path, std::abs(moved.u.x - speed * simulation.time()), std::abs(moved.u.y),
+                             std::abs(moved.r)});
+      }
+      ASSERT_FALSE(simulation.fault().has_value());
+      const std::string what = fmt::format("driven block, W = {}, damping {}: ", w, damping);
+      expect_below(what + "distance from v t, m", 1e-14, off_path);
+      const double got = velocity_of(simulation, 1).u.x;
+      EXPECT_GT(got, 1.5 * speed);
+      const EnergyRow row = ledger.row(simulation);
+      expect_value(what + "boundary work, J/m", speed * rock_density * got, row.boundary_work, 1e-12);
+      expect_below(what + "residual over work", 0.5 * w * w, std::abs(row.residual / row.boundary_work));
+      EXPECT_GE(row.damping_loss, damping > 0.0 ? 0.01 * row.boundary_work : 0.0);
+    }
+  }
+}
+
+const std::vector<Vec2> slab_corners = rectangle({-1.0, -0.5}, {1.0, 0.5});
+constexpr double slab_weight = 2.0 * rock_density * earth_gravity;
+
+// Released with unloaded springs, each taking half the weight: it swings about w/2/stiffness and is never
+// beyond twice that (own_springs.cpp makes them 100 k_n L stiff). The alpha scheme damps W >> 1 out.
+TEST(FixedPoints, TwoHoldABlock) {
+  const Setting setting{.duration = 10.0, .time_step = 1e-3};
+  Simulation simulation(Communicator::self(),
+                        scene_of(head(setting) + floor_toml() +
+                                 block_toml("hung", placed(slab_corners, 0.0, {0.0, 3.0}),
+                                            "fixed_points = [[-0.8, 3.4], [0.8, 3.4]]")));
+  EnergyLedger ledger(simulation);
+  const double settled = 0.5 * slab_weight / (100.0 * setting.normal_stiffness * std::sqrt(2.0));
+  double largest = 0.0;
+  while (simulation.step_count() < 5000) {
+    simulation.step();
+    largest = std::max(largest, norm(displacement_of(simulation, 1).u));
+  }
+  const RigidDof rest = displacement_of(simulation, 1);
+  run(simulation);
+  const RigidDof moved = displacement_of(simulation, 1) - rest;
+  expect_below("hung block: largest move over the settled one", 2.0 + 1e-6, largest / settled);
+  expect_value("hung block: settled depth, m", settled, -rest.u.y, 1e-6);
+  expect_below("hung block: creep from 5 to 10 s over its size", 1e-15,
+               (norm(moved.u) + std::abs(moved.r)) / std::sqrt(2.0));
+  expect_below("hung block: residual over m g L", 1e-7,
+               std::abs(ledger.row(simulation).residual) / (slab_weight * std::sqrt(2.0)));
+}
+
+/// Released from rest at `start` from its lowest place, hung 0.9 m from its centre.
+struct Swing {
+  double period = 0.0;
+  double residual = 0.0; ///< largest, over m g times the drop
+};
+Swing swing(const std::string &fidelity, double start, double time_step) {
+  constexpr double arm = 0.9;
+  constexpr int num_periods = 10;
+  // The pivot is the point (0.9, 0) of the slab; it hangs when the slab is turned by +90 degrees.
+  const double angle = 0.5 * std::numbers::pi + start;
+  const Vec2 pivot{0.0, 5.0};
+  const Vec2 centre = pivot - Rotation::of(angle)(Vec2{arm, 0.0});
+  const Setting setting =
+      elastic({.duration = 25.0, .time_step = time_step, .normal_stiffness = 1e8}, fidelity);
+  Simulation simulation(Communicator::self(),
+                        scene_of(head(setting) + floor_toml() +
+                                 block_toml("pendulum", placed(slab_corners, angle, centre),
+                                            fmt::format("fixed_points = [[{}, {}]]", pivot.x, pivot.y))));
+  EnergyLedger ledger(simulation);
+  Swing result;
+  double first = 0.0;
+  double last = 0.0;
+  int crossings = 0;
+  double before = start;
+  while (!simulation.finished() && crossings <= num_periods) {
+    simulation.step();
+    const double now = start + displacement_of(simulation, 1).r;
+    if (before > 0.0 && now <= 0.0) {
+      last = simulation.time() - time_step * now / (now - before);
+      first = crossings++ == 0 ? last : first;
+    }
+    before = now;
+    if (simulation.step_count() % 50 == 0) {
+      result.residual = std::max(result.residual, std::abs(ledger.row(simulation).residual));
+    }
+  }
+  EXPECT_EQ(crossings, num_periods + 1);
+  result.period = (last - first) / num_periods;
+  result.residual /= slab_weight * arm * (1.0 - std::cos(start));
+  return result;
+}
+
+// [std] physical pendulum with the first terms of its amplitude; the next one is 2e-9 at 0.1 rad. The springs
+// stretch by w/(100 k_n L) = 4e-6 m of 0.9 m; of the deformable slab the stretch under its weight, rho g L/E
+// = 5e-5, shifts the centroid.
+TEST(FixedPoints, OneMakesAPendulum) {
+  constexpr double start = 0.1;
+  const double length = 0.9 + (4.0 + 1.0) / 12.0 / 0.9; // arm + I/(m arm)
+  const double exact = 2.0 * std::numbers::pi * std::sqrt(length / earth_gravity) *
+                       (1.0 + start * start / 16.0 + 11.0 * std::pow(start, 4) / 3072.0);
+  const Swing rigid = swing("rigid", start, 1e-3);
+  expect_value("rigid pendulum: period, s", exact, rigid.period, 1e-5);
+  expect_below("rigid pendulum: residual over m g drop", 1e-2, rigid.residual);
+  const Swing soft = swing("deformable", start, 1e-3);
+  expect_value("deformable pendulum: period, s", exact, soft.period, 6e-5);
+  expect_below("deformable pendulum: residual over m g drop", 1e-2, soft.residual);
+}
+
+/// Three unit squares on a floor, the middle one deformable.
+std::string stack_toml(double local_damping, const std::string &more) {
+  Setting setting =
+      elastic({.duration = 20.0, .time_step = 5e-4, .normal_stiffness = 1e8, .damping = 0.05}, "rigid");
+  setting.run_keys = fmt::format("local_damping = {}\n", local_damping) + more;
+  return head(setting) + floor_toml() + block_toml("b0", rectangle({0.0, 0.0}, {1.0, 1.0})) +
+         block_toml("b1", rectangle({0.0, 1.0}, {1.0, 2.0}), "fidelity = \"deformable\"") +
+         block_toml("b2", rectangle({0.0, 2.0}, {1.0, 3.0}));
+}
+
+// At rest nothing is kinetic, so what gravity gave and springs do not hold has been lost, all of it counted.
+TEST(LocalDamping, SettlesAStackAndTellsWhatItTook) {
+  Simulation simulation(Communicator::self(), scene_of(stack_toml(0.5, "")));
+  EnergyLedger ledger(simulation);
+  run(simulation);
+  const EnergyRow row = ledger.row(simulation);
+  expect_below("settled stack: fastest, m/s", 1e-12, row.max_speed);
+  expect_below("settled stack: net force over the largest", 1e-9, row.unbalanced_ratio);
+  EXPECT_GT(row.damping_loss, 0.0);
+  expect_value("settled stack: loss is what gravity gave and springs do not hold, J/m",
+               -row.gravity - row.contact_normal - row.strain - row.contact_stick - row.friction_loss,
+               row.damping_loss, 1e-2);
+  // A dead weight let go on a linear spring loses half of the work of gravity.
+  expect_value("settled stack: loss over the work of gravity", 0.5, -row.damping_loss / row.gravity, 2e-2);
+}
+
+// Where it comes to rest is a matter of forces: the same with local damping as with dashpots alone and a slow
+// ramp. Round-off of what is left of the oscillation.
+TEST(LocalDamping, DoesNotMoveTheEquilibrium) {
+  Simulation damped(Communicator::self(), scene_of(stack_toml(0.5, "")));
+  Simulation free(
+      Communicator::self(),
+      scene_of(stack_toml(0.0, "gravity_ramp = 5.0\n"), {"run.contact_damping=0.3"}));
+  run(damped);
+  run(free);
+  for (const int block : {1, 2, 3}) {
+    expect_value(fmt::format("stack with and without local damping: sinking of block {}, m", block),
+                 displacement_of(free, block).u.y, displacement_of(damped, block).u.y, 1e-9);
+  }
+}
+
+} // namespace
+} // namespace gcpdda::testing
