@@ -13,24 +13,24 @@ struct ContactForces::RelativeVelocity {
   Mat2 gradient;
 
   RelativeVelocity(const BlockSystem &system, const CandidatePair &pair, Vec2 origin) {
-    const auto part = [&](std::size_t row) {
-      const Mat2 own = velocity_gradient(system, row);
-      return std::pair(system.velocity[row].u + own(origin - system.trial_centroid[row]), own);
-    };
-    const auto [lower, lower_gradient] = part(pair.lower.value);
-    const auto [higher, higher_gradient] = part(pair.higher.value);
-    at_origin = lower - higher;
-    gradient = lower_gradient - higher_gradient;
+    add(system, pair.lower.value, origin, 1.0);
+    add(system, pair.higher.value, origin, -1.0);
   }
   [[nodiscard]] Vec2 at(Vec2 from_origin) const { return at_origin + gradient(from_origin); }
 
 private:
-  static Mat2 velocity_gradient(const BlockSystem &system, std::size_t row) {
+  void add(const BlockSystem &system, std::size_t row, Vec2 origin, double sign) {
+    const RigidDof &v = system.velocity[row];
+    const Vec2 arm = origin - system.trial_centroid[row];
     if (system.is_deformable(row)) {
-      return system.deformation_of(row).rate * system.trial_inverse[system.deformation_begin[row]];
+      const Mat2 own = system.deformation_of(row).rate * system.trial_inverse[system.deformation_begin[row]];
+      at_origin += sign * (v.u + own(arm));
+      gradient += sign * own;
+    } else {
+      at_origin += sign * (v.u + v.r * perp(arm));
+      gradient.xy -= sign * v.r;
+      gradient.yx += sign * v.r;
     }
-    const double spin = system.velocity[row].r;
-    return {0.0, -spin, spin, 0.0};
   }
 };
 
@@ -142,41 +142,44 @@ double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
   return is_lower ? -dot(normal, piece.normal) : dot(normal, piece.normal);
 }
 
-/// Share of the facing pieces' pressure along n_r that the resultant keeps: what the dashpot may take away.
-double releasable_share(const Overlap &overlap, const Region &region, Vec2 normal, double resultant) {
-  double facing_pressure = 0.0;
-  for (std::uint32_t i = region.begin; i < region.end; ++i) {
-    const Piece &piece = overlap.pieces()[i];
-    const double facing = std::max(0.0, facing_of(piece, i < region.middle, normal));
-    facing_pressure += facing * 0.5 * piece.length * (piece.depth_begin + piece.depth_end);
-  }
-  return std::min(1.0, resultant / facing_pressure);
-}
-
 } // namespace
 
 void ContactForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
-                                       const Region &region, RegionForce &force) const {
+                                       const Region &region, RegionForce &force) {
   const Vec2 n = force.normal;
-  const double share = releasable_share(overlap_, region, n, force.normal_force / pair.half_stiffness);
+  // Closing speed (v_own - v_other).u at an offset from the origin, the same for both blocks' pieces.
+  const double closing_at_origin = -dot(velocity.at_origin, n);
+  const Vec2 closing_gradient = -transposed(velocity.gradient)(n);
+  const std::span<const Piece> pieces = overlap_.pieces();
+
+  // Share of the facing pieces' pressure along n_r that the resultant keeps: what may be taken away.
+  facing_.resize(pieces.size());
+  double facing_pressure = 0.0;
+  for (std::uint32_t i = region.begin; i < region.end; ++i) {
+    const Piece &piece = pieces[i];
+    facing_[i] = std::max(0.0, facing_of(piece, i < region.middle, n));
+    facing_pressure += facing_[i] * 0.5 * piece.length * (piece.depth_begin + piece.depth_end);
+  }
+  const double share = std::min(1.0, force.normal_force / pair.half_stiffness / facing_pressure);
+
   double total = 0.0;
   Vec2 moment;
   for (std::uint32_t i = region.begin; i < region.end; ++i) {
-    const Piece &piece = overlap_.pieces()[i];
-    const double facing = facing_of(piece, i < region.middle, n);
-    if (facing <= 0.0) {
+    const Piece &piece = pieces[i];
+    if (facing_[i] <= 0.0) {
       continue;
     }
-    // (v_own - v_other).u is the closing speed for both blocks' pieces.
     const Vec2 begin = piece.begin - force.origin;
-    const double rate = pair.damping * facing;
-    const double releasable = share * facing * pair.half_stiffness;
+    const Vec2 tangent = perp(piece.normal);
+    const double rate = pair.damping * facing_[i];
+    const double releasable = share * facing_[i] * pair.half_stiffness;
+    const double closing = closing_at_origin + dot(closing_gradient, begin);
+    const double closing_end = closing + piece.length * dot(closing_gradient, tangent);
     const std::array<double, 2> depth = overlap_.depth_floor(piece);
     const TractionIntegral q = integrate_without_tension(
-        piece.length, releasable * depth[0], releasable * depth[1], -rate * dot(velocity.at(begin), n),
-        -rate * dot(velocity.at(piece.end() - force.origin), n));
+        piece.length, releasable * depth[0], releasable * depth[1], rate * closing, rate * closing_end);
     total += q.total;
-    moment += q.total * begin + q.along * perp(piece.normal);
+    moment += q.total * begin + q.along * tangent;
   }
   force.force += total * n;
   force.dyad += outer(moment, n);
@@ -228,11 +231,12 @@ bool ContactForces::measure(const CandidatePair &pair, const Region &region, Reg
   force.origin = sum.origin;
   force.force = pair.half_stiffness * sum.force;
   force.dyad = pair.half_stiffness * Mat2{sum.dyad[0], sum.dyad[1], sum.dyad[2], sum.dyad[3]};
-  force.point = sum.origin + (1.0 / sum.pressure) * sum.pressure_moment;
+  // Divided, not multiplied by the inverse: faces that just touch leave pressures whose inverse overflows.
+  force.point = sum.origin + Vec2{sum.pressure_moment.x / sum.pressure, sum.pressure_moment.y / sum.pressure};
   const double resultant = norm(sum.force);
   force.normal_force = pair.half_stiffness * resultant;
   const auto pieces = overlap_.pieces().subspan(region.begin, region.end - region.begin);
-  if (resultant < least_resultant * sum.pressure) {
+  if (resultant <= least_resultant * sum.pressure) { // of denormals both sides are 0
     force.normal_undefined = true;
     // No direction to measure along: twice the deepest point stands for the thickness.
     force.overlap = 2.0 * deepest(pieces);
@@ -276,29 +280,20 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
 
 namespace {
 
-/// Take the memory of a region out of those its pair had: the nearest between the same stretches that can be
-/// the same patch. A region of two convex blocks is always the same one.
-std::optional<RegionMemory> take_memory(std::span<RegionMemory> old, bool is_convex, const Region &region,
-                                        Vec2 position, double extent) {
-  constexpr double taken = -1.0;
+/// The memory of a region among those its pair had: the nearest between the same stretches that can be the
+/// same patch; null for a new region.
+RegionMemory *find_memory(std::span<RegionMemory> old, const Region &region, Vec2 position, double extent) {
   RegionMemory *nearest = nullptr;
   double smallest = std::numeric_limits<double>::infinity();
   for (RegionMemory &memory : old) {
     const double distance = norm(memory.position - position);
-    const bool can_be =
-        is_convex || (memory.lower_stretch == region.faces.first &&
-                      memory.higher_stretch == region.faces.second && distance <= memory.longest + extent);
-    if (memory.longest != taken && can_be && distance < smallest) {
+    if (memory.lower_stretch == region.faces.first && memory.higher_stretch == region.faces.second &&
+        distance <= memory.longest + extent && distance < smallest) {
       smallest = distance;
       nearest = &memory;
     }
   }
-  if (nearest == nullptr) {
-    return std::nullopt;
-  }
-  const RegionMemory found = *nearest;
-  nearest->longest = taken;
-  return found;
+  return nearest;
 }
 
 } // namespace
@@ -311,32 +306,45 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &c
     return;
   }
   for (const Region &region : overlap_.regions()) {
-    RegionForce force;
+    RegionForce &force = forces_.emplace_back();
     if (!measure(pair, region, force)) {
+      forces_.pop_back();
       continue;
     }
     force.pair = number;
-    const Vec2 position = pair.is_convex ? Vec2{} : reference_point(system, pair.lower.value, force.point);
-    const auto known =
-        take_memory(old, pair.is_convex, region, position, force.extent_end - force.extent_begin);
-    force.born = !known;
-    RegionMemory memory = known.value_or(RegionMemory{});
-    memory.position = position;
-    memory.lower_stretch = region.faces.first;
-    memory.higher_stretch = region.faces.second;
+    RegionMemory &memory = next_.regions.emplace_back();
+    if (pair.is_convex) {
+      force.born = old.empty();
+      memory = force.born ? memory : old.front();
+    } else {
+      recall(system, pair, region, old, memory, force);
+    }
     if (force.normal_undefined) {
       memory.shear = 0.0;
       memory.state = ContactState::slip;
-    } else {
-      const RelativeVelocity velocity(system, pair, force.origin);
-      add_friction(system, pair, velocity, memory, force);
-      if (pair.damping > 0.0) {
-        add_normal_dashpot(pair, velocity, region, force);
-      }
+      continue;
     }
-    forces_.push_back(force);
-    next_.regions.push_back(memory);
+    const RelativeVelocity velocity(system, pair, force.origin);
+    add_friction(system, pair, velocity, memory, force);
+    if (pair.damping > 0.0) {
+      add_normal_dashpot(pair, velocity, region, force);
+    }
   }
+}
+
+// Which of the pair's old regions goes on in this one.
+void ContactForces::recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
+                           std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const {
+  const Vec2 position = reference_point(system, pair.lower.value, force.point);
+  RegionMemory *known = find_memory(old, region, position, force.extent_end - force.extent_begin);
+  force.born = known == nullptr;
+  if (known != nullptr) {
+    memory = *known;
+    known->longest = -std::numeric_limits<double>::infinity(); // out of reach for the next region
+  }
+  memory.position = position;
+  memory.lower_stretch = region.faces.first;
+  memory.higher_stretch = region.faces.second;
 }
 
 ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates &candidates,

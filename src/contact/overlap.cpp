@@ -24,7 +24,8 @@ struct Inside {
 
 /// Where all lines alpha + beta s are positive on [0, length]; an empty stretch has begin >= end. Most lines
 /// cut nothing off, which their values at the ends tell without a division.
-Inside positive_stretch(std::span<const double> alpha, std::span<const double> beta, double length) {
+[[gnu::always_inline]] inline Inside positive_stretch(std::span<const double> alpha,
+                                                      std::span<const double> beta, double length) {
   Inside in{0.0, length, none, false};
   for (std::size_t j = 0; j < alpha.size(); ++j) {
     if (beta[j] > 0.0) {
@@ -126,10 +127,21 @@ std::span<const Vec2> field_normals(const BlockView &block) {
 bool Overlap::keep_lines(const BlockView &own, const BlockView &other) {
   const std::span<const Vec2> vertex = field_vertices(other);
   const std::span<const Vec2> normal = field_normals(other);
-  lines_.clear();
+  if (lines_.size() < vertex.size()) {
+    lines_.resize(vertex.size());
+    alpha_.resize(vertex.size());
+    beta_.resize(vertex.size());
+  }
+  num_lines_ = 0;
+  const auto keep = [&](std::size_t j) {
+    Line &line = lines_[num_lines_++];
+    line.normal = normal[j];
+    line.vertex = vertex[j];
+    line.face = static_cast<std::int32_t>(j);
+  };
   if (other.frame) {
     for (std::size_t j = 0; j < vertex.size(); ++j) {
-      lines_.push_back({normal[j], vertex[j], static_cast<std::int32_t>(j)});
+      keep(j);
     }
     return true;
   }
@@ -138,7 +150,6 @@ bool Overlap::keep_lines(const BlockView &own, const BlockView &other) {
   const Vec2 centre = 0.5 * (low + high);
   const Vec2 half = 0.5 * (high - low);
   double smallest_high = std::numeric_limits<double>::infinity();
-  alpha_.resize(vertex.size());
   for (std::size_t j = 0; j < vertex.size(); ++j) {
     const double middle = dot(normal[j], vertex[j] - centre);
     const double spread = std::abs(normal[j].x) * half.x + std::abs(normal[j].y) * half.y;
@@ -147,31 +158,38 @@ bool Overlap::keep_lines(const BlockView &own, const BlockView &other) {
   }
   for (std::size_t j = 0; j < vertex.size(); ++j) {
     if (alpha_[j] <= smallest_high) {
-      lines_.push_back({normal[j], vertex[j], static_cast<std::int32_t>(j)});
+      keep(j);
     }
   }
   return smallest_high > 0.0;
 }
 
+template <bool deformed>
 void Overlap::clip_edges(const BlockView &own, const BlockView &other, PotentialKind potential) {
   if (!keep_lines(own, other)) {
     return;
   }
-  const std::size_t num_lines = lines_.size();
-  alpha_.resize(num_lines);
-  beta_.resize(num_lines);
+  const std::size_t num_lines = num_lines_;
+  const std::span<const double> alpha(alpha_.data(), num_lines);
+  const std::span<const double> beta(beta_.data(), num_lines);
   for (std::size_t e = 0; e < own.vertex.size(); ++e) {
     if (!edge_meets(own.vertex[e], end_of_edge(own, e), other.box)) {
       continue;
     }
-    const EdgeInField in_field(own, e, other);
-    Vec2 a = in_field.edge.begin;
-    const Vec2 tangent = in_field.edge.tangent;
+    FieldEdge edge{own.vertex[e], end_of_edge(own, e), perp(own.normal[e]), own.length[e]};
+    double stretch = 1.0;
+    if constexpr (deformed) {
+      const EdgeInField in_field(own, e, other);
+      edge = in_field.edge;
+      stretch = in_field.stretch;
+    }
+    Vec2 a = edge.begin;
+    const Vec2 tangent = edge.tangent;
     for (std::size_t j = 0; j < num_lines; ++j) {
       alpha_[j] = dot(lines_[j].normal, lines_[j].vertex - a);
       beta_[j] = -dot(lines_[j].normal, tangent);
     }
-    Inside in = positive_stretch(alpha_, beta_, in_field.edge.length);
+    Inside in = positive_stretch(alpha, beta, edge.length);
     double anchor = 0.0;
     if (in.begin < in.end && in.entry != none) {
       // Measured from near the entry, the rest of a long edge costs no digits of the stretch inside.
@@ -181,14 +199,13 @@ void Overlap::clip_edges(const BlockView &own, const BlockView &other, Potential
         alpha_[j] = dot(lines_[j].normal, lines_[j].vertex - a);
       }
       const double rounding = 16.0 * std::numeric_limits<double>::epsilon() *
-                              (in_field.edge.length + std::max(std::abs(a.x), std::abs(a.y)));
-      in = near_entry(alpha_, beta_, in, dot(in_field.edge.end - a, tangent), rounding);
+                              (edge.length + std::max(std::abs(a.x), std::abs(a.y)));
+      in = near_entry(alpha, beta, in, dot(edge.end - a, tangent), rounding);
     }
-    if (in.begin >= in.end ||
-        (!other.frame && !other.box.holds(a + (0.5 * (in.begin + in.end)) * tangent))) {
+    if (in.begin >= in.end || (!deformed && !other.box.holds(a + (0.5 * (in.begin + in.end)) * tangent))) {
       continue;
     }
-    const std::size_t line = in.entry != none ? in.entry : lowest_at_start(alpha_, beta_);
+    const std::size_t line = in.entry != none ? in.entry : lowest_at_start(alpha, beta);
     const Piece start{a + in.begin * tangent,
                       own.normal[e],
                       0.0,
@@ -203,10 +220,9 @@ void Overlap::clip_edges(const BlockView &own, const BlockView &other, Potential
     } else {
       walk_envelope(start, line, in.begin, in.end);
     }
-    if (other.frame) {
-      const double begin = (anchor + in.begin) / in_field.stretch;
-      to_world(first_piece, own.vertex[e] + begin * perp(own.normal[e]), in_field.stretch,
-               field_scale(other));
+    if constexpr (deformed) {
+      const double begin = (anchor + in.begin) / stretch;
+      to_world(first_piece, own.vertex[e] + begin * perp(own.normal[e]), stretch, field_scale(other));
     }
   }
 }
@@ -256,7 +272,7 @@ void Overlap::trace_edges(const BlockView &own, const BlockView &other, Potentia
 
 Piece Overlap::chord(Piece piece, double s_begin, double s_end, bool leaves) const {
   double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t j = 0; j < alpha_.size(); ++j) {
+  for (std::size_t j = 0; j < num_lines_; ++j) {
     lowest = std::min(lowest, alpha_[j] + beta_[j] * s_end);
   }
   piece.length = s_end - s_begin;
@@ -269,7 +285,7 @@ void Overlap::walk_envelope(Piece piece, std::size_t line, double s, double s_en
     std::size_t next = none;
     double s_next = s_end;
     double lowest = alpha_[line] + beta_[line] * s_next;
-    for (std::size_t j = 0; j < alpha_.size(); ++j) {
+    for (std::size_t j = 0; j < num_lines_; ++j) {
       // A line of smaller slope that is lower at s_next crosses before it.
       if (beta_[j] < beta_[line] && alpha_[j] + beta_[j] * s_next < lowest) {
         // The clamp is for collinear edges, whose lines cross anywhere in rounding.
@@ -298,7 +314,13 @@ bool Overlap::find(const BlockView &first, const BlockView &second, PotentialKin
   curves_.clear();
   regions_.clear();
   const auto add_edges = [&](const BlockView &own, const BlockView &other) {
-    other.is_convex ? clip_edges(own, other, potential) : trace_edges(own, other, potential);
+    if (!other.is_convex) {
+      trace_edges(own, other, potential);
+    } else if (other.frame) {
+      clip_edges<true>(own, other, potential);
+    } else {
+      clip_edges<false>(own, other, potential);
+    }
   };
   add_edges(first, second);
   const std::size_t num_first = pieces_.size();
@@ -341,10 +363,7 @@ RegionIntegrals Overlap::integrate(const Region &region) const {
   return sum;
 }
 
-std::array<double, 2> Overlap::depth_floor(const Piece &piece) const {
-  if (piece.curve < 0) {
-    return {piece.depth_begin, piece.depth_end};
-  }
+std::array<double, 2> Overlap::curve_floor(const Piece &piece) const {
   // The tangent in the middle of a convex curve. It is nowhere negative, because the foot is not inside.
   const DepthCurve &curve = curves_[static_cast<std::size_t>(piece.curve)];
   const double g = 0.5 * piece.length - curve.foot;

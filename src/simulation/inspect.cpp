@@ -156,6 +156,8 @@ private:
     if (f.num_deformable > 0) {
       text += fmt::format("; of the deformable ones {:.3g} at most", f.worst_deformable);
     }
+    text += f.num_asked > 0 ? fmt::format("; {} as the scene asks, the others by that share", f.num_asked)
+                            : "; all by that share";
     return line("fidelity", text);
   }
 

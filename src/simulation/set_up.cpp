@@ -151,8 +151,9 @@ void Simulation::place_monitors(std::span<const SceneBlock> slab) {
       }
     }
     communicator_.max(std::span(&minus_id, 1));
-    monitor.block = -minus_id;
-    if (minus_id == std::numeric_limits<std::int64_t>::min()) {
+    if (minus_id > std::numeric_limits<std::int64_t>::min()) {
+      monitor.block = -minus_id;
+    } else {
       notes_.push_back({Severity::error, monitor.where,
                         fmt::format("no block holds the point ({}, {}) of monitor '{}'", monitor.point.x,
                                     monitor.point.y, monitor.name),
@@ -198,6 +199,8 @@ void Simulation::take_blocks(std::span<const SceneBlock> slab) {
     const FidelityChoice choice =
         choose_fidelity(block, signed_area(block.vertices), material,
                         stiffness_bound(scene_.joints, block.material).normal, scene_.run);
+    const bool asked = block.fidelity != Fidelity::automatic || scene_.run.fidelity != Fidelity::automatic;
+    fidelity_.num_asked += asked && !block.fixed ? 1 : 0;
     fidelity_.num_rigid += choice.kind == BlockKind::rigid ? 1 : 0;
     fidelity_.num_deformable += choice.kind == BlockKind::deformable ? 1 : 0;
     double &worst = choice.kind == BlockKind::deformable ? fidelity_.worst_deformable : fidelity_.worst_rigid;
@@ -207,6 +210,7 @@ void Simulation::take_blocks(std::span<const SceneBlock> slab) {
     append_block(block.fixed ? fixed : blocks_, BlockId{first + static_cast<std::int64_t>(k)}, block,
                  material, choice.kind, scene_.run.plane_strain);
   }
+  fidelity_.num_asked = agreed_sum(communicator_, fidelity_.num_asked);
   fidelity_.num_rigid = agreed_sum(communicator_, fidelity_.num_rigid);
   fidelity_.num_deformable = agreed_sum(communicator_, fidelity_.num_deformable);
   fidelity_.worst_rigid = agreed_max(communicator_, fidelity_.worst_rigid);

@@ -38,7 +38,9 @@ Input split(std::string_view bytes) {
   const std::size_t at = bytes.find(separator);
   Input input{std::string(bytes.substr(0, at)), {}};
   if (at != std::string_view::npos) {
-    for (const std::string_view line : lines_of(bytes.substr(at + separator.size()))) {
+    std::string_view sets = bytes.substr(at + separator.size());
+    sets.remove_suffix(sets.ends_with('\n') ? 1 : 0);
+    for (const std::string_view line : lines_of(sets)) {
       input.sets.emplace_back(line);
     }
   }

@@ -108,6 +108,22 @@ TEST(Friction, NoIncrementInTheStepOfBirth) {
   EXPECT_GT(std::abs(bench.move(0, {{1e-4, 0.0}, 0.0}).shear), 0.0);
 }
 
+// Tips that touch by a rounding error have pressures down to the denormals, d^2 and less; a sixth of d^3 is
+// below them, and its inverse above all numbers.
+TEST(Contact, OfDenormalPressureIsFinite) {
+  for (const double depth_of_tip : {1e-100, 1e-154, 1e-160, 1e-162}) {
+    ContactBench bench(system_of({{{0.0, 0.0}, {1.0, 1.0}, {0.0, 2.0}, {-1.0, 1.0}}},
+                                 {rectangle({-20.0, -5.0}, {20.0, depth_of_tip})}),
+                       one_law(stiffness, 0.5), 0.3);
+    bench.evaluate();
+    const BlockContactSum sum = sum_contacts(bench.system, bench.candidates, bench.forces, 0);
+    for (const RigidDof &force : {sum.force, sum.shear, sum.damping}) {
+      EXPECT_TRUE(std::isfinite(force.u.x) && std::isfinite(force.u.y) && std::isfinite(force.r))
+          << depth_of_tip;
+    }
+  }
+}
+
 TEST(Friction, MemoryDiesWithTheRegion) {
   // Apart by boxes that do not meet, and by a tilted block whose box still meets the other one's.
   for (const bool boxes_meet : {false, true}) {

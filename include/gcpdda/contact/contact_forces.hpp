@@ -123,12 +123,14 @@ private:
 
   void evaluate_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                      std::span<RegionMemory> old);
+  void recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
+              std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const;
   /// Normal force, direction and size of a region; false if it carries nothing.
   bool measure(const CandidatePair &pair, const Region &region, RegionForce &force) const;
   void add_friction(const BlockSystem &system, const CandidatePair &pair, const RelativeVelocity &velocity,
                     RegionMemory &memory, RegionForce &force);
   void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity, const Region &region,
-                          RegionForce &force) const;
+                          RegionForce &force);
   void add_shear(RegionForce &force, double elastic, double viscous) const;
 
   ContactParameters parameters_;
@@ -137,6 +139,7 @@ private:
   std::vector<std::uint32_t> begin_{0};
   ContactHistory next_;
   std::vector<TrialIncrement> increments_;
+  std::vector<double> facing_; ///< of the pieces at hand, scratch
 };
 
 /// Sums of one block's contacts, in the order of the other blocks' ids.

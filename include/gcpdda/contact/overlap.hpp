@@ -128,10 +128,15 @@ public:
   [[nodiscard]] RegionIntegrals integrate(const Region &region) const;
   /// A linear function nowhere above the piece's depth, by its end values; the depth itself where that is
   /// linear.
-  [[nodiscard]] std::array<double, 2> depth_floor(const Piece &piece) const;
+  [[nodiscard]] std::array<double, 2> depth_floor(const Piece &piece) const {
+    return piece.curve < 0 ? std::array{piece.depth_begin, piece.depth_end} : curve_floor(piece);
+  }
 
 private:
   /// The pieces of one block's edges inside the other, which is convex.
+  [[nodiscard]] std::array<double, 2> curve_floor(const Piece &piece) const;
+  /// @tparam deformed  the other block has a frame
+  template <bool deformed>
   void clip_edges(const BlockView &own, const BlockView &other, PotentialKind potential);
   /// Those inside a block with re-entrant vertices.
   void trace_edges(const BlockView &own, const BlockView &other, PotentialKind potential);
@@ -151,10 +156,12 @@ private:
     Vec2 vertex;
     std::int32_t face = 0;
   };
-  /// Fill lines_; false if the blocks cannot overlap.
+  /// Fill the first num_lines_ of lines_; false if the blocks cannot overlap.
   bool keep_lines(const BlockView &own, const BlockView &other);
 
+  // Scratch, as long as the largest block so far.
   std::vector<Line> lines_;
+  std::size_t num_lines_ = 0;
   std::vector<double> alpha_;
   std::vector<double> beta_;
 };

@@ -57,6 +57,7 @@ struct StepBound {
 struct FidelityReport {
   std::int64_t num_rigid = 0;
   std::int64_t num_deformable = 0;
+  std::int64_t num_asked = 0;    ///< of both, where the scene says the kind
   double worst_rigid = 0.0;      ///< largest share of compliance a rigid block leaves out
   double worst_deformable = 0.0; ///< what the deformable ones would leave out at most
 };
