@@ -125,7 +125,7 @@ void expect_exact(const Shape &own, const Shape &other, const std::string &what)
 TEST(DistanceField, AgreesWithTheDistanceToEveryEdge) {
   std::mt19937 engine(21);
   int curves = 0;
-  for (int trial = 0; trial < 1500; ++trial) {
+  for (int trial = 0; trial < 1500 / thinning; ++trial) {
     const Shape field = shape_of(
         star_polygon(engine, 4 + static_cast<int>(engine() % 12), uniform(engine, 0.1, 0.9), 1.0, {}));
     const Vec2 centre{uniform(engine, -1.0, 1.0), uniform(engine, -1.0, 1.0)};
@@ -134,7 +134,7 @@ TEST(DistanceField, AgreesWithTheDistanceToEveryEdge) {
     curves += errors_of(own, field, 0).curves;
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(curves, 1000) << "parts nearest to a re-entrant vertex";
+  EXPECT_GT(curves, 1000 / thinning) << "parts nearest to a re-entrant vertex";
 }
 
 // Lattice shapes: vertices on vertices, vertices on edges, coincident and collinear edges, edges through
@@ -154,8 +154,8 @@ TEST(DistanceField, AgreesInDegeneratePositions) {
       {{0, 0}, {0.5, 0}, {1, 0}, {1, 0.25}, {1, 1}, {0.5, 0.5}, {0, 1}}};
   for (std::size_t f = 0; f < fields.size(); ++f) {
     for (std::size_t o = 0; o < owns.size(); ++o) {
-      for (int ix = -4; ix <= 8; ++ix) {
-        for (int iy = -4; iy <= 6; ++iy) {
+      for (int ix = -4; ix <= 8; ix += thinning > 1 ? 3 : 1) {
+        for (int iy = -4; iy <= 6; iy += thinning > 1 ? 3 : 1) {
           for (const double turn : {0.0, 90.0, 45.0, 180.0}) {
             const std::vector<Vec2> own = placed(owns[o], turn * degree, {0.5 * ix, 0.5 * iy});
             const std::string what = std::to_string(f) + " " + std::to_string(o) + " at " +
@@ -225,7 +225,7 @@ RegionIntegrals by_quadrature(const Shape &first, const Shape &second, Vec2 orig
 TEST(DistanceField, IntegralsAgreeWithFineQuadrature) {
   std::mt19937 engine(23);
   int touching = 0;
-  for (int trial = 0; trial < 200; ++trial) {
+  for (int trial = 0; trial < 200 / thinning; ++trial) {
     const Shape a = shape_of(star_polygon(engine, 10, 0.4, 1.0, {}));
     const Shape b = shape_of(star_polygon(engine, 9, 0.3, 1.0, {uniform(engine, 0.3, 1.5), 0.2}));
     const RegionIntegrals exact = contact_of(a, b);
@@ -239,13 +239,13 @@ TEST(DistanceField, IntegralsAgreeWithFineQuadrature) {
       ASSERT_NEAR(exact.dyad[i], fine.dyad[i], 1e-13) << trial;
     }
   }
-  EXPECT_GT(touching, 150);
+  EXPECT_GT(touching, 150 / thinning);
 }
 
 // A convex block walked by the general algorithm gives what the lower envelope gives.
 TEST(DistanceField, OfAConvexBlockIsItsLowerEnvelope) {
   std::mt19937 engine(24);
-  for (int trial = 0; trial < 1000; ++trial) {
+  for (int trial = 0; trial < 1000 / thinning; ++trial) {
     const Shape a = shape_of(random_polygon(static_cast<unsigned>(engine()), 6, 1.0, {}));
     const Shape b =
         shape_of(random_polygon(static_cast<unsigned>(engine()), 5, 1.0, {uniform(engine, 0.2, 1.9), 0.1}));

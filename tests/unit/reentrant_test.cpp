@@ -63,7 +63,7 @@ TEST(Reentrant, ForceIsTheSlopeOfTheEnergy) {
   for (const Case &c : cases) {
     int touching = 0;
     double largest = 0.0;
-    for (int trial = 0; trial < 150; ++trial) {
+    for (int trial = 0; trial < 150 / thinning; ++trial) {
       const double angle = uniform(engine, 0.0, 6.0);
       const DeformedShape a = random_block(engine, {}, c.first_rigid ? 0.0 : 0.1, c.first_convex);
       const DeformedShape b =
@@ -96,7 +96,7 @@ TEST(Reentrant, ForceIsTheSlopeOfTheEnergy) {
       }
     }
     EXPECT_LE(largest, 1e-8) << c.name;
-    EXPECT_GT(touching, 60) << c.name;
+    EXPECT_GT(touching, 60 / thinning) << c.name;
   }
 }
 
@@ -184,8 +184,10 @@ TEST(Reentrant, ClosedPathDoesNoNetWork) {
                                       {-0.2, -0.2}});
   const Shape corner = shape_of({{0.0, 0.0}, {3.0, 0.0}, {3.0, 1.0}, {1.1, 1.0}, {0.9, 3.0}, {0.0, 3.0}});
   for (const Vec2 start : {Vec2{1.3, 1.9}, {1.9, 1.8}, {1.75, 1.1}}) {
-    const PathWork coarse = work_on_closed_path(cross_shape, corner.view(), start, 0.0, Field::exact, 2000);
-    const PathWork fine = work_on_closed_path(cross_shape, corner.view(), start, 0.0, Field::exact, 20000);
+    const PathWork coarse =
+        work_on_closed_path(cross_shape, corner.view(), start, 0.0, Field::exact, 2000 / thinning);
+    const PathWork fine =
+        work_on_closed_path(cross_shape, corner.view(), start, 0.0, Field::exact, 20000 / thinning);
     EXPECT_LE(fine.share(), 1e-6);
     EXPECT_LE(std::abs(fine.net), 0.05 * std::abs(coarse.net) + 1e-12) << "the rest is truncation";
   }
@@ -203,9 +205,9 @@ TEST(Reentrant, ClosedPathOfADeformingBlockDoesNoNetWork) {
     const auto share = [&](Field field, int steps) {
       return work_on_closed_path(*moving, still->view(), {0.0, 0.40}, 0.03, field, steps).share();
     };
-    EXPECT_LE(share(Field::exact, 20000), 1e-6);
-    EXPECT_GE(share(Field::of_current_distance, 2000), 3e-3);
-    EXPECT_GE(share(Field::of_current_distance, 20000), 3e-3) << "it is no truncation";
+    EXPECT_LE(share(Field::exact, 20000 / thinning), 1e-6);
+    EXPECT_GE(share(Field::of_current_distance, 2000 / thinning), 3e-3);
+    EXPECT_GE(share(Field::of_current_distance, 20000 / thinning), 3e-3) << "it is no truncation";
   }
 }
 
