@@ -1,20 +1,15 @@
 #!/usr/bin/env bash
-# All tests: installs what is missing, builds Release and runs CTest, which gets the arguments (-L parallel, -R ...).
-# With --thorough as the only argument also the unit tests under the sanitizers and the fuzz targets for a short while.
+# All tests: installs what is missing, builds Release and runs CTest, then the unit tests under the sanitizers and the
+# fuzz targets for a short while. Arguments go to CTest and mean just that: tests/run.sh -L parallel, -R ...
 set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 source "$here/../run/set_up.sh"
 
-thorough=
-if [ "${1:-}" = --thorough ]; then
-  thorough=tests
-  shift
-fi
-install_packages $thorough
+install_packages tests
 build_targets all
-[ $# -gt 0 ] || set -- -LE paraview # drawing needs a display server: tests/run.sh -L paraview
-ctest --test-dir "$build" --output-on-failure "$@"
-if [ -n "$thorough" ]; then
-  "$here/sanitizers/run.sh" unit
-  "$here/fuzz/run.sh" 20
+if [ $# -gt 0 ]; then
+  exec ctest --test-dir "$build" --output-on-failure "$@"
 fi
+ctest --test-dir "$build" --output-on-failure -j 2 -LE paraview # drawing needs a display server
+"$here/sanitizers/run.sh" unit
+"$here/fuzz/run.sh" 20

@@ -182,7 +182,8 @@ double FieldEnergy::within_domains(const Polygon &cell, const Features &features
   auto &list = is_line ? without.lines : without.vertices;
   list.erase(std::find(list.begin(), list.end(), feature));
   for (const auto &[point, inwards] : bounds) {
-    auto [kept, outside] = halves(inside, [&](Vec2 x) { return dot(inwards, x - point); });
+    auto [kept, outside] =
+        halves(inside, [&, point = point, inwards = inwards](Vec2 x) { return dot(inwards, x - point); });
     sum += within_domains(outside, without, next);
     inside = std::move(kept);
     if (inside.size() < 3) {

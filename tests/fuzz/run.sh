@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # run.sh [SECONDS [TARGET ...]]: builds the fuzz targets with clang and feeds each of them changed inputs for so many
-# seconds (20 by default). What makes new ways through the program is kept in build-fuzz/corpus and is where the next
-# run starts; an input that breaks something in build-fuzz/findings.
+# seconds (20 by default), all at once. What makes new ways through the program is kept in build-sanitize/corpus and is where the next
+# run starts; an input that breaks something in build-sanitize/findings.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/../../run/set_up.sh"
@@ -9,8 +9,8 @@ source "$here/../../run/set_up.sh"
 seconds=${1:-20}
 targets=("${@:2}")
 [ ${#targets[@]} -gt 0 ] || targets=(scene_fuzz block_file_fuzz)
-preset=fuzz
-build=$top/build-fuzz
+preset=sanitize
+build=$top/build-sanitize
 build_targets "${targets[@]}"
 
 TMPDIR=$(mktemp -d)
@@ -21,17 +21,24 @@ declare -A options=(
   [scene_fuzz]="-max_len=10000 -dict=$here/scene.dict $here/corpus/scene $top/run/scenes"
   [block_file_fuzz]="-max_len=300 -len_control=0"
 )
-for target in "${targets[@]}"; do
-  echo "== $target, $seconds s =="
-  corpus=$build/corpus/$target
-  log=$build/$target.log
+fuzz() {
+  local target=$1 corpus=$build/corpus/$1 log=$build/$1.log
   mkdir -p "$corpus"
   # shellcheck disable=SC2086
   if ! "$build/$target" "$corpus" ${options[$target]} -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
     -malloc_limit_mb=256 -artifact_prefix="$build/findings/$target-" >"$log" 2>&1; then
     grep -av '^#' "$log" | tail -n 60
     echo "$target found something: $build/$target FILE runs the input again (FILE: see 'Test unit written to')"
-    exit 1
+    return 1
   fi
-  tail -n 1 "$log"
+  echo "$target: $(tail -n 1 "$log")"
+}
+echo "== fuzzing ${targets[*]}, $seconds s =="
+jobs=()
+for target in "${targets[@]}"; do
+  fuzz "$target" &
+  jobs+=($!)
+done
+for job in "${jobs[@]}"; do
+  wait "$job"
 done

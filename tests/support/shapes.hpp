@@ -15,13 +15,8 @@
 
 namespace gcpdda::testing {
 
-/// Of many like trials one in so many is made under the address sanitizer, where each is a hundred times
-/// slower.
-#ifdef __SANITIZE_ADDRESS__
-inline constexpr int thinning = 10;
-#else
-inline constexpr int thinning = 1;
-#endif
+/// Of many like trials one in so many is made: all but under the sanitizers.
+inline constexpr int thinning = GCPDDA_THINNING;
 
 /// The standard distributions differ between libraries; the engine does not.
 inline double uniform(std::mt19937 &engine, double low, double high) {

@@ -134,12 +134,12 @@ double error_in_epsilon(const Shape &first, const Shape &second) {
 TEST(Overlap, AgreesWithCuttingEdgesAtAllCrossings) {
   std::mt19937 engine(1);
   int touching = 0;
-  for (int trial = 0; trial < 3000; ++trial) {
+  for (int trial = 0; trial < 3000 / thinning; ++trial) {
     const auto [a, b] = random_pair(engine);
     touching += contact_of(a, b).pressure > 0.0 ? 1 : 0;
     ASSERT_LE(error_in_epsilon(a, b), 100.0) << "trial " << trial;
   }
-  EXPECT_GT(touching, 1500);
+  EXPECT_GT(touching, 1500 / thinning);
 }
 
 // Regular polygons in symmetric position: many lines cross in one point, vertices meet vertices and edges.
@@ -302,7 +302,7 @@ TEST(Locality, CuttingEnlargingAndRenumberingChangeNoBit) {
   std::mt19937 engine(3);
   int cut = 0;
   int enlarged = 0;
-  for (int trial = 0; trial < 6000; ++trial) {
+  for (int trial = 0; trial < 6000 / thinning; ++trial) {
     const auto seed = static_cast<unsigned>(engine());
     const double angle = uniform(engine, 0.0, 2.0 * std::numbers::pi);
     const double distance = uniform(engine, 1.6, 1.95);
@@ -336,8 +336,8 @@ TEST(Locality, CuttingEnlargingAndRenumberingChangeNoBit) {
     expect_same_bits(contact_of(a, b), contact_of(a, shape_of(turned)));
     ASSERT_FALSE(HasFailure()) << "trial " << trial;
   }
-  EXPECT_GT(cut, 300);
-  EXPECT_GT(enlarged, 100);
+  EXPECT_GT(cut, 300 / thinning);
+  EXPECT_GT(enlarged, 100 / thinning);
 }
 
 } // namespace

@@ -202,7 +202,7 @@ TEST(Reentrant, ClosedPathOfADeformingBlockDoesNoNetWork) {
       shape_of({{-0.5, -0.5}, {-0.2, -0.5}, {0.05, -0.2}, {0.2, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}});
   const Shape tooth = shape_of({{-1.0, -2.0}, {1.0, -2.0}, {0.02, 0.25}});
   for (const auto &[moving, still] : {std::pair(&square, &floor), {&square, &corner}, {&notched, &tooth}}) {
-    const auto share = [&](Field field, int steps) {
+    const auto share = [moving = moving, still = still](Field field, int steps) {
       return work_on_closed_path(*moving, still->view(), {0.0, 0.40}, 0.03, field, steps).share();
     };
     EXPECT_LE(share(Field::exact, 20000 / thinning), 1e-6);
@@ -214,7 +214,7 @@ TEST(Reentrant, ClosedPathOfADeformingBlockDoesNoNetWork) {
 // A deformable block at rest in its reference is the rigid one.
 TEST(Reentrant, UndeformedFrameChangesNothing) {
   std::mt19937 engine(43);
-  for (int trial = 0; trial < 500; ++trial) {
+  for (int trial = 0; trial < 500 / thinning; ++trial) {
     const bool convex = trial % 2 == 0;
     const DeformedShape a = random_block(engine, {}, 0.0, convex);
     const DeformedShape b = random_block(engine, {uniform(engine, 0.6, 1.9), 0.2}, 0.0, !convex);
@@ -386,7 +386,7 @@ TEST(Reentrant, CuttingEnlargingAndRenumberingChangeNoBit) {
   std::mt19937 engine(44);
   int same = 0;
   int with_corner = 0;
-  for (int trial = 0; trial < 2000; ++trial) {
+  for (int trial = 0; trial < 2000 / thinning; ++trial) {
     const std::vector<Vec2> star = star_polygon(engine, 16, 0.6, 1.0, {});
     const Shape a = shape_of(star);
     const Vec2 centre{uniform(engine, 0.7, 1.1), uniform(engine, -0.2, 0.2)};
@@ -425,8 +425,8 @@ TEST(Reentrant, CuttingEnlargingAndRenumberingChangeNoBit) {
     }
     ASSERT_FALSE(HasFailure()) << trial;
   }
-  EXPECT_GT(same, 1000);
-  EXPECT_GT(with_corner, 300);
+  EXPECT_GT(same, 1000 / thinning);
+  EXPECT_GT(with_corner, 300 / thinning);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // B3 and A7: a square slides down a plane, s = a t^2/2 with a = g (sin th - tan phi cos th).
 
-#include "incline.hpp"
+#include "problem.hpp"
+#include "support/incline.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -16,55 +16,8 @@ void print(const std::string &line) {
 
 } // namespace
 
-std::string head(const Setting &s) {
-  return fmt::format(R"([run]
-duration = {:.17g}
-time_step = {}
-gravity = [{:.17g}, {:.17g}]
-fidelity = "{}"
-contact_damping = {:.17g}
-{}
-[material.rock]
-density = {:.17g}
-{}
-[joint.default]
-normal_stiffness = {:.17g}
-friction_angle_deg = {:.17g}
-[output]
-interval = {:.17g}
-)",
-                     s.duration, s.time_step > 0.0 ? fmt::format("{:.17g}", s.time_step) : "\"auto\"",
-                     s.gravity.x, s.gravity.y, s.fidelity, s.damping, s.run_keys, rock_density,
-                     s.youngs_modulus > 0.0
-                         ? fmt::format("youngs_modulus = {:.17g}\npoissons_ratio = {:.17g}", s.youngs_modulus,
-                                       s.poissons_ratio)
-                         : "",
-                     s.normal_stiffness, s.friction_deg, s.time_step > 0.0 ? s.duration : s.duration / 100.0);
-}
-
-std::size_t row_of(const Simulation &simulation, int block) {
-  const BlockSystem &blocks = simulation.blocks();
-  for (std::size_t row = 0; row < blocks.num_rows(); ++row) {
-    if (blocks.properties[row].id.value == block) {
-      return row;
-    }
-  }
-  throw std::runtime_error(fmt::format("no block {}", block));
-}
-
-const RigidDof &displacement_of(const Simulation &simulation, int block) {
-  return simulation.blocks().displacement[row_of(simulation, block)];
-}
-
-const RigidDof &velocity_of(const Simulation &simulation, int block) {
-  return simulation.blocks().velocity[row_of(simulation, block)];
-}
-
 void run_until(Simulation &simulation, double time) {
-  const double almost = time - 1e-6 * simulation.plan().time_step;
-  while (!simulation.finished() && simulation.time() < almost) {
-    simulation.step();
-  }
+  advance(simulation, time);
   ASSERT_FALSE(simulation.fault().has_value()) << "numerical fault at t = " << simulation.time();
 }
 
@@ -87,23 +40,6 @@ void expect_below(const std::string &problem, double limit, double got) {
 void expect_above(const std::string &problem, double limit, double got) {
   print(fmt::format("{}: expected >= {:.4g}, got {:.4g}", problem, limit, got));
   EXPECT_GE(got, limit) << problem;
-}
-
-double log_slope(const std::vector<double> &x, const std::vector<double> &y) {
-  double sx = 0.0;
-  double sy = 0.0;
-  double sxx = 0.0;
-  double sxy = 0.0;
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double u = std::log(x[i]);
-    const double v = std::log(y[i]);
-    sx += u;
-    sy += v;
-    sxx += u * u;
-    sxy += u * v;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 } // namespace gcpdda::testing

@@ -1,41 +1,12 @@
 #pragma once
 
-// What the verification problems share: a one-rock scene text, runs in memory, and the line each check
-// prints.
+// Runs of the verification problems, and the line each check prints.
 
-#include "gcpdda/simulation/simulation.hpp"
-#include "support/scenes.hpp"
+#include "support/setting.hpp"
 
-#include <numbers>
 #include <string>
-#include <vector>
 
 namespace gcpdda::testing {
-
-constexpr double degree = std::numbers::pi / 180.0;
-constexpr double earth_gravity = 9.81; ///< m/s2
-constexpr double rock_density = 2600.0;
-
-/// The head of a scene with one rock and one contact law.
-struct Setting {
-  double duration = 1.0;
-  double time_step = 0.0; ///< 0: automatic. Otherwise the duration is a whole number of steps
-  Vec2 gravity{0.0, -earth_gravity};
-  double normal_stiffness = 1e9;
-  double friction_deg = 0.0;
-  double damping = 0.05;
-  std::string run_keys{}; ///< more lines of [run]
-  std::string fidelity = "rigid";
-  double youngs_modulus = 0.0; ///< Pa; 0: none given
-  double poissons_ratio = 0.0;
-};
-std::string head(const Setting &setting);
-
-/// Row of a block.
-std::size_t row_of(const Simulation &simulation, int block);
-/// x_n - x_0 of a block.
-const RigidDof &displacement_of(const Simulation &simulation, int block);
-const RigidDof &velocity_of(const Simulation &simulation, int block);
 
 /// Step to a time that is a whole number of steps, or to the next step after it; a fault fails the test.
 void run_until(Simulation &simulation, double time);
@@ -48,8 +19,5 @@ void expect_value(const std::string &problem, double expected, double got, doubl
 void expect_below(const std::string &problem, double limit, double got);
 /// Prints problem and both numbers, and fails below the limit.
 void expect_above(const std::string &problem, double limit, double got);
-
-/// Slope of the least-squares line through (log x, log y).
-double log_slope(const std::vector<double> &x, const std::vector<double> &y);
 
 } // namespace gcpdda::testing

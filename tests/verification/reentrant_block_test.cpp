@@ -1,6 +1,7 @@
 // B3, B4 and A5 for blocks with re-entrant vertices, and a wedge in a re-entrant corner.
 
-#include "incline.hpp"
+#include "problem.hpp"
+#include "support/incline.hpp"
 
 #include "gcpdda/dynamics/deformable.hpp"
 

@@ -1,6 +1,7 @@
 // B4: a square that friction holds on a slope stays where it is.
 
-#include "incline.hpp"
+#include "problem.hpp"
+#include "support/incline.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

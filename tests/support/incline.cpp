@@ -1,4 +1,4 @@
-#include "incline.hpp"
+#include "support/incline.hpp"
 
 #include "gcpdda/contact/contact_forces.hpp"
 #include "gcpdda/model/block_system.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "problem.hpp"
+#include "support/setting.hpp"
 
 #include <string>
 #include <vector>

@@ -1,0 +1,7 @@
+#include "study.hpp"
+
+namespace gcpdda::study {
+
+void fidelity(const Options & /*options*/) {}
+
+} // namespace gcpdda::study

@@ -1,0 +1,7 @@
+#include "study.hpp"
+
+namespace gcpdda::study {
+
+void stability(const Options & /*options*/) {}
+
+} // namespace gcpdda::study
