@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# study.sh verify|stability|accuracy|fidelity|all [--quick]: one of the studies, or all; tables and charts go to
+# run/results/. --quick: fewer points, never fewer problems.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+source "$here/set_up.sh"
+
+studies=(verify stability accuracy fidelity)
+case "${1:-}" in
+  all) ;;
+  verify | stability | accuracy | fidelity) studies=("$1") ;;
+  *)
+    sed -n '2,3s/^# //p' "${BASH_SOURCE[0]}" >&2
+    exit 2
+    ;;
+esac
+quick=${2:-}
+[ -z "$quick" ] || [ "$quick" = --quick ] || {
+  echo "study.sh: $quick is not --quick" >&2
+  exit 2
+}
+results=$here/results/studies${quick:+_quick}
+install_packages tests
+build_targets gcpdda-study verification_tests
+mkdir -p "$results"
+for study in "${studies[@]}"; do
+  echo "== $study${quick:+, quick} =="
+  start=$SECONDS
+  if [ "$study" = verify ]; then
+    "$here/study/verify.sh" "$build" "$results" $quick
+  else
+    "$build/gcpdda-study" "$study" "$results" $quick
+    "$here/study/plot_$study.py" "$results"
+  fi
+  echo "== $study took $((SECONDS - start)) s =="
+done

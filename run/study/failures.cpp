@@ -1,0 +1,7 @@
+#include "stability.hpp"
+
+namespace gcpdda::study {
+
+void failures(const Options & /*options*/) {}
+
+} // namespace gcpdda::study

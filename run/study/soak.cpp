@@ -1,0 +1,7 @@
+#include "stability.hpp"
+
+namespace gcpdda::study {
+
+void soak(const Options & /*options*/) {}
+
+} // namespace gcpdda::study
