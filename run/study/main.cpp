@@ -14,8 +14,8 @@ int main(int argc, char **argv) {
   using namespace gcpdda::study;
   const std::map<std::string, void (*)(const Options &)> studies{
       {"stability", stability}, {"accuracy", accuracy}, {"fidelity", fidelity}};
+  const gcpdda::MpiScope mpi(argc, argv);
   try {
-    const gcpdda::MpiScope mpi(argc, argv);
     const bool quick = argc == 4 && std::string(argv[3]) == "--quick";
     if (argc != (quick ? 4 : 3) || !studies.contains(argv[1])) {
       std::cerr << "usage: gcpdda-study stability|accuracy|fidelity FOLDER [--quick]\n";

@@ -5,7 +5,9 @@
 #include "own_springs.hpp"
 #include "own_step.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace gcpdda {
 
@@ -16,6 +18,38 @@ bool is_finite(const RigidDof &a) {
 }
 
 } // namespace
+
+PrescribedMotion::PrescribedMotion(std::span<const VelocityRow> table) {
+  for (const VelocityRow &row : table) {
+    Row next{row.time, {{row.velocity[0], row.velocity[1]}, row.velocity[2]}, {}};
+    if (!rows_.empty()) {
+      const Row &last = rows_.back();
+      next.displacement =
+          last.displacement + (0.5 * (next.time - last.time)) * (last.velocity + next.velocity);
+    }
+    rows_.push_back(next);
+  }
+}
+
+const PrescribedMotion::Row &PrescribedMotion::last_before(double time) const {
+  const auto after = std::upper_bound(rows_.begin() + 1, rows_.end(), time,
+                                      [](double t, const Row &row) { return t < row.time; });
+  return *std::prev(after);
+}
+
+RigidDof PrescribedMotion::velocity(double time) const {
+  const Row &row = last_before(time);
+  if (&row == &rows_.back()) {
+    return row.velocity;
+  }
+  const Row &next = *(&row + 1);
+  return row.velocity + ((time - row.time) / (next.time - row.time)) * (next.velocity - row.velocity);
+}
+
+RigidDof PrescribedMotion::displacement(double time) const {
+  const Row &row = last_before(time);
+  return row.displacement + (0.5 * (time - row.time)) * (row.velocity + velocity(time));
+}
 
 void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
   const double by_velocity = scheme.trial_velocity * time_step;

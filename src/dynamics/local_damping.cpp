@@ -17,7 +17,7 @@ double against(double force, double velocity) {
 Mat2 damp_gradient(const Deformation &d, const Mat2 &force, double share) {
   const Mat2 turn = rotation_of(d.trial);
   const Mat2 back = transposed(turn);
-  const GradientDof f = force_dof(back * (force - elastic_force(d, d.trial) + d.anchor_force));
+  const GradientDof f = force_dof(back * (force - d.internal + d.anchor_force));
   const GradientDof v = motion_dof(back * d.rate);
   return share * (turn * force_matrix({against(f.r, v.r), against(f.ex, v.ex), against(f.ey, v.ey),
                                        against(f.gxy, v.gxy)}));
@@ -25,8 +25,10 @@ Mat2 damp_gradient(const Deformation &d, const Mat2 &force, double share) {
 
 } // namespace
 
-// The force of anchors is known only after the step; without that of the step before, a block that hangs at
-// rest would count its whole weight as out of balance, and be held wherever it is like by friction.
+// What the block's own springs do is known only after the step, so theirs of the step before counts. Without
+// the anchors' a block that hangs at rest would count its whole weight as out of balance, and be held
+// wherever it is like by friction. The elastic force of x* instead would be far off in a block too stiff for
+// the step, and damping it would drive it.
 void apply_local_damping(BlockSystem &system, BlockForces &forces, double share) {
   if (share == 0.0) {
     return;

@@ -27,7 +27,8 @@ public:
     section.read("fixed", block.fixed);
     section.read("velocity", block.velocity);
     section.read("prescribed_velocity", block.velocity);
-    block.driven = section.given("prescribed_velocity") != nullptr;
+    read_velocity_table(section, block);
+    block.driven = given_motion(section) != nullptr;
     section.read_choice("block[]", "fidelity", block.fidelity);
     check_motion(section, block);
     check_fidelity(section, block, material);
@@ -53,8 +54,8 @@ private:
 
   void check_motion(const Section &section, const SceneBlock &block) {
     const std::string &who = section.label();
-    if (const toml::node *node = section.given("prescribed_velocity")) {
-      check_prescribed(section, block, *node);
+    if (block.driven) {
+      check_prescribed(section, block);
     } else if (block.fixed) {
       if (block.velocity != std::array<double, 3>{}) {
         fault(*section.given("velocity"), who + " is fixed but has a velocity", "a fixed block never moves",
@@ -75,18 +76,55 @@ private:
     }
   }
 
-  void check_prescribed(const Section &section, const SceneBlock &block, const toml::node &node) {
+  /// What prescribes the motion of the block; null if nothing does.
+  static const toml::node *given_motion(const Section &section) {
+    const toml::node *table = section.given("velocity_table");
+    return table != nullptr ? table : section.given("prescribed_velocity");
+  }
+
+  void read_velocity_table(const Section &section, SceneBlock &block) {
+    section.read("velocity_table", block.velocity_table);
+    const toml::node *node = section.sound("velocity_table");
+    if (node == nullptr) {
+      return;
+    }
+    const std::vector<VelocityRow> &rows = block.velocity_table;
+    const auto time_fault = [&](std::size_t i, std::string why, std::string hint) {
+      fault((*(*node->as_array())[i].as_array())[0],
+            fmt::format("row {} of 'velocity_table' in {} has the time {}", i, section.label(), rows[i].time),
+            std::move(why), std::move(hint));
+    };
+    if (rows[0].time != 0.0) {
+      time_fault(0, "the table must begin at 0", "add a row for the time 0");
+    }
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      if (!(rows[i].time > rows[i - 1].time)) {
+        time_fault(i, fmt::format("it must be above that of the row before, {}", rows[i - 1].time),
+                   "order the rows by time");
+      }
+    }
+    block.velocity = rows[0].velocity;
+  }
+
+  void check_prescribed(const Section &section, const SceneBlock &block) {
     const std::string &who = section.label();
+    const toml::node &node = *given_motion(section);
+    const std::string key =
+        section.given("velocity_table") != nullptr ? "velocity_table" : "prescribed_velocity";
     if (block.fixed) {
-      fault(node, who + " is fixed but has a prescribed_velocity", "a fixed block never moves",
-            "leave one of fixed and prescribed_velocity out");
+      fault(node, fmt::format("{} is fixed but has a {}", who, key), "a fixed block never moves",
+            fmt::format("leave one of fixed and {} out", key));
     }
     if (section.given("velocity") != nullptr) {
-      fault(node, who + " has both velocity and prescribed_velocity",
+      fault(node, fmt::format("{} has both velocity and {}", who, key),
             "it keeps the prescribed one from the start", "leave velocity out");
     }
+    if (key == "velocity_table" && section.given("prescribed_velocity") != nullptr) {
+      fault(node, who + " has both prescribed_velocity and velocity_table", "only one can be followed",
+            "leave one of them out");
+    }
     if (section.given("fixed_points") != nullptr) {
-      fault(node, who + " has both fixed_points and prescribed_velocity", "a point cannot be held and move",
+      fault(node, fmt::format("{} has both fixed_points and {}", who, key), "a point cannot be held and move",
             "leave one of them out");
     }
   }

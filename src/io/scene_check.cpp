@@ -118,8 +118,11 @@ private:
       return check_text(row, node, who);
     case Kind::pair_of_names:
     case Kind::vector2:
+      return check_array(row, node, who, 2);
     case Kind::vector3:
-      return check_array(row, node, who);
+      return check_array(row, node, who, 3);
+    case Kind::velocity_table:
+      return check_velocity_table(row, node, who);
     case Kind::points:
     case Kind::polygon:
       return check_points(row, node, who);
@@ -253,8 +256,7 @@ private:
                                                       "it must be one line of text", example_of(row));
   }
 
-  bool check_array(const Key &row, const toml::node &node, const std::string &who) {
-    const std::size_t size = row.kind == Kind::vector3 ? 3 : 2;
+  bool check_array(const Key &row, const toml::node &node, const std::string &who, std::size_t size) {
     const bool names = row.kind == Kind::pair_of_names;
     const toml::array *array = node.as_array();
     if (array == nullptr) {
@@ -270,6 +272,22 @@ private:
       const std::string element_name = fmt::format("entry {} of {}", i, who);
       sound &= names ? check_name(row, element, element_name)
                      : check_number(row, element, element_name, "a number");
+    }
+    return sound;
+  }
+
+  bool check_velocity_table(const Key &row, const toml::node &node, const std::string &who) {
+    const toml::array *rows = node.as_array();
+    if (rows == nullptr) {
+      return wrong_type(row, node, who, "an array of rows [t, vx, vy, omega]");
+    }
+    if (rows->empty() || rows->size() > most_velocity_rows) {
+      return fault(node, fmt::format("{} has {} rows", who, rows->size()),
+                   fmt::format("it must have 1 to {}", most_velocity_rows), example_of(row));
+    }
+    bool sound = true;
+    for (std::size_t i = 0; i < rows->size(); ++i) {
+      sound &= check_array(row, (*rows)[i], fmt::format("row {} of {}", i, who), 4);
     }
     return sound;
   }

@@ -24,9 +24,10 @@ enum class Kind {
   pair_of_names,
   vector2,
   vector3,
-  points,  ///< list of [x, y]
-  polygon, ///< the same, at least three
-  count    ///< integer, or a real number that is one
+  points,         ///< list of [x, y]
+  polygon,        ///< the same, at least three
+  velocity_table, ///< list of [t, vx, vy, omega]
+  count           ///< integer, or a real number that is one
 };
 
 /// Numbers a key accepts; also each number of a vector or polygon.
@@ -58,6 +59,7 @@ struct Key {
 
 inline constexpr std::size_t most_blocks = 10'000; ///< and other tables of one list
 inline constexpr std::size_t most_vertices = 10'000;
+inline constexpr std::size_t most_velocity_rows = 100'000;
 inline constexpr std::size_t longest_name = 100;
 inline constexpr std::size_t longest_text = 4096;
 /// Of inline blocks, generators and block file together: ids fit 32 bits, which METIS and VTK count with.

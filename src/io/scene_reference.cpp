@@ -60,6 +60,8 @@ std::string_view type_of(const Key &key) {
     return "list of points";
   case Kind::polygon:
     return "list of at least 3 points";
+  case Kind::velocity_table:
+    return "list of rows of four numbers";
   case Kind::count:
     return "integer";
   }

@@ -5,6 +5,7 @@
 #include "scene_toml.hpp"
 
 #include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/model/scene.hpp"
 
 #include <array>
 #include <cstddef>
@@ -47,6 +48,7 @@ public:
   void read(std::string_view key, Vec2 &value) const;
   void read(std::string_view key, std::array<double, 3> &value) const;
   void read(std::string_view key, std::vector<Vec2> &value) const;
+  void read(std::string_view key, std::vector<VelocityRow> &value) const;
   void read(std::string_view key, std::int64_t &value) const;
   /// The tables of a list below; none if the list as a whole is at fault.
   [[nodiscard]] std::vector<Section> list(std::string_view key) const;

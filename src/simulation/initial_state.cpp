@@ -91,6 +91,7 @@ void Simulation::check_initial_overlaps() {
 void Simulation::accelerate_owned() {
   gather_forces();
   accelerate(blocks_, forces_);
+  prescribe_motion();
 }
 
 // a_0 = M^-1 F(0): constant acceleration is then exact from the first step.

@@ -71,6 +71,12 @@ Simulation::Simulation(const Communicator &communicator, Scene scene)
     : communicator_(communicator), scene_(std::move(scene)), ghosts_(communicator),
       contacts_({scene_.joints, scene_.run.contact_damping, scene_.run.potential}),
       scheme_(make_scheme(scene_.run.scheme, scene_.run.spectral_radius, scene_.run.contact_time)) {
+  for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
+    if (!scene_.blocks[i].velocity_table.empty()) {
+      prescribed_.emplace_back(BlockId{static_cast<std::int64_t>(i)},
+                               PrescribedMotion(scene_.blocks[i].velocity_table));
+    }
+  }
   distribute();
   find_bound();
   plan_ = plan_time(scene_.run, scene_.output, bound_.time_step, notes_);

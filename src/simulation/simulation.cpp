@@ -4,8 +4,23 @@
 #include "gcpdda/simulation/half_works.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gcpdda {
+
+namespace {
+
+/// Row of a block if this rank owns it.
+std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
+  const auto end = blocks.properties.begin() + static_cast<std::ptrdiff_t>(blocks.num_owned);
+  const auto found = std::lower_bound(blocks.properties.begin(), end, id,
+                                      [](const BlockProperties &p, BlockId wanted) { return p.id < wanted; });
+  return found == end || found->id != id
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - blocks.properties.begin()));
+}
+
+} // namespace
 
 void Simulation::step() {
   if (stale_) { // some block may use up half the skin in this step; all ranks agree
@@ -23,6 +38,7 @@ void Simulation::step() {
     }
   }
   ++step_count_;
+  prescribe_motion();
   report();
 }
 
@@ -80,9 +96,33 @@ void Simulation::predict_next() {
   {
     const auto scope = phases_.measure(Phase::predict);
     predict(blocks_, scheme_, plan_.time_step);
+    prescribe_trials();
   }
   const auto scope = phases_.measure(Phase::ghosts);
   ghosts_.update(blocks_);
+}
+
+// At t_n + c1 dt, where the family takes x* of constant velocity.
+void Simulation::prescribe_trials() {
+  const double when = time() + scheme_.trial_velocity * plan_.time_step;
+  for (const auto &[block, motion] : prescribed_) {
+    if (const auto row = owned_row(blocks_, block)) {
+      blocks_.trial[*row] = motion.displacement(when);
+      pose(blocks_, *row, *row + 1);
+    }
+  }
+}
+
+// The acceleration is the mean one of the coming step: what is asked how far the block may go in it.
+void Simulation::prescribe_motion() {
+  const double dt = plan_.time_step;
+  for (const auto &[block, motion] : prescribed_) {
+    if (const auto row = owned_row(blocks_, block)) {
+      blocks_.displacement[*row] = motion.displacement(time());
+      blocks_.velocity[*row] = motion.velocity(time());
+      blocks_.acceleration[*row] = (1.0 / dt) * (motion.velocity(time() + dt) - blocks_.velocity[*row]);
+    }
+  }
 }
 
 void Simulation::evaluate_contacts() {
@@ -185,6 +225,8 @@ void Simulation::report() {
 
   constexpr double failed = 2.0;
   constexpr double needs_refresh = 1.0;
+  const double most =
+      0.25 * thinnest_; // two blocks that close by half their width in a step skip the force that parts them
   double status = 0.0;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const BlockProperties &block = blocks_.properties[row];
@@ -192,8 +234,12 @@ void Simulation::report() {
     if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
       status = needs_refresh;
     }
-    if (ahead > thinnest_ && num_blocks() > 1) {
-      keep_first(local_fault_, {Fault::Cause::too_fast, block.id, {}, ahead, thinnest_});
+    if (blocks_.is_deformable(row)) {
+      counters_.fastest_turn =
+          std::max(counters_.fastest_turn, plan_.time_step * std::abs(blocks_.velocity[row].r));
+    }
+    if (ahead > most && num_blocks() > 1) {
+      keep_first(local_fault_, {Fault::Cause::too_fast, block.id, {}, ahead, most});
     }
   }
   if (local_fault_) {

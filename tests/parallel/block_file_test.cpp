@@ -291,8 +291,12 @@ TEST_F(BlockFiles, ThatAreNoneAreRefused) {
 TEST_F(BlockFiles, MustAgreeWithTheNamesOfTheScene) {
   write(BlockFileWriter(some_blocks(10)));
   scene_.blocks.resize(2);
-  scene_.blocks[0] = {
-      .name = "b11", .vertices = {}, .fixed_points = {}, .loads = {}, .where = {"s.toml", 3, 1}};
+  scene_.blocks[0] = {.name = "b11",
+                      .vertices = {},
+                      .velocity_table = {},
+                      .fixed_points = {},
+                      .loads = {},
+                      .where = {"s.toml", 3, 1}};
   scene_.blocks[1].name = "b12";
   scene_.monitors = {{"b12", 12, false, {}, {"s.toml", 20, 9}}, {"b11", 11, false, {}, {"s.toml", 22, 9}}};
   EXPECT_EQ(

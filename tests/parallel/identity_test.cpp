@@ -43,7 +43,7 @@ std::string shaken_wall_toml(int rows, int columns, double duration) {
 }
 
 /// A wall of cells of an L and a brick in its notch, each rigid or deformable by turns, on a floor that
-/// pushes it aside.
+/// shakes it.
 std::string mixed_wall_toml(int rows, int columns, double duration) {
   const double squeeze = 0.002;
   std::string toml = fmt::format("[run]\nduration = {}\n[material.rock]\ndensity = 2600.0\n"
@@ -53,7 +53,7 @@ std::string mixed_wall_toml(int rows, int columns, double duration) {
                                  "name = \"tip\"\npoint = [7.9, 3.2]\n",
                                  duration, duration / 2.0);
   toml += testing::block_toml("floor", testing::rectangle({-2.0, -1.0}, {2.0 * columns + 3.0, squeeze}),
-                              "prescribed_velocity = [3.0, 0.0, 0.0]");
+                              "velocity_table = [[0, 3, 0, 0], [0.007, 4, 0.5, 0], [0.011, 2, 0, 0.1]]");
   std::mt19937 random(5);
   const auto speed = [&](double most) { return most * (static_cast<double>(random()) / 2147483648.0 - 1.0); };
   const auto add = [&](const std::string &name, const std::vector<Vec2> &vertices, bool deformable) {

@@ -103,6 +103,42 @@ prescribed_velocity = [1, 0])",
 prescribed_velocity = [1, 0, 0]
 fidelity = "deformable")",
      {R"(21:12: error: block 'lever' has a prescribed velocity but is deformable, its motion is prescribed as that of a rigid body, leave fidelity out or write "rigid")"}},
+    {"TableAndFixed", 15, R"(fixed = true
+velocity_table = [[0, 1, 0, 0]])",
+     {R"(16:18: error: block 'floor' is fixed but has a velocity_table, a fixed block never moves, leave one of fixed and velocity_table out)"}},
+    {"TableAndAllElse", 19, R"(vertices = [[1, 1], [4, 1], [4, 4], [3, 4], [3, 2], [1, 2]]
+velocity = [0, 0, 0]
+prescribed_velocity = [1, 0, 0]
+fixed_points = [[1, 1]]
+velocity_table = [[0, 1, 0, 0]]
+[[block.load]]
+point = [2, 2]
+force = [0, 1])",
+     {R"(23:18: error: block 'lever' has both velocity and velocity_table, it keeps the prescribed one from the start, leave velocity out)",
+      R"(23:18: error: block 'lever' has both prescribed_velocity and velocity_table, only one can be followed, leave one of them out)",
+      R"(23:18: error: block 'lever' has both fixed_points and velocity_table, a point cannot be held and move, leave one of them out)",
+      R"(24:1: error: block 'lever' has a prescribed velocity but has a load, no force changes its motion, leave the load out)"}},
+    {"TableAndDeformable", 19, R"(vertices = [[1, 1], [4, 1], [4, 4], [3, 4], [3, 2], [1, 2]]
+velocity_table = [[0, 1, 0, 0]]
+fidelity = "deformable")",
+     {R"(21:12: error: block 'lever' has a prescribed velocity but is deformable, its motion is prescribed as that of a rigid body, leave fidelity out or write "rigid")"}},
+    {"TableOutOfOrder", 19, R"(vertices = [[1, 1], [4, 1], [4, 4], [3, 4], [3, 2], [1, 2]]
+velocity_table = [[0.5, 1, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0], [0.75, 0, 0, 0]])",
+     {R"(20:20: error: row 0 of 'velocity_table' in block 'lever' has the time 0.5, the table must begin at 0, add a row for the time 0)",
+      R"(20:50: error: row 2 of 'velocity_table' in block 'lever' has the time 1, it must be above that of the row before, 1, order the rows by time)",
+      R"(20:64: error: row 3 of 'velocity_table' in block 'lever' has the time 0.75, it must be above that of the row before, 1, order the rows by time)"}},
+    {"TableOfOtherRows", 19, R"(vertices = [[1, 1], [4, 1], [4, 4], [3, 4], [3, 2], [1, 2]]
+velocity_table = [[0, 1, 0], 3, [0, 0, 0, "a"], [0, 0, 0, inf]])",
+     {R"(20:19: error: row 0 of 'velocity_table' in block 'lever' has length 3, it must have length 4, for example velocity_table = [[0, 0, 0, 0], [0.5, 1.0, 0, 0]])",
+      R"(20:30: error: row 1 of 'velocity_table' in block 'lever' is an integer, it must be an array of 4 numbers, for example velocity_table = [[0, 0, 0, 0], [0.5, 1.0, 0, 0]])",
+      R"(20:43: error: entry 3 of row 2 of 'velocity_table' in block 'lever' is a string, it must be a number, for example velocity_table = [[0, 0, 0, 0], [0.5, 1.0, 0, 0]])",
+      R"(20:59: error: entry 3 of row 3 of 'velocity_table' in block 'lever' is inf, it must be finite, for example velocity_table = [[0, 0, 0, 0], [0.5, 1.0, 0, 0]])"}},
+    {"TableEmpty", 19, R"(vertices = [[1, 1], [4, 1], [4, 4], [3, 4], [3, 2], [1, 2]]
+velocity_table = [])",
+     {R"(20:18: error: 'velocity_table' in block 'lever' has 0 rows, it must have 1 to 100000, for example velocity_table = [[0, 0, 0, 0], [0.5, 1.0, 0, 0]])"}},
+    {"TableAsNumber", 19, R"(vertices = [[1, 1], [4, 1], [4, 4], [3, 4], [3, 2], [1, 2]]
+velocity_table = 1)",
+     {R"(20:18: error: 'velocity_table' in block 'lever' is an integer, it must be an array of rows [t, vx, vy, omega], for example velocity_table = [[0, 0, 0, 0], [0.5, 1.0, 0, 0]])"}},
     {"LoadOutside", 19, R"(vertices = [[1, 1], [4, 1], [4, 4], [3, 4], [3, 2], [1, 2]]
 [[block.load]]
 point = [2, 2.5]

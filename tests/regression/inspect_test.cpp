@@ -143,8 +143,8 @@ TEST_F(Inspect, TellsTheStepAndWhoLimitsIt) {
   const double limit = number(outcome_.out, "limit (\\S+) /");
   EXPECT_GT(limit, 1.5);
   EXPECT_LT(limit, 2.0);
-  const double bound = number(outcome_.out, "at most (\\S+) s = safety 0.25 x");
-  EXPECT_NEAR(bound, 0.25 * limit / expected, 5e-4 * bound);
+  const double bound = number(outcome_.out, "at most (\\S+) s = safety 0.5 x");
+  EXPECT_NEAR(bound, 0.5 * limit / expected, 5e-4 * bound);
   const double step = number(outcome_.out, "step +(\\S+) s \\(automatic\\)");
   EXPECT_LE(step, bound * (1.0 + six_digits));
   const double steps = number(outcome_.out, "\\(automatic\\), (\\d+) steps of 1 s in all");
@@ -321,7 +321,7 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
         "cohesion"}},
       {"[[block]]",
        {"name", "material", "vertices", "velocity", "fixed", "fidelity", "fixed_points",
-        "prescribed_velocity", "load"}},
+        "prescribed_velocity", "velocity_table", "load"}},
       {"[[block.load]]", {"point", "force"}},
       {"[[wall]]", {"name", "material", "origin", "rows", "columns", "block_size", "bond", "gap"}},
       {"[[pyramid]]", {"name", "material", "origin", "rows", "block_size", "gap"}},

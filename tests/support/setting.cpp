@@ -30,7 +30,10 @@ interval = {:.17g}
                          ? fmt::format("youngs_modulus = {:.17g}\npoissons_ratio = {:.17g}", s.youngs_modulus,
                                        s.poissons_ratio)
                          : "",
-                     s.normal_stiffness, s.friction_deg, s.time_step > 0.0 ? s.duration : s.duration / 100.0);
+                     s.normal_stiffness, s.friction_deg,
+                     s.interval > 0.0    ? s.interval
+                     : s.time_step > 0.0 ? s.duration
+                                         : s.duration / 100.0);
 }
 
 std::size_t row_of(const Simulation &simulation, int block) {

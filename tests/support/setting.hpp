@@ -27,6 +27,7 @@ struct Setting {
   std::string fidelity = "rigid";
   double youngs_modulus = 0.0; ///< Pa; 0: none given
   double poissons_ratio = 0.0;
+  double interval = 0.0; ///< s, of outputs; 0: the duration if the step is given, else a hundredth of it
 };
 std::string head(const Setting &setting);
 

@@ -15,9 +15,6 @@
 
 namespace gcpdda::testing {
 
-/// Of many like trials one in so many is made: all but under the sanitizers.
-inline constexpr int thinning = GCPDDA_THINNING;
-
 /// The standard distributions differ between libraries; the engine does not.
 inline double uniform(std::mt19937 &engine, double low, double high) {
   return low + (high - low) * (static_cast<double>(engine()) / 4294967296.0);

@@ -135,10 +135,10 @@ time_step = 0.0)",
      {R"(3:13: error: 'time_step' in [run] is 0, it must be above 0 and at most 1e+12, for example time_step = 1e-4)"}},
     {"SafetyAboveOne", 2, R"(duration = 2.0
 safety = 1.5)",
-     {R"(3:10: error: 'safety' in [run] is 1.5, it must be above 0 and at most 1, for example safety = 0.25)"}},
+     {R"(3:10: error: 'safety' in [run] is 1.5, it must be above 0 and at most 1, for example safety = 0.5)"}},
     {"SpectralRadius", 2, R"(duration = 2.0
 spectral_radius = 1.01)",
-     {R"(3:19: error: 'spectral_radius' in [run] is 1.01, it must be at least 0 and at most 1, for example spectral_radius = 0.8)"}},
+     {R"(3:19: error: 'spectral_radius' in [run] is 1.01, it must be at least 0 and at most 1, for example spectral_radius = 0.5)"}},
     {"SchemeUnknown", 2, R"(duration = 2.0
 scheme = "newmark")",
      {R"(3:10: error: 'scheme' in [run] is 'newmark', it must be one of generalized-alpha newmark-dda central-difference explicit-generalized-alpha, did you mean 'newmark-dda'?)"}},
@@ -304,7 +304,7 @@ block = "slider")",
     {"ControlCharacters", 15, R"(name = "a\u001bb"
 "x\ny" = 1)",
      {R"(15:8: error: 'name' in block 'b1' is 'a b', a name holds 1 to 100 letters, digits, _ . and -, for example name = "slider")",
-      R"(16:1: error: unknown key 'x y' in block 'b1', known here: name material vertices velocity fixed fidelity fixed_points prescribed_velocity load)"}},
+      R"(16:1: error: unknown key 'x y' in block 'b1', known here: name material vertices velocity fixed fidelity fixed_points prescribed_velocity velocity_table load)"}},
 };
 // clang-format on
 
@@ -391,7 +391,7 @@ local_damping = -0.1
       "s.toml:7:12: error: no material is named 'chalk', add a table [material.chalk]",
       "s.toml:9:1: error: unknown key 'colour' in block 'slider', known here: name material vertices "
       "velocity fixed "
-      "fidelity fixed_points prescribed_velocity load",
+      "fidelity fixed_points prescribed_velocity velocity_table load",
       "s.toml:11:8: error: two blocks are named 'slider', the first is at line 5, names are unique, and "
       "unnamed "
       "blocks are b<n> from 0 in file order",

@@ -2,6 +2,7 @@
 
 #include "support/scenes.hpp"
 #include "support/shapes.hpp"
+#include "support/thinning.hpp"
 
 #include <gtest/gtest.h>
 

@@ -78,6 +78,26 @@ TEST(SolveAndUpdate, DrivenBlockKeepsItsVelocity) {
   EXPECT_EQ(system.displacement[0], (RigidDof{{0.5, -1.0}, 0.25}));
 }
 
+// Linear velocity, so a parabola between rows; beyond the table its last velocity.
+TEST(PrescribedMotion, IsTheIntegralOfItsTable) {
+  const std::vector<VelocityRow> table{
+      {0.0, {1.0, -2.0, 0.5}}, {0.5, {3.0, -2.0, 0.0}}, {2.0, {0.0, 1.0, 0.0}}};
+  const PrescribedMotion motion(table);
+  EXPECT_EQ(motion.velocity(0.0), (RigidDof{{1.0, -2.0}, 0.5}));
+  EXPECT_EQ(motion.velocity(0.25), (RigidDof{{2.0, -2.0}, 0.25}));
+  EXPECT_EQ(motion.velocity(0.5), (RigidDof{{3.0, -2.0}, 0.0}));
+  EXPECT_EQ(motion.velocity(1.25), (RigidDof{{1.5, -0.5}, 0.0}));
+  EXPECT_EQ(motion.velocity(7.0), (RigidDof{{0.0, 1.0}, 0.0}));
+  EXPECT_EQ(motion.displacement(0.0), RigidDof{});
+  EXPECT_EQ(motion.displacement(0.25), (RigidDof{{0.375, -0.5}, 0.09375}));
+  EXPECT_EQ(motion.displacement(0.5), (RigidDof{{1.0, -1.0}, 0.125}));
+  EXPECT_EQ(motion.displacement(2.0), (RigidDof{{3.25, -1.75}, 0.125}));
+  EXPECT_EQ(motion.displacement(4.0), (RigidDof{{3.25, 0.25}, 0.125}));
+  const PrescribedMotion constant({table.data(), 1});
+  EXPECT_EQ(constant.velocity(9.0), (RigidDof{{1.0, -2.0}, 0.5}));
+  EXPECT_EQ(constant.displacement(2.0), (RigidDof{{2.0, -4.0}, 1.0}));
+}
+
 // A square on one anchor starts like a compound pendulum, on two it does not start at all.
 TEST(Accelerate, AnchoredPointsStay) {
   constexpr double arm = 0.3;

@@ -117,6 +117,20 @@ TEST(SceneReader, ReadsWhatHoldsAndMovesABlock) {
   expect_same(scene, good(scene.resolved));
 }
 
+TEST(SceneReader, TakesVelocityTables) {
+  std::string text(many_sources);
+  const std::string constant = "prescribed_velocity = [0, -0.1, 0.5]";
+  text.replace(text.find(constant), constant.size(),
+               "velocity_table = [[0, 1, -2, 0.5], [0.25, 3, 0, 0], [1, 0, 0, 0]]");
+  const Scene scene = good(text);
+  EXPECT_TRUE(scene.blocks[1].driven);
+  EXPECT_EQ(scene.blocks[1].velocity, (std::array<double, 3>{1.0, -2.0, 0.5}));
+  EXPECT_EQ(
+      scene.blocks[1].velocity_table,
+      (std::vector<VelocityRow>{{0.0, {1.0, -2.0, 0.5}}, {0.25, {3.0, 0.0, 0.0}}, {1.0, {0.0, 0.0, 0.0}}}));
+  expect_same(scene, good(scene.resolved));
+}
+
 TEST(SceneReader, TakesGeneratorsInTheOrderOfTheFileAndNamesTheirBlocks) {
   const Scene scene = good(many_sources);
   ASSERT_EQ(scene.generators.size(), 3U);
@@ -226,8 +240,8 @@ TEST(SceneReference, HasARowForEveryKey) {
   EXPECT_EQ(rows, keys);
   for (const char *line :
        {"\n## [run]\n", "\n## [material.NAME]\n", "\n## [[block.load]]\n",
-        "\n| `safety` | number |  | `0.25` | above 0 and at most 1 | Fraction of the stability bound that "
-        "\"auto\" takes. | `safety = 0.25` |\n",
+        "\n| `safety` | number |  | `0.5` | above 0 and at most 1 | Fraction of the stability bound that "
+        "\"auto\" takes. | `safety = 0.5` |\n",
         "\n| `density` | number | kg/m3 | required | above 0 and at most 1e+12 | Density. | `density = "
         "2600.0` "
         "|\n",

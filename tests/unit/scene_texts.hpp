@@ -199,6 +199,7 @@ inline void expect_same(const Scene &a, const Scene &b) {
     EXPECT_EQ(a.blocks[i].velocity, b.blocks[i].velocity);
     EXPECT_EQ(a.blocks[i].fixed, b.blocks[i].fixed);
     EXPECT_EQ(a.blocks[i].driven, b.blocks[i].driven);
+    EXPECT_EQ(a.blocks[i].velocity_table, b.blocks[i].velocity_table);
     EXPECT_EQ(a.blocks[i].fidelity, b.blocks[i].fidelity);
     EXPECT_EQ(a.blocks[i].fixed_points, b.blocks[i].fixed_points);
     ASSERT_EQ(a.blocks[i].loads.size(), b.blocks[i].loads.size());

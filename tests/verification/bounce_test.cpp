@@ -70,12 +70,12 @@ double energy_after(double w, double flight, int bounces) {
   int count = 0;
   bool was_touching = false;
   while (count < bounces && !simulation.fault()) {
-    simulation.step();
+    step(simulation);
     const bool touches = touching(simulation);
     count += was_touching && !touches ? 1 : 0;
     was_touching = touches;
   }
-  simulation.step(); // two trial configurations out of touch
+  step(simulation); // two trial configurations out of touch
   EXPECT_FALSE(simulation.fault().has_value());
   EXPECT_FALSE(touching(simulation));
   EXPECT_LE(std::abs(simulation.blocks().displacement[row].r), 1e-6);
@@ -105,6 +105,55 @@ TEST(Bounce, TenThousandBounces) {
     }
     expect_below(fmt::format("A6 10000 bounces from 12 phases, W = {}: |ln E/E0|", c.w), c.limit, worst);
   }
+}
+
+/// Kinetic energy after over before: two squares meet face to face, half a side off, and not at right angles.
+double oblique_energy(double w, double phase) {
+  constexpr double soft =
+      1e7; // the impact takes 36 ms, turns the squares, and ends before their corners meet
+  const double dt = w / std::sqrt(2.0 * soft / rock_density);
+  const double gap = 1e-3 + phase * speed * dt;
+  Simulation simulation(
+      Communicator::self(),
+      scene_of(head({.duration = 0.1,
+                     .time_step = 0.1 / std::ceil(0.1 / dt),
+                     .gravity = {},
+                     .normal_stiffness = soft,
+                     .damping = 0.0}) +
+               block_toml("moving", rectangle({-1.0 - gap, 0.5}, {-gap, 1.5}), "velocity = [1.0, 0.2, 0.0]") +
+               block_toml("resting", rectangle({0.0, 0.0}, {1.0, 1.0}))));
+  run(simulation);
+  EXPECT_GT(simulation.counters().contact_steps, 0);
+  EXPECT_FALSE(touching(simulation));
+  const auto kinetic = [&](int block) {
+    const RigidDof &v = velocity_of(simulation, block);
+    const BlockProperties &p = simulation.blocks().properties[row_of(simulation, block)];
+    return 0.5 * (p.mass * dot(v.u, v.u) + p.inertia * v.r * v.r);
+  };
+  EXPECT_GT(std::abs(velocity_of(simulation, 0).r), 0.1);
+  return (kinetic(0) + kinetic(1)) / (0.5 * rock_density * 1.04);
+}
+
+// Truncation, whose sign and size go with the phase of the step in which the impact begins: root of the mean
+// square over phases.
+TEST(Bounce, ObliqueImpactOfOffsetSquares) {
+  std::vector<double> steps;
+  std::vector<double> errors;
+  for (double w = 0.1; w > 4e-5; w *= 0.25) {
+    double sum = 0.0;
+    for (int phase = 0; phase < num_phases; ++phase) {
+      sum += std::pow(oblique_energy(w, static_cast<double>(phase) / num_phases) - 1.0, 2);
+    }
+    steps.push_back(w);
+    errors.push_back(std::sqrt(sum / num_phases));
+  }
+  expect_below(
+      fmt::format("A6 oblique elastic impact, half a side off, W = {:.1e}, 12 phases: rms error of the "
+                  "energy",
+                  steps.back()),
+      1e-9, errors.back());
+  expect_value("A6 oblique elastic impact: order of the energy error in dt", 2.0, log_slope(steps, errors),
+               0.05);
 }
 
 } // namespace

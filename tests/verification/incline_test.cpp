@@ -85,8 +85,8 @@ double history_difference(const std::string &toml_a, const std::string &toml_b) 
   EXPECT_EQ(a.plan().num_steps, b.plan().num_steps);
   double difference = 0.0;
   while (!a.finished()) {
-    a.step();
-    b.step();
+    step(a);
+    step(b);
     const RigidDof d = displacement_of(a, 1) - displacement_of(b, 1);
     difference = std::max({difference, norm(d.u), std::abs(d.r)});
   }

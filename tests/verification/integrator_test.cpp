@@ -18,15 +18,14 @@ const double depth = 1.0 - std::sqrt(1.0 - 2.0 * rock_density * earth_gravity / 
 const double omega = std::sqrt(stiffness * (1.0 - depth) / rock_density);
 
 /// The square at its depth, thrown up so that it oscillates with an amplitude of `share` depths.
-Scene oscillator(double w, int num_steps, double share, const std::string &contact_time = "leapfrog") {
+Scene oscillator(double w, int num_steps, double share,
+                 const std::string &run_keys = "contact_time = \"leapfrog\"") {
   const double dt = w / omega;
-  const std::string scene = head({.duration = num_steps * dt,
-                                  .time_step = dt,
-                                  .damping = 0.0,
-                                  .run_keys = fmt::format("contact_time = \"{}\"", contact_time)}) +
-                            block_toml("plane", rectangle({-3.0, -2.0}, {4.0, 0.0}), "fixed = true") +
-                            block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
-                                       fmt::format("velocity = [0.0, {:.17g}, 0.0]", share * depth * omega));
+  const std::string scene =
+      head({.duration = num_steps * dt, .time_step = dt, .damping = 0.0, .run_keys = run_keys}) +
+      block_toml("plane", rectangle({-3.0, -2.0}, {4.0, 0.0}), "fixed = true") +
+      block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
+                 fmt::format("velocity = [0.0, {:.17g}, 0.0]", share * depth * omega));
   return scene_of(scene);
 }
 
@@ -43,7 +42,7 @@ TEST(Stability, LeapfrogLimitIsTwo) {
   double early = 0.0;
   double late = 0.0;
   while (!stable.finished()) {
-    stable.step();
+    step(stable);
     double &largest = stable.step_count() <= 1000 ? early : late;
     largest = std::max(largest, amplitude(stable) / start);
   }
@@ -56,7 +55,7 @@ TEST(Stability, LeapfrogLimitIsTwo) {
   Simulation unstable(Communicator::self(), oscillator(w, 40, tiny));
   std::vector<double> history;
   while (!unstable.finished()) {
-    unstable.step();
+    step(unstable);
     history.push_back(amplitude(unstable) / tiny);
   }
   const double half_trace = 0.5 * w * w - 1.0;
@@ -71,12 +70,117 @@ TEST(Stability, ForceAtTheStartOfTheStepGrows) {
   constexpr double w = 0.1;
   constexpr double alpha_f = 0.8 / 1.8;
   constexpr int num_steps = 1000;
-  Simulation simulation(Communicator::self(), oscillator(w, num_steps, 1e-3, "start"));
+  const std::string keys = "contact_time = \"start\"\nspectral_radius = 0.8";
+  Simulation simulation(Communicator::self(), oscillator(w, num_steps, 1e-3, keys));
   const double first = 1e-3;
   run(simulation);
   // W^3 terms: the method's own estimate is good to 4 %.
   expect_value("A1 contact_time = start, W = 0.1: growth a step", 0.5 * (1.0 - alpha_f) * w * w,
                std::log(amplitude(simulation) / first) / num_steps, 0.04);
+}
+
+/// Growth a step of the amplitude, from one far below the depth on: slope of its logarithm over the second
+/// half of the steps.
+double measured_growth(const std::string &run_keys, double w, int num_steps) {
+  constexpr double start = 1e-7;
+  Simulation simulation(Communicator::self(), oscillator(w, num_steps, start, run_keys));
+  std::vector<double> growth; // e to the number of steps, so that a slope of logarithms is one a step
+  std::vector<double> size;
+  for (int k = 0; k < num_steps; ++k) {
+    step(simulation);
+    if (k >= num_steps / 2) {
+      growth.push_back(std::exp((k - num_steps) / (0.01 * num_steps)));
+      size.push_back(amplitude(simulation));
+    }
+  }
+  EXPECT_FALSE(simulation.fault().has_value());
+  return log_slope(growth, size) / (0.01 * num_steps);
+}
+
+/// Largest amplitude in the second half of many steps over that of the first.
+double lasting_amplitude(const std::string &run_keys, double w) {
+  constexpr int num_steps = 8000;
+  Simulation simulation(Communicator::self(), oscillator(w, num_steps, 1e-4, run_keys));
+  double first = 0.0;
+  double second = 0.0;
+  while (!simulation.finished()) {
+    step(simulation);
+    double &largest = simulation.step_count() <= num_steps / 2 ? first : second;
+    largest = std::max(largest, amplitude(simulation));
+  }
+  return second / first;
+}
+
+// The table of method.md, section 3, digits as printed, and the scheme of Hulbert and Chung. At 0.98 of the
+// limit nothing grows, at 1.02 the amplitude grows as the amplification matrix says.
+TEST(Stability, LimitsOfAllSchemes) {
+  struct Row {
+    std::string what, run_keys;
+    SchemeKind kind;
+    double radius;
+    ContactTime contact_time;
+    double limit, digits;
+  };
+  const auto alpha = [](double radius, const char *name, ContactTime contact_time, double limit,
+                        double digits) {
+    return Row{fmt::format("{}, r = {}", name, radius),
+               fmt::format("contact_time = \"{}\"\nspectral_radius = {}", name, radius),
+               SchemeKind::generalized_alpha,
+               radius,
+               contact_time,
+               limit,
+               digits};
+  };
+  const auto hulbert_chung = [](double radius, double limit) {
+    return Row{fmt::format("explicit-generalized-alpha, r = {}", radius),
+               fmt::format("scheme = \"explicit-generalized-alpha\"\nspectral_radius = {}", radius),
+               SchemeKind::explicit_generalized_alpha,
+               radius,
+               ContactTime::leapfrog,
+               limit,
+               5e-4};
+  };
+  std::vector<Row> rows{alpha(0.0, "predictor", ContactTime::predictor, 2.0, 5e-3),
+                        alpha(0.5, "predictor", ContactTime::predictor, 1.867, 5e-4),
+                        alpha(0.8, "predictor", ContactTime::predictor, 1.396, 5e-4),
+                        alpha(0.9, "predictor", ContactTime::predictor, 1.041, 5e-4),
+                        alpha(0.5, "predictor-end", ContactTime::predictor_end, 1.55, 5e-3),
+                        {"newmark-dda", "scheme = \"newmark-dda\"", SchemeKind::newmark_dda, 0.8,
+                         ContactTime::leapfrog, std::sqrt(2.0), 1e-6},
+                        {"central-difference", "scheme = \"central-difference\"",
+                         SchemeKind::central_difference, 0.8, ContactTime::leapfrog, 2.0, 1e-6},
+                        hulbert_chung(0.0, 1.549),
+                        hulbert_chung(0.5, 1.867),
+                        hulbert_chung(0.8, 1.976),
+                        hulbert_chung(1.0, 2.0)};
+  for (const double radius : {0.0, 0.25, 0.5, 0.8, 0.9}) {
+    rows.push_back(alpha(radius, "leapfrog", ContactTime::leapfrog, 2.0, 1e-6));
+  }
+  for (const Row &row : rows) {
+    const Scheme scheme = make_scheme(row.kind, row.radius, row.contact_time);
+    const double limit = stability_limit(scheme, 0.0);
+    expect_below("A1 " + row.what + fmt::format(", limit W = {:.4g}: distance from the printed one", limit),
+                 row.digits, std::abs(limit - row.limit));
+    expect_below("A1 " + row.what + ", 0.98 of the limit: amplitude of steps 4000..8000 over that of 0..4000",
+                 1.01, lasting_amplitude(row.run_keys, 0.98 * limit));
+    const double growth = std::log(amplification(scheme, 1.02 * limit, 0.0));
+    expect_value("A1 " + row.what + ", 1.02 of the limit: growth a step", growth,
+                 measured_growth(row.run_keys, 1.02 * limit, static_cast<int>(12.0 / growth)), 1e-3);
+  }
+}
+
+// At W = 1 an amplitude waves over the few periods that 12 e-foldings take, which the fit averages: 5e-3.
+TEST(Stability, UnstableAtEveryStep) {
+  for (const double radius : {0.0, 0.25, 0.5, 0.8, 0.9, 1.0}) {
+    for (const double w : {0.05, 0.3, 1.0}) {
+      const Scheme scheme = make_scheme(SchemeKind::generalized_alpha, radius, ContactTime::start);
+      const double growth = std::log(amplification(scheme, w, 0.0));
+      expect_value(fmt::format("A1 contact_time = start, r = {}, W = {}: growth a step", radius, w), growth,
+                   measured_growth(fmt::format("contact_time = \"start\"\nspectral_radius = {}", radius), w,
+                                   static_cast<int>(12.0 / growth)),
+                   5e-3);
+    }
+  }
 }
 
 // Five and a quarter periods of the small oscillation; a fine run of the same scene stands in for the exact
@@ -146,7 +250,7 @@ TEST(Order, ConstantAccelerationIsExact) {
                  block_toml("stone", rectangle({0.0, 0.0}, {1.0, 2.0}), "velocity = [7.0, 20.0, 3.0]")));
     double error = 0.0;
     while (!simulation.finished()) {
-      simulation.step();
+      step(simulation);
       const double t = simulation.time();
       const RigidDof d = displacement_of(simulation, 0);
       error = std::max({error, std::abs(d.u.x - 7.0 * t),

@@ -68,7 +68,7 @@ TEST(ReentrantBlock, RestsOnAnIncline) {
     const RigidDof rest = displacement_of(simulation, 1);
     double creep = 0.0;
     while (!simulation.finished()) {
-      simulation.step();
+      step(simulation);
       const RigidDof moved = displacement_of(simulation, 1) - rest;
       creep = std::max(creep, norm(moved.u) + std::abs(moved.r));
     }
@@ -236,16 +236,16 @@ Momentum momentum(const Simulation &simulation) {
 // torque. Tolerances as for rigid blocks.
 TEST(Collision, OfBlocksOfAllKindsKeepsMomentum) {
   Simulation simulation(Communicator::self(), scene_of(collision_toml()));
-  simulation.step();
+  step(simulation);
   const Momentum before = momentum(simulation); // its angular one is not meant: x*_0 has no partner
-  simulation.step();
-  simulation.step();
+  step(simulation);
+  step(simulation);
   const Momentum start = momentum(simulation);
   double linear = 0.0;
   double angular = 0.0;
   std::size_t most_regions = 0;
   while (!simulation.finished()) {
-    simulation.step();
+    step(simulation);
     const Momentum now = momentum(simulation);
     linear = std::max(linear, norm(now.linear - before.linear) / before.linear_scale);
     angular = std::max(angular, std::abs(now.angular - start.angular) / start.angular_scale);

@@ -37,7 +37,7 @@ TEST(Sticking, EnergyOfATangentialOscillationIsBounded) {
   double later = 0.0;
   double lost = 0.0;
   while (!simulation.finished()) {
-    simulation.step();
+    step(simulation);
     if (simulation.step_count() % 20 == 0) {
       const EnergyRow row = ledger.row(simulation);
       (simulation.step_count() <= num_steps / 10 ? first : later) =

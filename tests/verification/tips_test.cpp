@@ -64,7 +64,7 @@ Outcome collide(const std::string &toml) {
   Vec2 last;
   double jump = 0.0;
   while (!simulation.finished()) {
-    simulation.step();
+    step(simulation);
     const Vec2 force = simulation.forces().rigid[0].u;
     jump = std::max(jump, norm(force - last));
     last = force;
@@ -121,6 +121,26 @@ TEST(Tips, NeedlesOfFiveDegrees) {
     }
     check(fmt::format("B8 needle tips, tilted 10 degrees, friction {}", friction),
           tip_to_tip(needle(5.0), 0.0, 10.0 * degree, friction), friction);
+  }
+}
+
+// A right-angled tip flies into the bottom of a notch of 100 degrees.
+TEST(Tips, VertexMeetsReentrantCorner) {
+  const std::vector<Vec2> square{{0.0, 0.0}, {0.5, -0.5}, {1.0, 0.0}, {0.5, 0.5}};
+  const double lip = 0.8 * std::tan(50.0 * degree);
+  const std::vector<Vec2> notched{{-1.5, -lip}, {0.8, -lip}, {0.0, 0.0}, {0.8, lip}, {-1.5, lip}};
+  for (const double friction : {0.0, 30.0}) {
+    for (const double offset : {0.0, 1e-9, 1e-4}) {
+      check(fmt::format("B8 vertex into a re-entrant corner, {} m off, friction {}", offset, friction),
+            collide(head({.duration = 0.2,
+                          .time_step = 2e-6,
+                          .gravity = {},
+                          .friction_deg = friction,
+                          .damping = 0.0}) +
+                    block_toml("tip", placed(square, 0.0, {0.001, offset}), "velocity = [-0.1, 0.0, 0.0]") +
+                    block_toml("notch", notched, "velocity = [0.1, 0.0, 0.0]")),
+            friction);
+    }
   }
 }
 

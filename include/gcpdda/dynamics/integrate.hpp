@@ -4,6 +4,7 @@
 #include "gcpdda/model/block_system.hpp"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace gcpdda {
@@ -13,6 +14,26 @@ struct BlockForces {
   std::vector<RigidDof> rigid; ///< (num_owned); r is not used for deformable rows
   /// int t X^T of deformable rows (N), by entry of BlockSystem::deformation; entries of other rows unused.
   std::vector<Mat2> gradient;
+};
+
+/// Motion of a block that follows a velocity table: its velocity and the exact integral of it.
+class PrescribedMotion {
+public:
+  /// @param table  at least one row, times strictly rising from 0
+  explicit PrescribedMotion(std::span<const VelocityRow> table);
+
+  [[nodiscard]] RigidDof velocity(double time) const;
+  [[nodiscard]] RigidDof displacement(double time) const; ///< since t = 0
+
+private:
+  struct Row {
+    double time = 0.0;
+    RigidDof velocity;
+    RigidDof displacement;
+  };
+  [[nodiscard]] const Row &last_before(double time) const;
+
+  std::vector<Row> rows_;
 };
 
 /// Trial configuration of rows [0, num_owned); the one before becomes trial_previous. Vertices are posed. The
@@ -36,8 +57,9 @@ double motion_bound(const BlockSystem &system, std::size_t row, double time_step
 double moved_since_refresh(const BlockSystem &system, std::size_t row);
 
 /// Non-viscous damping, for static problems: every generalised force loses `share` of its size against the
-/// velocity it works on, f - share |f| sign(v), on F in its turning axes. The force of anchors of the last
-/// step counts in f. What is taken is added to the ledger's damping forces. Driven blocks are left alone.
+/// velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force and that of
+/// anchors of the last step count in f. What is taken is added to the ledger's damping forces. Driven blocks
+/// are left alone.
 void apply_local_damping(BlockSystem &system, BlockForces &forces, double share);
 
 /// Advance rows [0, num_owned) from t_n to t_{n+1} under their total forces: one system each, diagonal for a

@@ -32,9 +32,9 @@ struct RunSettings {
   Vec2 gravity{0.0, -9.81};
   double gravity_ramp = 0.0; ///< s, smooth rise of gravity from 0
   double time_step = 0.0;    ///< s; 0 means "auto"
-  double safety = 0.25;
+  double safety = 0.5;
   SchemeKind scheme = SchemeKind::generalized_alpha;
-  double spectral_radius = 0.8;
+  double spectral_radius = 0.5;
   ContactTime contact_time = ContactTime::leapfrog;
   PotentialKind potential = PotentialKind::exact;
   Fidelity fidelity = Fidelity::automatic;
@@ -52,6 +52,14 @@ struct PointLoad {
   Vec2 force;
 };
 
+/// A row of a velocity table; linear to the next row, the last velocity stays.
+struct VelocityRow {
+  double time = 0.0;                ///< s, 0 in the first row
+  std::array<double, 3> velocity{}; ///< vx, vy (m/s), omega (rad/s)
+
+  friend bool operator==(const VelocityRow &, const VelocityRow &) = default;
+};
+
 /// A block as the scene states it: world coordinates at t = 0, counter-clockwise.
 struct SceneBlock {
   std::string name;
@@ -59,7 +67,9 @@ struct SceneBlock {
   std::vector<Vec2> vertices;
   std::array<double, 3> velocity{}; ///< vx, vy (m/s), omega (rad/s)
   bool fixed = false;
-  bool driven = false; ///< keeps `velocity` whatever acts on it
+  bool driven = false; ///< keeps `velocity`, or follows its table, whatever acts on it
+  std::vector<VelocityRow>
+      velocity_table; ///< of a driven block whose velocity changes; `velocity` is its first
   Fidelity fidelity = Fidelity::automatic;
   std::vector<Vec2> fixed_points; ///< points of the block that are held where they are at t = 0
   std::vector<PointLoad> loads;

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace gcpdda {
@@ -41,6 +42,7 @@ struct Counters {
   std::int64_t migrations = 0; ///< blocks that left this rank, the first distribution not counted
   std::int64_t refreshes = 0;  ///< of the neighbourhood after the first
   double max_overlap = 0.0;    ///< m
+  double fastest_turn = 0.0;   ///< of a deformable block, rad per step
 };
 
 /// What limits the step.
@@ -132,6 +134,8 @@ private:
   void accelerate_owned();
   void refresh();
   void predict_next();
+  void prescribe_trials();
+  void prescribe_motion();
   void evaluate_contacts();
   void gather_forces();
   void gather_block(std::size_t row, Vec2 gravity_now);
@@ -150,6 +154,8 @@ private:
   ContactHistory history_;
   ContactForces contacts_;
   BlockForces forces_; ///< at the last evaluation
+  /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
+  std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
   FidelityReport fidelity_;
   Scheme scheme_;
   StepBound bound_;

@@ -1,0 +1,219 @@
+// C2: the toppling slope of Goodman and Bray.
+
+#include "problem.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+namespace gcpdda::testing {
+namespace {
+
+constexpr int num_columns = 16;
+constexpr double limit_equilibrium = 38.151; ///< degrees
+
+/// Force between a column and what it leans or stands on.
+struct JointForce {
+  double normal = 0.0; ///< kN/m
+  double shear = 0.0;  ///< over the cap
+  double inside = 0.0; ///< distance of the centre of pressure from the nearest corner, m
+};
+
+/// What holds a column.
+struct Support {
+  JointForce side; ///< from the next column downhill
+  JointForce base;
+};
+
+struct Verdict {
+  bool stands = false;
+  double turned = 0.0;             ///< largest rotation of a column, degrees
+  std::map<int, Support> supports; ///< by the number of the column, from the toe
+};
+
+/// Distance of a point from the nearest corner of two blocks.
+double from_corner(const BlockSystem &blocks, const CandidatePair &pair, Vec2 point) {
+  double nearest = 1e300;
+  for (const BlockIndex block : {pair.lower, pair.higher}) {
+    for (const Vec2 corner : blocks.of_row(blocks.vertex, block.value)) {
+      nearest = std::min(nearest, norm(corner - point));
+    }
+  }
+  return nearest;
+}
+
+/// What holds the columns of the shipped slope; joints of a column with two base blocks count by the larger.
+std::map<int, Support> supports_of(const Simulation &simulation) {
+  const BlockSystem &blocks = simulation.blocks();
+  const auto column_of = [&](BlockIndex row) {
+    const auto id = static_cast<std::size_t>(blocks.properties[row.value].id.value);
+    const std::string &name = simulation.scene().blocks[id].name;
+    return name.starts_with("column") ? std::stoi(name.substr(6)) : 0;
+  };
+  std::map<int, Support> supports;
+  for (const RegionForce &force : simulation.contacts().regions()) {
+    const CandidatePair &pair = simulation.candidates().pairs[force.pair];
+    const auto [lower, upper] = std::minmax({column_of(pair.lower), column_of(pair.higher)});
+    const bool flat = std::abs(dot(force.normal, {0.5, -0.5 * std::sqrt(3.0)})) > 0.7; // joint of a base
+    JointForce &joint = flat ? supports[upper].base : supports[upper].side;
+    if (1e-3 * force.normal_force > joint.normal && (flat || lower > 0)) {
+      joint = {1e-3 * force.normal_force, std::abs(force.shear) / force.cap,
+               from_corner(blocks, pair, force.point)};
+    }
+  }
+  return supports;
+}
+
+/// Runs until the slope is at rest or a column has turned by 5 degrees.
+Verdict judged(double friction_deg, double normal_stiffness) {
+  Simulation simulation(
+      Communicator::self(),
+      shipped_scene("goodman_bray", {fmt::format("joint.default.friction_angle_deg={}", friction_deg),
+                                     fmt::format("joint.default.normal_stiffness={}", normal_stiffness),
+                                     "run.duration=40.0"}));
+  const BlockSystem &blocks = simulation.blocks();
+  const double loaded = simulation.scene().run.gravity_ramp + 1.0;
+  Verdict verdict;
+  while (!simulation.finished() && !verdict.stands && verdict.turned < 5.0) {
+    step(simulation);
+    double fastest = 0.0;
+    for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+      verdict.turned = std::max(verdict.turned, std::abs(blocks.displacement[row].r) / degree);
+      fastest = std::max(fastest, norm(blocks.velocity[row].u));
+    }
+    verdict.stands = simulation.time() > loaded && fastest < 1e-6;
+  }
+  EXPECT_FALSE(simulation.fault().has_value());
+  EXPECT_NE(verdict.stands, verdict.turned >= 5.0) << "no verdict at " << friction_deg;
+  verdict.supports = supports_of(simulation);
+  return verdict;
+}
+
+struct Bracket {
+  double falls = 37.0; ///< degrees
+  double stands = 39.5;
+  Verdict standing; ///< at its upper end
+};
+
+Bracket bisected(double normal_stiffness) {
+  Bracket bracket;
+  EXPECT_FALSE(judged(bracket.falls, normal_stiffness).stands);
+  bracket.standing = judged(bracket.stands, normal_stiffness);
+  EXPECT_TRUE(bracket.standing.stands);
+  while (bracket.stands - bracket.falls > 0.1) {
+    const double middle = 0.5 * (bracket.falls + bracket.stands);
+    Verdict verdict = judged(middle, normal_stiffness);
+    if (verdict.stands) {
+      bracket.stands = middle;
+      bracket.standing = std::move(verdict);
+    } else {
+      bracket.falls = middle;
+    }
+  }
+  return bracket;
+}
+
+/// Columns 13 to 1 push the next one downhill by so much at the limit (Wyllie and Mah), kN/m.
+constexpr std::array<double, 13> published{292.5,  825.7,  1556.0, 2826.7, 3922.2, 4594.8, 4837.0,
+                                           4637.5, 3978.1, 2825.6, 1413.6, 472.2,  1.5};
+
+void write_forces(const Bracket &bracket) {
+  const auto folder = table_folder();
+  std::ofstream file(folder ? *folder / "goodman_bray.csv" : "/dev/null");
+  file << "column,published[kN/m],side[kN/m],side_shear_over_cap,side_from_corner[m],base[kN/m],"
+          "base_shear_over_cap,base_from_corner[m]\n";
+  for (int column = num_columns; column >= 1; --column) {
+    const Support &support = bracket.standing.supports.at(column);
+    const double known = column <= 13 ? published[static_cast<std::size_t>(13 - column)] : 0.0;
+    const std::string row = fmt::format("{},{},{:.1f},{:.3f},{:.2f},{:.1f},{:.3f},{:.2f}", column, known,
+                                        support.side.normal, support.side.shear, support.side.inside,
+                                        support.base.normal, support.base.shear, support.base.inside);
+    fmt::print("    C2 {}\n", row);
+    file << row << "\n";
+  }
+}
+
+/// Where the forces on a column act and how much of its strength a side uses, as limit equilibrium has it.
+struct Arms {
+  double base = 0.0;  ///< distance of the base's force from the downhill corner, m
+  double side = 0.0;  ///< of the side's force below the top of the joint, m
+  double shear = 1.0; ///< over the cap
+};
+using AllArms = std::array<Arms, num_columns + 2>; ///< by number, from 1
+
+/// What the lowest column pushes with, kN/m: each column slides or topples, whichever takes more force.
+double toe_force(double friction_tan, const AllArms &arms) {
+  constexpr std::array<double, num_columns> heights{4,  8,  12, 16, 20, 24, 28, 32,
+                                                    36, 40, 34, 28, 22, 16, 10, 4};
+  constexpr double width = 10.0;
+  constexpr double difference = 5.0; // of the tops of two neighbours
+  constexpr int crest = 10;
+  const double sine = 0.5;
+  const double cosine = 0.5 * std::sqrt(3.0);
+  double push = 0.0;
+  for (int n = num_columns; n >= 1; --n) {
+    const auto i = static_cast<std::size_t>(n);
+    const double height = heights[i - 1];
+    const double weight = 25.0 * width * height;
+    const double above = (n < crest ? height : height - difference) - arms[i + 1].side;
+    const double below = (n <= crest ? height - difference : height) - arms[i].side;
+    const double arm = width - arms[i].base;
+    const double turning = push * (above - arms[i + 1].shear * friction_tan * arm) +
+                           0.5 * weight * (sine * height - cosine * (width - 2.0 * arms[i].base));
+    const double toppling = n > 1 ? turning / (below + arms[i].shear * friction_tan * arms[i].base) : 0.0;
+    const double sliding =
+        push - weight * (cosine * friction_tan - sine) / (1.0 - friction_tan * friction_tan);
+    push = std::max({toppling, sliding, 0.0});
+  }
+  return push;
+}
+
+/// Smallest friction angle at which the toe need not be held, degrees.
+double limit_angle(const AllArms &arms) {
+  double low = 34.0;
+  double high = 42.0;
+  while (high - low > 1e-9) {
+    const double middle = 0.5 * (low + high);
+    (toe_force(std::tan(middle * degree), arms) > 1e-6 ? low : high) = middle;
+  }
+  return high;
+}
+
+AllArms arms_of(const std::map<int, Support> &supports) {
+  AllArms arms;
+  for (const auto &[column, support] : supports) {
+    arms[static_cast<std::size_t>(column)] = {support.base.inside, support.side.inside,
+                                              support.side.normal > 0.0 ? support.side.shear : 1.0};
+  }
+  return arms;
+}
+
+// Limit equilibrium lets all forces act at corners. In the model (k_n = 1e9) the base pushes half a metre
+// inside its corner, which is worth +0.80 degrees, the sides push up to 2.4 m below the top of their joints,
+// -0.61 degrees, and the sides of the upper columns do not use all of their strength, +0.14 degrees. With the
+// arms measured, limit equilibrium gives the model's angle. Joints ten times as stiff fall at 38.29 degrees.
+TEST(TopplingSlope, LimitingFrictionAngle) {
+  expect_value("C2 limiting friction angle by limit equilibrium, degrees", limit_equilibrium, limit_angle({}),
+               1e-5);
+  for (const double stiffness : full_size() ? std::vector{1e10, 1e9} : std::vector{1e9}) {
+    const Bracket bracket = bisected(stiffness);
+    expect_value(fmt::format("C2 limiting friction angle, between {} and {}, k_n = {:g}: degrees",
+                             bracket.falls, bracket.stands, stiffness),
+                 limit_equilibrium, 0.5 * (bracket.falls + bracket.stands), 0.01);
+    expect_value(
+        fmt::format("C2 the same against limit equilibrium with the model's arms, k_n = {:g}: degrees",
+                    stiffness),
+        limit_angle(arms_of(bracket.standing.supports)), 0.5 * (bracket.falls + bracket.stands), 2e-3);
+    if (stiffness == 1e9) {
+      write_forces(bracket);
+    }
+  }
+}
+
+} // namespace
+} // namespace gcpdda::testing
