@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "gcpdda/model/scene.hpp"
+
 #include <string>
 #include <vector>
 
@@ -13,8 +15,8 @@ namespace gcpdda::study {
 /// A member of the family as a scene names it.
 struct Member {
   std::string scheme = "generalized-alpha";
-  std::string contact_time = "leapfrog"; ///< of generalized-alpha, else empty
-  double spectral_radius = 0.8;          ///< of both generalized-alpha kinds, else 0
+  std::string contact_time = "leapfrog";                  ///< of generalized-alpha, else empty
+  double spectral_radius = RunSettings{}.spectral_radius; ///< of both generalized-alpha kinds, else 0
 
   /// Lines of [run].
   [[nodiscard]] std::string run_keys() const;

@@ -63,7 +63,8 @@ Outcome try_scene(const std::string &toml, const Drive &drive, const std::vector
     if (simulation.fault()) {
       return {Ending::stopped, fault_text(simulation)};
     }
-    const std::string warning = told(simulation.notes(), Severity::warning);
+    const std::string warning =
+        told(simulation.notes(), Severity::warning) + told(simulation.warnings(), Severity::warning);
     if (outcome.ending == Ending::silent && !warning.empty()) {
       return {Ending::warned, outcome.text + "; " + warning};
     }

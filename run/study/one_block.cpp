@@ -42,7 +42,8 @@ std::array<double, 2> without_tension(double length, std::array<double, 2> p, st
 
 OneBlock::OneBlock(const OneBlockProblem &problem, const Variant &variant)
     : problem_(problem), variant_(variant),
-      scheme_(make_scheme(SchemeKind::generalized_alpha, 0.8, ContactTime::leapfrog)),
+      scheme_(
+          make_scheme(SchemeKind::generalized_alpha, RunSettings{}.spectral_radius, ContactTime::leapfrog)),
       shear_(problem.shear_at_start) {
   const Material rock{"rock", testing::rock_density};
   SceneBlock block;

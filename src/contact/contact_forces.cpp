@@ -378,6 +378,7 @@ ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates 
     const CandidatePair &pair = candidates.pairs[force.pair];
     report.normals_undefined += force.normal_undefined ? 1 : 0;
     report.max_overlap = std::max(report.max_overlap, force.overlap);
+    report.max_overlap_share = std::max(report.max_overlap_share, 0.5 * force.overlap / pair.allowed_overlap);
     if (force.overlap > pair.allowed_overlap) {
       keep_first(report.fault,
                  {Fault::Cause::too_deep, system.properties[pair.lower.value].id,

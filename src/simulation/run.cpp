@@ -285,7 +285,9 @@ private:
     summary.verdict = failed ? "failed" : "completed";
     summary.message = failed ? fault_message() : fmt::format("reached t = {:g} s", simulation_.time());
     fill(summary);
-    warn_of_fast_turns();
+    for (const Diagnostic &warning : simulation_.warnings()) {
+      log_->line(to_string(warning));
+    }
     on_root(communicator_, [&] { write_summary(directory_, summary); });
     write_owners_of_blocks();
     log_->line("wall seconds   min      mean       max over ranks");
@@ -299,18 +301,6 @@ private:
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());
     return failed ? 5 : 0;
-  }
-
-  /// Implicit elasticity then takes energy out of the spin, 0.25 % in a turn at 0.25 rad a step.
-  void warn_of_fast_turns() {
-    double turn = simulation_.counters().fastest_turn;
-    communicator_.max(std::span(&turn, 1));
-    if (turn > 0.05 && simulation_.scene().run.elasticity == Elasticity::implicit) {
-      log_->line(
-          fmt::format("warning: a deformable block turned by {:.2g} rad in one step and lost energy by it, "
-                      "use a smaller run.time_step or elasticity = \"explicit\"",
-                      turn));
-    }
   }
 
   void fill(RunSummary &summary) {

@@ -6,6 +6,8 @@
 
 #include "gcpdda/simulation/simulation.hpp"
 
+#include "driven_paths.hpp"
+
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/frequency_bound.hpp"
 #include "gcpdda/geometry/holds_point.hpp"
@@ -83,6 +85,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene)
   make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity,
                       stiffest_joint(scene_.joints));
   refresh();
+  warn_of_driven_paths(scene_, blocks_, notes_);
   find_initial_state();
   stop_on_errors(notes_);
 }
@@ -193,6 +196,31 @@ void Simulation::lay_grid(std::span<const SceneBlock> slab) {
   constexpr double skin_per_size = 0.1;
   base_skin_ = num_mobile > 0 ? skin_per_size * std::sqrt(smallest_mobile) : 0.0;
   map_.grid = CellGrid::over(region, std::max(std::int64_t{64} * communicator_.size(), 2 * num_mobile));
+  if (num_mobile > 0) {
+    const double farthest = *std::max_element(largest.begin(), largest.begin() + 4,
+                                              [](double a, double b) { return std::abs(a) < std::abs(b); });
+    warn_of_rounding(std::sqrt(smallest_mobile), std::abs(farthest));
+  }
+}
+
+// A block rests by its overlap; where that is no more than the last digits of its coordinates, it is noise.
+void Simulation::warn_of_rounding(double size, double farthest) {
+  double density = infinite;
+  for (const Material &material : scene_.materials) {
+    density = std::min(density, material.density);
+  }
+  const double depth = density * norm(scene_.run.gravity) * size / stiffest_joint(scene_.joints);
+  const double rounding = std::numeric_limits<double>::epsilon() * farthest;
+  if (depth > 0.0 && depth < 10.0 * rounding) {
+    notes_.push_back(
+        {Severity::warning,
+         {},
+         fmt::format("the smallest block rests by an overlap of {:.2g} m, and coordinates of {:g} m are "
+                     "rounded by {:.2g} m",
+                     depth, farthest, rounding),
+         "forces at rest will be rounding errors",
+         "lower joint.normal_stiffness or move the model to the origin"});
+  }
 }
 
 // Mobile blocks of the slab become owned rows, to be migrated; everybody gets all fixed ones.

@@ -4,7 +4,9 @@
 #include "gcpdda/simulation/half_works.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fmt/format.h>
 
 namespace gcpdda {
 
@@ -90,6 +92,28 @@ void Simulation::refresh() {
     counters_.migrations += left;
     ++counters_.refreshes;
   }
+}
+
+Diagnostics Simulation::warnings() const {
+  std::array<double, 2> largest{counters_.fastest_turn, counters_.max_overlap_share};
+  communicator_.max(largest);
+  const auto [turn, share] = largest;
+  Diagnostics warnings;
+  if (turn > 0.05) {
+    warnings.push_back({Severity::warning,
+                        {},
+                        fmt::format("a deformable block turned by {:.2g} rad in one step", turn),
+                        "spinning loses energy then, 0.25 % in a turn at 0.25 rad with implicit elasticity",
+                        "use a smaller run.time_step, or a rigid block"});
+  }
+  if (share > 0.1) {
+    warnings.push_back({Severity::warning,
+                        {},
+                        fmt::format("two blocks overlapped by {:.2g} of the narrowest width of one", share),
+                        "a joint that closes by more than 0.1 of its blocks is no joint any more",
+                        "use a larger joint.normal_stiffness"});
+  }
+  return warnings;
 }
 
 void Simulation::predict_next() {
@@ -209,6 +233,7 @@ void Simulation::report() {
   counters_.evaluations += force_report_.evaluations;
   counters_.normals_undefined += force_report_.normals_undefined;
   counters_.max_overlap = std::max(counters_.max_overlap, force_report_.max_overlap);
+  counters_.max_overlap_share = std::max(counters_.max_overlap_share, force_report_.max_overlap_share);
   std::int64_t crossing = 0;
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
     const CandidatePair &pair = candidates_.pairs[k];

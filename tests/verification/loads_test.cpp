@@ -220,6 +220,28 @@ TEST(DrivenBlock, FollowsItsTable) {
                pushed("velocity_table = [[0, 0.8, 0, 0], [0.02, 0.8, 0, 0], [0.03, 0.8, 0, 0]]"), 1e-11);
 }
 
+// What keeps its velocity meets nothing else of that kind: the user hears of it before the run. A way along
+// the ground or away from it is none through it.
+TEST(DrivenBlock, SaysThatItPassesThroughTheGround) {
+  const auto warnings = [](const std::string &motion) {
+    const Simulation simulation(
+        Communicator::self(),
+        scene_of(head({.duration = 4.0, .time_step = 1e-3}) +
+                 block_toml("ground", {{-9, -2}, {9, -2}, {9, 3}, {8, 3}, {8, 0}, {-9, 0}}, "fixed = true") +
+                 block_toml("ram", rectangle({0.0, 0.0}, {1.0, 1.0}), motion)));
+    std::string text;
+    for (const Diagnostic &note : simulation.notes()) {
+      text += note.severity == Severity::warning ? note.what + "\n" : "";
+    }
+    return text;
+  };
+  EXPECT_EQ(warnings("prescribed_velocity = [2, 0, 0]"),
+            "driven block 'ram' passes through block 'ground' at about t = 3.53 s\n");
+  EXPECT_EQ(warnings("prescribed_velocity = [1.7, 0, 0]"), "");
+  EXPECT_EQ(warnings("velocity_table = [[0, 2, 0, 0], [3.4, 2, 0, 0], [3.5, -2, 0, 0]]"), "");
+  EXPECT_EQ(warnings("prescribed_velocity = [0, 2, 1]"), "");
+}
+
 const std::vector<Vec2> slab_corners = rectangle({-1.0, -0.5}, {1.0, 0.5});
 constexpr double slab_weight = 2.0 * rock_density * earth_gravity;
 

@@ -93,8 +93,9 @@ inline void keep_first(std::optional<Fault> &kept, const Fault &fault) {
 struct ForceReport {
   std::int64_t evaluations = 0; ///< pairs whose boxes met
   std::int64_t normals_undefined = 0;
-  double max_overlap = 0.0;
-  std::optional<Fault> fault; ///< the one with the smallest ids
+  double max_overlap = 0.0;       ///< m
+  double max_overlap_share = 0.0; ///< of the pair's narrowest width
+  std::optional<Fault> fault;     ///< the one with the smallest ids
 };
 
 /// Evaluates pairs; buffers live as long as it does.

@@ -39,10 +39,11 @@ struct Counters {
   std::int64_t cross_rank_contacts = 0;
   std::int64_t cross_rank_contacts_formed = 0;
   std::int64_t normals_undefined = 0;
-  std::int64_t migrations = 0; ///< blocks that left this rank, the first distribution not counted
-  std::int64_t refreshes = 0;  ///< of the neighbourhood after the first
-  double max_overlap = 0.0;    ///< m
-  double fastest_turn = 0.0;   ///< of a deformable block, rad per step
+  std::int64_t migrations = 0;    ///< blocks that left this rank, the first distribution not counted
+  std::int64_t refreshes = 0;     ///< of the neighbourhood after the first
+  double max_overlap = 0.0;       ///< m
+  double max_overlap_share = 0.0; ///< of the narrowest width
+  double fastest_turn = 0.0;      ///< of a deformable block, rad per step
 };
 
 /// What limits the step.
@@ -100,6 +101,8 @@ public:
   [[nodiscard]] PhaseTimes &phases() { return phases_; }
   /// Warnings and remarks of the set-up, the same on all ranks.
   [[nodiscard]] const Diagnostics &notes() const { return notes_; }
+  /// What the run so far has to warn of, the same on all ranks.
+  [[nodiscard]] Diagnostics warnings() const;
   /// This rank writes what is known of the pair: one rank for each pair.
   [[nodiscard]] bool counts_here(const CandidatePair &pair) const;
   [[nodiscard]] std::int64_t num_blocks() const { return gcpdda::num_blocks(scene_); }
@@ -123,6 +126,7 @@ private:
   [[nodiscard]] std::vector<SceneBlock> load_slab();
   void resolve_stiffness(std::span<const SceneBlock> slab);
   void lay_grid(std::span<const SceneBlock> slab);
+  void warn_of_rounding(double size, double farthest);
   void take_blocks(std::span<const SceneBlock> slab);
   void place_monitors(std::span<const SceneBlock> slab);
   [[nodiscard]] std::vector<std::int64_t> count_contact_work();
