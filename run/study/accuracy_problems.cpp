@@ -2,10 +2,10 @@
 
 #include "gcpdda/contact/overlap.hpp"
 #include "support/incline.hpp"
+#include "support/jointed_bar.hpp"
 #include "support/setting.hpp"
 #include "support/shapes.hpp"
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -172,31 +172,6 @@ Outcome compress(const Choice &choice) {
   });
 }
 
-/// Lowest frequency of the bar between abutments: unknowns u_i and e_i L of each block, springs k between.
-double lowest_frequency(double youngs_modulus) {
-  constexpr int n = bar_blocks;
-  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  Eigen::MatrixXd spring = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  for (int i = 0; i < n; ++i) {
-    mass(2 * i, 2 * i) = rock_density;
-    mass(2 * i + 1, 2 * i + 1) = rock_density / 12.0;
-    spring(2 * i + 1, 2 * i + 1) += youngs_modulus;
-  }
-  for (int joint = 0; joint <= n; ++joint) {
-    Eigen::VectorXd closing = Eigen::VectorXd::Zero(2 * n);
-    if (joint > 0) {
-      closing.segment(2 * joint - 2, 2) << 1.0, 0.5;
-    }
-    if (joint < n) {
-      closing.segment(2 * joint, 2) << -1.0, 0.5;
-    }
-    spring += bar_stiffness * closing * closing.transpose();
-  }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(spring, mass,
-                                                                         Eigen::EigenvaluesOnly);
-  return std::sqrt(solver.eigenvalues()(0));
-}
-
 /// The half wave of the compressed bar, from its motion after five half periods: in that time a frequency
 /// that is off by a share e shifts the phase by 5 pi e.
 Outcome ring(const Choice &choice) {
@@ -205,7 +180,7 @@ Outcome ring(const Choice &choice) {
   const double shape = std::numbers::pi / (bar_blocks + 1);
   constexpr double youngs_modulus = 10.0 * bar_stiffness;
   constexpr double half_periods = 5.0;
-  const double exact = lowest_frequency(youngs_modulus);
+  const double exact = jointed_bar_frequency(bar_blocks, youngs_modulus, bar_stiffness);
   std::string toml =
       head(bar_setting(choice, youngs_modulus, half_periods * std::numbers::pi / exact, 0.0, ""));
   for (int i = 0; i < bar_blocks; ++i) {

@@ -2,8 +2,8 @@
 // formulas leave out (joint closure relative to the block, finite strain) is of that size.
 
 #include "problem.hpp"
+#include "support/jointed_bar.hpp"
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -70,33 +70,6 @@ TEST(JointedBar, ShortensByBlocksAndJoints) {
   }
 }
 
-/// Lowest frequency of blocks with uniform strain e_i between springs k: unknowns u_i, e_i L.
-double lowest_frequency(double youngs_modulus) {
-  const int n = num_blocks;
-  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  for (int i = 0; i < n; ++i) {
-    mass(2 * i, 2 * i) = rock_density;
-    mass(2 * i + 1, 2 * i + 1) = rock_density / 12.0;
-    stiffness(2 * i + 1, 2 * i + 1) += youngs_modulus;
-  }
-  for (int joint = 0; joint <= n; ++joint) {
-    Eigen::VectorXd closing = Eigen::VectorXd::Zero(2 * n);
-    if (joint > 0) {
-      closing(2 * joint - 2) = 1.0;
-      closing(2 * joint - 1) = 0.5;
-    }
-    if (joint < n) {
-      closing(2 * joint) = -1.0;
-      closing(2 * joint + 1) = 0.5;
-    }
-    stiffness += joint_stiffness * closing * closing.transpose();
-  }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, mass,
-                                                                         Eigen::EigenvaluesOnly);
-  return std::sqrt(solver.eigenvalues()(0));
-}
-
 /// Frequency of the half wave that runs to and fro between two abutments in a bar under compression. The
 /// blocks start unstrained; dashpots take what breathing that makes, and hardly anything of the slow wave.
 /// They act at t_n, the springs (1 - af) dt later, which shifts the frequency: hence the spectral radius.
@@ -151,7 +124,7 @@ TEST(JointedBar, CarriesWavesAtTheSpeedOfTheEffectiveModulus) {
     const double got = measured_frequency("deformable", youngs_modulus);
     expect_value(
         fmt::format("C3 wave in a jointed bar, k_n L/E = {}: frequency of the discrete bar, rad/s", ratio),
-        lowest_frequency(youngs_modulus), got, 3e-4);
+        jointed_bar_frequency(num_blocks, youngs_modulus, joint_stiffness), got, 3e-4);
     const double effective = 1.0 / (1.0 / youngs_modulus + 1.0 / joint_stiffness);
     // Half a block's worth of joint more at each end than a bar of n blocks with their joints.
     const double length = num_blocks + 1.0 / (1.0 + ratio);
