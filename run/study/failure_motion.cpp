@@ -73,11 +73,7 @@ Outcome shot(double speed, bool at_its_like, double share) {
   const auto square = [&](double x) { return rectangle({x - size, -0.5 * size}, {x, 0.5 * size}); };
   const double duration = 3.0 * distance / speed;
   std::string toml =
-      head({.duration = duration,
-            .gravity = {},
-            .normal_stiffness = stiffness(1.0, size),
-            .damping = 0.0,
-            .run_keys = "safety = 0.25"}) + // impacts without dashpots keep energy to W^2
+      head({.duration = duration, .gravity = {}, .normal_stiffness = stiffness(1.0, size), .damping = 0.0}) +
       block_toml("bullet", square(-distance * share), fmt::format("velocity = [{:.17g}, 0.0, 0.0]", speed));
   toml += at_its_like ? block_toml("like", square(distance * share + size),
                                    fmt::format("velocity = [{:.17g}, 0.0, 0.0]", -speed))

@@ -82,6 +82,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene)
   distribute();
   find_bound();
   plan_ = plan_time(scene_.run, scene_.output, bound_.time_step, notes_);
+  warn_of_lively_impacts();
   make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity,
                       stiffest_joint(scene_.joints));
   refresh();
@@ -200,6 +201,23 @@ void Simulation::lay_grid(std::span<const SceneBlock> slab) {
     const double farthest = *std::max_element(largest.begin(), largest.begin() + 4,
                                               [](double a, double b) { return std::abs(a) < std::abs(b); });
     warn_of_rounding(std::sqrt(smallest_mobile), std::abs(farthest));
+  }
+}
+
+// An impact keeps its energy to about (omega dt)^2; dashpots take more than that, but without them it may
+// grow.
+void Simulation::warn_of_lively_impacts() {
+  const double per_step = plan_.time_step * bound_.omega_max;
+  if (scene_.run.contact_damping == 0.0 && per_step > 0.5 * (1.0 + 1e-9)) {
+    notes_.push_back(
+        {Severity::warning,
+         {},
+         fmt::format(
+             "without contact damping a step of {:.2g}/omega_max lets one impact gain or lose up to a "
+             "tenth of its energy",
+             per_step),
+         "the error falls with the square of the step",
+         "use run.safety = 0.25 or less, or run.contact_damping"});
   }
 }
 

@@ -127,6 +127,7 @@ private:
   void resolve_stiffness(std::span<const SceneBlock> slab);
   void lay_grid(std::span<const SceneBlock> slab);
   void warn_of_rounding(double size, double farthest);
+  void warn_of_lively_impacts();
   void take_blocks(std::span<const SceneBlock> slab);
   void place_monitors(std::span<const SceneBlock> slab);
   [[nodiscard]] std::vector<std::int64_t> count_contact_work();
