@@ -63,8 +63,9 @@ Outcome try_scene(const std::string &toml, const Drive &drive, const std::vector
     if (simulation.fault()) {
       return {Ending::stopped, fault_text(simulation)};
     }
-    const std::string warning =
-        told(simulation.notes(), Severity::warning) + told(simulation.warnings(), Severity::warning);
+    std::string warning = told(simulation.notes(), Severity::warning);
+    const std::string at_the_end = told(simulation.warnings(), Severity::warning);
+    warning += (warning.empty() || at_the_end.empty() ? "" : "; ") + at_the_end;
     if (outcome.ending == Ending::silent && !warning.empty()) {
       return {Ending::warned, outcome.text + "; " + warning};
     }
