@@ -1,7 +1,9 @@
 #include "gcpdda/contact/candidates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace gcpdda {
 
@@ -100,6 +102,138 @@ CandidatePair make_pair(const BlockSystem &system, BlockIndex lower, BlockIndex 
   return pair;
 }
 
+/// Edges of a convex block, counter-clockwise from `first` on.
+struct EdgeChain {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+
+/// Which edges of two convex rigid blocks can take part in their contact while neither moves by more than
+/// half the skin.
+///
+/// Whatever touches lies in both boxes, and in the axes of either block it has moved by half the skin at most
+/// since the refresh: so it lies, as seen then, in the common part of both boxes inflated by half the skin,
+/// inflated by as much again: call it C. An edge that does not meet C cannot touch. Over C the line of edge j
+/// lies between low_j and high_j; where low_j is above the smallest high_k, line k is nearer all over C. An
+/// edge that neither touches nor is nearest is out. Where the smallest high_k is negative no point of C is
+/// inside: the blocks cannot touch.
+class ChainFinder {
+public:
+  ChainFinder(const BlockSystem &system, double skin) : system_(system), half_skin_(0.5 * skin) {
+    vertex_.reserve(system.reference_vertex.size());
+    normal_.reserve(system.reference_vertex.size());
+    box_.reserve(system.num_rows());
+    for (std::size_t row = 0; row < system.num_rows(); ++row) {
+      const Rotation turn = Rotation::of(system.refreshed[row].r);
+      const Vec2 centre = system.properties[row].centroid + system.refreshed[row].u;
+      Aabb box;
+      for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
+        vertex_.push_back(centre + turn(system.reference_vertex[k]));
+        normal_.push_back(turn(system.reference_normal[k]));
+        box.include(vertex_.back());
+      }
+      box_.push_back(box);
+    }
+  }
+
+  enum class Verdict { apart, plain, other };
+  Verdict find(std::size_t lower, std::size_t higher, EdgeChain &lower_chain, EdgeChain &higher_chain) {
+    if (!is_rigid_and_convex(lower) || !is_rigid_and_convex(higher)) {
+      return Verdict::other;
+    }
+    const double rounding = 1e-9 * (norm(box_[lower].extent()) + norm(box_[higher].extent()));
+    const Aabb first = box_[lower].inflated(half_skin_);
+    const Aabb second = box_[higher].inflated(half_skin_);
+    const Aabb common{{std::max(first.low.x, second.low.x), std::max(first.low.y, second.low.y)},
+                      {std::min(first.high.x, second.high.x), std::min(first.high.y, second.high.y)}};
+    const Aabb region = common.inflated(half_skin_ + rounding);
+    if (!mark_edges(lower, region, rounding) || !chain_of(lower, higher, lower_chain)) {
+      return can_touch_ ? Verdict::other : Verdict::apart;
+    }
+    if (!mark_edges(higher, region, rounding) || !chain_of(higher, lower, higher_chain)) {
+      return can_touch_ ? Verdict::other : Verdict::apart;
+    }
+    return Verdict::plain;
+  }
+
+private:
+  [[nodiscard]] bool is_rigid_and_convex(std::size_t row) const {
+    return system_.properties[row].is_convex && !system_.is_deformable(row);
+  }
+
+  /// Mark the edges of a block that can take part; false if none can.
+  bool mark_edges(std::size_t row, const Aabb &region, double rounding) {
+    const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
+    const std::span<const Vec2> normal = system_.of_row(normal_, row);
+    takes_part_.assign(vertex.size(), true);
+    can_touch_ = true;
+    if (!std::isfinite(half_skin_)) {
+      return true;
+    }
+    const Vec2 centre = 0.5 * (region.low + region.high);
+    const Vec2 half = 0.5 * region.extent();
+    double smallest_high = std::numeric_limits<double>::infinity();
+    low_.resize(vertex.size());
+    for (std::size_t j = 0; j < vertex.size(); ++j) {
+      const double middle = dot(normal[j], vertex[j] - centre);
+      const double spread = std::abs(normal[j].x) * half.x + std::abs(normal[j].y) * half.y;
+      smallest_high = std::min(smallest_high, middle + spread);
+      low_[j] = middle - spread;
+    }
+    for (std::size_t j = 0; j < vertex.size(); ++j) {
+      const std::array<Vec2, 2> ends{vertex[j], vertex[j + 1 == vertex.size() ? 0 : j + 1]};
+      takes_part_[j] = low_[j] <= smallest_high + rounding || bounding_box(ends).meets(region);
+    }
+    can_touch_ = smallest_high >= -rounding;
+    return can_touch_;
+  }
+
+  /// The marked edges, if they are neighbours and few. All around, they start at the vertex farthest from the
+  /// other block: a choice that has nothing to do with the number of a vertex.
+  bool chain_of(std::size_t row, std::size_t other, EdgeChain &chain) const {
+    const std::size_t n = takes_part_.size();
+    chain = {0, static_cast<std::size_t>(std::count(takes_part_.begin(), takes_part_.end(), true))};
+    if (chain.count > most_plain_edges) {
+      return false;
+    }
+    if (chain.count == n) {
+      const Vec2 away = 0.5 * (box_[other].low + box_[other].high);
+      const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
+      for (std::size_t j = 1; j < n; ++j) {
+        chain.first = norm(vertex[j] - away) > norm(vertex[chain.first] - away) ? j : chain.first;
+      }
+      return true;
+    }
+    std::size_t starts = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      if (takes_part_[j] && !takes_part_[j == 0 ? n - 1 : j - 1]) {
+        chain.first = j;
+        ++starts;
+      }
+    }
+    return starts == 1;
+  }
+
+  const BlockSystem &system_;
+  double half_skin_;
+  std::vector<Vec2> vertex_; ///< at the refresh
+  std::vector<Vec2> normal_;
+  std::vector<Aabb> box_;
+  // Of the block at hand.
+  std::vector<double> low_;
+  std::vector<bool> takes_part_;
+  bool can_touch_ = true;
+};
+
+/// Entries of BlockSystem::vertex at the ends of a chain's edges.
+void append_chain(const BlockSystem &system, std::size_t row, const EdgeChain &chain,
+                  std::vector<std::uint32_t> &vertices) {
+  const std::size_t n = system.num_vertices(row);
+  for (std::size_t i = 0; i <= chain.count; ++i) {
+    vertices.push_back(system.vertex_begin[row] + static_cast<std::uint32_t>((chain.first + i) % n));
+  }
+}
+
 } // namespace
 
 std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin) {
@@ -151,7 +285,7 @@ std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &sys
 Candidates make_candidates(const BlockSystem &system,
                            std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
-                           ContactHistory &history) {
+                           ContactHistory &history, double skin) {
   Candidates candidates;
   candidates.pairs.reserve(pairs.size());
   // Several regions of a pair keep their order: both sides of a border wrote them in the same one.
@@ -160,23 +294,45 @@ Candidates make_candidates(const BlockSystem &system,
     return record_key(a) < record_key(b);
   });
   history.regions.clear();
-  history.begin.assign(1, 0);
+  history.ranges.clear();
   auto record = memory.begin();
+  ChainFinder finder(system, skin);
   for (const auto &[lower, higher] : pairs) {
+    EdgeChain lower_chain;
+    EdgeChain higher_chain;
+    const auto verdict = finder.find(lower.value, higher.value, lower_chain, higher_chain);
+    if (verdict == ChainFinder::Verdict::apart) {
+      continue;
+    }
     candidates.pairs.push_back(make_pair(system, lower, higher, parameters));
+    if (verdict == ChainFinder::Verdict::plain && parameters.potential == PotentialKind::exact) {
+      candidates.pairs.back().is_plain = true;
+      candidates.plain.push_back({static_cast<std::uint32_t>(candidates.pairs.size() - 1), lower, higher,
+                                  static_cast<std::uint32_t>(candidates.chain_vertices.size()),
+                                  static_cast<std::uint8_t>(lower_chain.count),
+                                  static_cast<std::uint8_t>(higher_chain.count)});
+      append_chain(system, lower.value, lower_chain, candidates.chain_vertices);
+      append_chain(system, higher.value, higher_chain, candidates.chain_vertices);
+    }
     const std::pair key(system.properties[lower.value].id, system.properties[higher.value].id);
     while (record != memory.end() && record_key(*record) < key) {
       ++record;
     }
+    const auto begin = static_cast<std::uint32_t>(history.regions.size());
     for (; record != memory.end() && record_key(*record) == key; ++record) {
-      const auto known = history.regions.begin() + history.begin.back();
+      const auto known = history.regions.begin() + begin;
       if (std::none_of(known, history.regions.end(),
                        [&](const RegionMemory &m) { return m.is_same_region(record->memory); })) {
         history.regions.push_back(record->memory);
       }
     }
-    history.begin.push_back(static_cast<std::uint32_t>(history.regions.size()));
+    history.ranges.push_back({begin, static_cast<std::uint32_t>(history.regions.size()) - begin});
   }
+
+  std::stable_sort(
+      candidates.plain.begin(), candidates.plain.end(), [](const PlainPair &a, const PlainPair &b) {
+        return std::pair(a.lower_edges, a.higher_edges) < std::pair(b.lower_edges, b.higher_edges);
+      });
 
   candidates.contact_begin.assign(system.num_owned + 1, 0);
   const auto for_owned_ends = [&](auto &&visit) {

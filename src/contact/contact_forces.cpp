@@ -1,5 +1,7 @@
 #include "gcpdda/contact/contact_forces.hpp"
 
+#include "plain_batch.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,9 +38,6 @@ private:
 
 namespace {
 
-/// Normals of a region cancel when the resultant falls below this share of the total pressure.
-constexpr double least_resultant = 0.1;
-
 /// How a trial configuration moved since the one before, in a form without cancellation.
 TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
   const RigidDof step = system.trial[row] - system.trial_previous[row];
@@ -46,10 +45,12 @@ TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
     const Deformation &d = system.deformation_of(row);
     return {step.u, (d.trial - d.trial_previous) * system.trial_inverse[system.deformation_begin[row]]};
   }
-  const double sine = std::sin(step.r);
-  const double half = std::sin(0.5 * step.r);
-  const double one_minus_cosine = 2.0 * half * half;
-  return {step.u, {one_minus_cosine, -sine, sine, one_minus_cosine}};
+  SmallTurn turn = SmallTurn::of(step.r);
+  if (std::abs(step.r) > SmallTurn::largest) {
+    const double half = std::sin(0.5 * step.r);
+    turn = {std::sin(step.r), 2.0 * half * half};
+  }
+  return {step.u, {turn.versine, -turn.sine, turn.sine, turn.versine}};
 }
 
 /// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
@@ -143,6 +144,12 @@ double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
 }
 
 } // namespace
+
+ContactForces::ContactForces(ContactParameters parameters)
+    : parameters_(std::move(parameters)), batch_(std::make_unique<PlainBatch>()) {}
+ContactForces::~ContactForces() = default;
+ContactForces::ContactForces(ContactForces &&) noexcept = default;
+ContactForces &ContactForces::operator=(ContactForces &&) noexcept = default;
 
 void ContactForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
                                        const Region &region, RegionForce &force) {
@@ -347,6 +354,40 @@ void ContactForces::recall(const BlockSystem &system, const CandidatePair &pair,
   memory.higher_stretch = region.faces.second;
 }
 
+std::int64_t ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
+                                                 const ContactHistory &history) {
+  const std::vector<PlainPair> &plain = candidates.plain;
+  meeting_.resize(plain.size());
+  std::size_t num_meeting = 0;
+  for (std::uint32_t k = 0; k < plain.size(); ++k) {
+    meeting_[num_meeting] = k;
+    num_meeting += system.box[plain[k].lower.value].meets(system.box[plain[k].higher.value]) ? 1 : 0;
+  }
+  const PlainScene scene{system, candidates, history, increments_, parameters_.damping_ratio};
+  const auto alike = [&](std::size_t a, std::size_t b) {
+    return plain[meeting_[a]].lower_edges == plain[meeting_[b]].lower_edges &&
+           plain[meeting_[a]].higher_edges == plain[meeting_[b]].higher_edges;
+  };
+  for (std::size_t begin = 0, end = 0; begin < num_meeting; begin = end) {
+    end = begin + 1;
+    while (end < std::min(num_meeting, begin + num_lanes) && alike(begin, end)) {
+      ++end;
+    }
+    batch_->evaluate(scene, std::span(meeting_).subspan(begin, end - begin));
+    for (std::size_t i = begin; i < end; ++i) {
+      if (batch_->touches(i - begin)) {
+        const std::uint32_t pair = plain[meeting_[i]].pair;
+        ranges_[pair] = {static_cast<std::uint32_t>(forces_.size()), 1};
+        RegionForce &force = forces_.emplace_back();
+        force.pair = pair;
+        force.born = history.ranges[pair].count == 0;
+        batch_->store(i - begin, force, next_.regions.emplace_back());
+      }
+    }
+  }
+  return static_cast<std::int64_t>(num_meeting);
+}
+
 ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates &candidates,
                                     ContactHistory &history) {
   increments_.resize(system.num_rows());
@@ -359,19 +400,20 @@ ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates 
 
   ForceReport report;
   forces_.clear();
-  begin_.assign(1, 0);
   next_.regions.clear();
+  ranges_.assign(candidates.pairs.size(), {});
+  report.evaluations = evaluate_plain_pairs(system, candidates, history);
   for (std::uint32_t k = 0; k < candidates.pairs.size(); ++k) {
     const CandidatePair &pair = candidates.pairs[k];
-    if (system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
+    if (!pair.is_plain && system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
       ++report.evaluations;
-      evaluate_pair(
-          system, candidates, k,
-          std::span(history.regions).subspan(history.begin[k], history.begin[k + 1] - history.begin[k]));
+      const auto begin = static_cast<std::uint32_t>(forces_.size());
+      evaluate_pair(system, candidates, k,
+                    std::span(history.regions).subspan(history.ranges[k].begin, history.ranges[k].count));
+      ranges_[k] = {begin, static_cast<std::uint32_t>(forces_.size()) - begin};
     }
-    begin_.push_back(static_cast<std::uint32_t>(forces_.size()));
   }
-  next_.begin = begin_;
+  next_.ranges = ranges_;
   std::swap(history, next_);
 
   for (const RegionForce &force : forces_) {

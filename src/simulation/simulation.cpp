@@ -62,9 +62,9 @@ void Simulation::refresh() {
   const auto scope = phases_.measure(Phase::refresh);
   std::vector<RegionRecord> memory;
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    for (std::size_t i = history_.begin[k]; i < history_.begin[k + 1]; ++i) {
+    for (const RegionMemory &region : history_.of_pair(k)) {
       memory.push_back({blocks_.properties[candidates_.pairs[k].lower.value].id,
-                        blocks_.properties[candidates_.pairs[k].higher.value].id, history_.regions[i]});
+                        blocks_.properties[candidates_.pairs[k].higher.value].id, region});
     }
   }
   const std::int64_t left = migrate(communicator_, map_, blocks_, memory);
@@ -85,7 +85,7 @@ void Simulation::refresh() {
 
   ghosts_.rebuild(map_, blocks_, reach_boxes(blocks_, skin_));
   candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, skin_)),
-                                contacts_.parameters(), std::move(memory), history_);
+                                contacts_.parameters(), std::move(memory), history_, skin_);
   pose(blocks_, 0, blocks_.num_rows());
   stale_ = false;
   if (step_count_ > 0) {

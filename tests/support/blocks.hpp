@@ -6,6 +6,7 @@
 #include "gcpdda/model/block_system.hpp"
 #include "support/shapes.hpp"
 
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,9 @@ inline JointLaws one_law(double normal_stiffness, double tan_friction = 0.0, dou
   return {{law}, {0}, 1};
 }
 
+/// Blocks may move anywhere.
+constexpr double infinite_skin = std::numeric_limits<double>::infinity();
+
 /// All pairs of a small system and their forces, configuration by configuration.
 struct ContactBench {
   BlockSystem system;
@@ -60,7 +64,7 @@ struct ContactBench {
         }
       }
     }
-    candidates = make_candidates(system, pairs, forces.parameters(), {}, history);
+    candidates = make_candidates(system, pairs, forces.parameters(), {}, history, infinite_skin);
   }
 
   /// What evaluate() saw of the first region.

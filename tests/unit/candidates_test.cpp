@@ -149,9 +149,11 @@ TEST(MakeCandidates, ContactsOfABlockAscendByPartner) {
   shuffle_ids(system, engine);
   ContactHistory history;
   const Pairs pairs = find_pairs(system, reach_boxes(system, 0.1));
-  const Candidates candidates = make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, {}, history);
+  const Candidates candidates =
+      make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, {}, history, testing::infinite_skin);
   ASSERT_EQ(candidates.contact_begin.size(), system.num_owned + 1);
-  EXPECT_EQ(history.begin, std::vector<std::uint32_t>(pairs.size() + 1, 0)) << "nothing remembered";
+  EXPECT_EQ(history.ranges.size(), pairs.size());
+  EXPECT_TRUE(history.regions.empty()) << "nothing remembered";
   std::size_t ends = 0;
   for (std::uint32_t row = 0; row < system.num_owned; ++row) {
     BlockId last{-1};
@@ -204,15 +206,15 @@ TEST(MakeCandidates, MemoryIsMatchedByIds) {
   ContactHistory history;
   history.regions.resize(3); // leftovers of an older list must not shine through
   history.regions[1].shear = 77.0;
-  make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, memory, history);
-  ASSERT_EQ(history.begin.size(), pairs.size() + 1);
+  make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, memory, history, testing::infinite_skin);
+  ASSERT_EQ(history.ranges.size(), pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    ASSERT_EQ(history.begin[k + 1] - history.begin[k], k % 2 == 0 ? 1U : 0U);
+    ASSERT_EQ(history.of_pair(k).size(), k % 2 == 0 ? 1U : 0U);
     if (k % 2 == 0) {
       const RegionMemory expected =
           mark(system.properties[pairs[k].first.value].id, system.properties[pairs[k].second.value].id)
               .memory;
-      const RegionMemory &found = history.regions[history.begin[k]];
+      const RegionMemory &found = history.of_pair(k).front();
       EXPECT_EQ(found.shear, expected.shear);
       EXPECT_EQ(found.longest, expected.longest);
       EXPECT_EQ(found.slip, expected.slip);
@@ -227,7 +229,8 @@ TEST(MakeCandidates, ConstantsOfAPair) {
   ContactParameters parameters{one_law(4e6, 0.7, 50.0, 0.25), 0.1, PotentialKind::exact};
   ContactHistory history;
   const Pairs pairs{{BlockIndex{0}, BlockIndex{1}}, {BlockIndex{0}, BlockIndex{2}}};
-  const Candidates candidates = make_candidates(system, pairs, parameters, {}, history);
+  const Candidates candidates =
+      make_candidates(system, pairs, parameters, {}, history, testing::infinite_skin);
   const CandidatePair &mobile = candidates.pairs[0];
   EXPECT_EQ(mobile.half_stiffness, 2e6);
   EXPECT_EQ(mobile.tangential_stiffness, 1e6);

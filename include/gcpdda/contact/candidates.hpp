@@ -24,6 +24,18 @@ struct CandidatePair {
   double mass = 0.0;            ///< m_A m_B/(m_A + m_B), kg per metre
   double allowed_overlap = 0.0; ///< half the narrowest width: deeper than this the force reverses, m
   bool is_convex = true;        ///< both blocks are: one region at most
+  bool is_plain = false;        ///< listed in Candidates::plain
+};
+
+/// A pair of convex rigid blocks of which at most four neighbouring edges each can take part in the contact.
+struct PlainPair {
+  std::uint32_t pair = 0;
+  BlockIndex lower;
+  BlockIndex higher;
+  std::uint32_t chain = 0; ///< Candidates::chain_vertices from here on: the ends of the lower block's edges,
+                           ///< one more than edges, then those of the higher one's
+  std::uint8_t lower_edges = 0;
+  std::uint8_t higher_edges = 0;
 };
 
 /// A candidate pair as one of its blocks sees it.
@@ -39,7 +51,12 @@ struct Candidates {
   /// id.
   std::vector<std::uint32_t> contact_begin;
   std::vector<BlockContact> block_contacts;
+  std::vector<PlainPair> plain;              ///< those of like numbers of edges stand together
+  std::vector<std::uint32_t> chain_vertices; ///< entries of BlockSystem::vertex
 };
+
+/// Most edges of one block of a plain pair.
+constexpr std::size_t most_plain_edges = 4;
 
 /// What a pair's constants follow from.
 struct ContactParameters {
@@ -56,12 +73,14 @@ std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin);
 std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &system,
                                                           std::span<const Aabb> boxes);
 
-/// The candidates of those pairs, and the memory of each taken from `memory` (any order of pairs, duplicates
-/// allowed).
+/// The candidates of those pairs, but for pairs of convex rigid blocks that a line of one keeps apart, and
+/// the memory of each taken from `memory` (any order of pairs, duplicates allowed).
+///
+/// @param skin  no block moves by more than half of it before the next refresh, m
 Candidates make_candidates(const BlockSystem &system,
                            std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
-                           ContactHistory &history);
+                           ContactHistory &history, double skin);
 
 /// Largest normal stiffness (Pa/m) and tangential stiffness a block of this material can meet.
 struct StiffnessBound {

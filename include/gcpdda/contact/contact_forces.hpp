@@ -32,6 +32,7 @@
 #include "gcpdda/contact/overlap.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -98,10 +99,18 @@ struct ForceReport {
   std::optional<Fault> fault;     ///< the one with the smallest ids
 };
 
+class PlainBatch;
+
 /// Evaluates pairs; buffers live as long as it does.
 class ContactForces {
 public:
-  explicit ContactForces(ContactParameters parameters) : parameters_(std::move(parameters)) {}
+  /// Normals of a region cancel when the resultant falls below this share of the total pressure.
+  static constexpr double least_resultant = 0.1;
+
+  explicit ContactForces(ContactParameters parameters);
+  ~ContactForces();
+  ContactForces(ContactForces &&) noexcept;
+  ContactForces &operator=(ContactForces &&) noexcept;
 
   [[nodiscard]] const ContactParameters &parameters() const { return parameters_; }
 
@@ -109,11 +118,11 @@ public:
   /// which moves on to this configuration.
   ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history);
 
-  /// All touching regions in candidate order; region i is that of history.regions[i].
+  /// All touching regions, those of a pair together; region i is that of history.regions[i].
   [[nodiscard]] std::span<const RegionForce> regions() const { return forces_; }
   /// Those of one pair.
   [[nodiscard]] std::span<const RegionForce> of_pair(std::size_t pair) const {
-    return std::span(forces_).subspan(begin_[pair], begin_[pair + 1] - begin_[pair]);
+    return {forces_.data() + ranges_[pair].begin, ranges_[pair].count};
   }
 
   /// Replace the shear of a region, friction alone; for the initial state.
@@ -124,6 +133,9 @@ private:
 
   void evaluate_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                      std::span<RegionMemory> old);
+  /// All plain pairs whose boxes meet; their number.
+  std::int64_t evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
+                                    const ContactHistory &history);
   void recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
               std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const;
   /// Normal force, direction and size of a region; false if it carries nothing.
@@ -136,8 +148,10 @@ private:
 
   ContactParameters parameters_;
   Overlap overlap_;
+  std::unique_ptr<PlainBatch> batch_;
+  std::vector<std::uint32_t> meeting_; ///< entries of Candidates::plain whose boxes meet
   std::vector<RegionForce> forces_;
-  std::vector<std::uint32_t> begin_{0};
+  std::vector<RegionRange> ranges_; ///< of forces_, one a pair
   ContactHistory next_;
   std::vector<TrialIncrement> increments_;
   std::vector<double> facing_; ///< of the pieces at hand, scratch

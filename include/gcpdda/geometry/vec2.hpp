@@ -40,12 +40,38 @@ inline double norm(Vec2 a) {
   return std::sqrt(dot(a, a));
 }
 
+/// sin(a) and 1 - cos(a) without cancellation, for angles small enough that their series end at rounding
+/// error within a few terms.
+struct SmallTurn {
+  static constexpr double largest = 0.125; ///< rad
+  double sine = 0.0;
+  double versine = 0.0;
+
+  static constexpr SmallTurn of(double a) {
+    const double q = a * a;
+    return {
+        a * (1.0 - q * (1.0 / 6.0) *
+                       (1.0 - q * (1.0 / 20.0) *
+                                  (1.0 - q * (1.0 / 42.0) * (1.0 - q * (1.0 / 72.0) * (1.0 - q / 110.0))))),
+        0.5 * q *
+            (1.0 - q * (1.0 / 12.0) *
+                       (1.0 - q * (1.0 / 30.0) * (1.0 - q * (1.0 / 56.0) * (1.0 - q * (1.0 / 90.0)))))};
+  }
+};
+
 /// Plane rotation, kept as its cosine and sine.
 struct Rotation {
   double c = 1.0;
   double s = 0.0;
 
-  static Rotation of(double angle) { return {std::cos(angle), std::sin(angle)}; }
+  /// Blocks mostly turn little: the series is several times as fast, and as exact.
+  static Rotation of(double angle) {
+    if (std::abs(angle) <= SmallTurn::largest) {
+      const SmallTurn turn = SmallTurn::of(angle);
+      return {1.0 - turn.versine, turn.sine};
+    }
+    return {std::cos(angle), std::sin(angle)};
+  }
   [[nodiscard]] constexpr Vec2 operator()(Vec2 a) const { return {c * a.x - s * a.y, s * a.x + c * a.y}; }
 };
 

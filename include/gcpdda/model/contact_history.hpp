@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace gcpdda {
@@ -35,11 +36,20 @@ struct RegionRecord {
   RegionMemory memory;
 };
 
-/// Contact memory in the order of the candidate pairs: pair k has regions [begin[k], begin[k + 1]). Only
-/// living regions are listed: at most one of two convex blocks.
+/// Consecutive regions of one pair.
+struct RegionRange {
+  std::uint32_t begin = 0;
+  std::uint32_t count = 0;
+};
+
+/// Contact memory by candidate pair. Only living regions are listed: at most one of two convex blocks.
 struct ContactHistory {
-  std::vector<std::uint32_t> begin{0};
+  std::vector<RegionRange> ranges; ///< one a pair
   std::vector<RegionMemory> regions;
+
+  [[nodiscard]] std::span<const RegionMemory> of_pair(std::size_t pair) const {
+    return {regions.data() + ranges[pair].begin, ranges[pair].count};
+  }
 };
 
 } // namespace gcpdda

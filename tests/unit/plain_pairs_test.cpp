@@ -1,0 +1,156 @@
+// Plain pairs, several in the lanes of one evaluation, against the general way that takes one pair after the
+// other with all its edges.
+
+#include "support/blocks.hpp"
+#include "support/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace gcpdda {
+namespace {
+
+using namespace testing;
+
+/// A convex polygon with corners on a circle.
+std::vector<Vec2> corners_on_circle(std::mt19937 &engine, int num_vertices, Vec2 centre) {
+  std::vector<Vec2> vertices;
+  const double first = uniform(engine, 0.0, 2.0 * std::numbers::pi);
+  for (int k = 0; k < num_vertices; ++k) {
+    const double angle = first + (k + uniform(engine, -0.3, 0.3)) * 2.0 * std::numbers::pi / num_vertices;
+    vertices.push_back(centre + Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return vertices;
+}
+
+/// Couples of blocks that overlap a little, far from each other; every third couple touches face to face.
+BlockSystem couples(std::mt19937 &engine, int count, int most_vertices) {
+  std::vector<std::vector<Vec2>> blocks;
+  for (int k = 0; k < count; ++k) {
+    const Vec2 here{10.0 * k, uniform(engine, -5.0, 5.0)};
+    if (k % 3 == 0) {
+      const double shift = uniform(engine, -0.7, 0.7);
+      const double sunk = k % 2 == 0 ? 1e-3 : 1e-12;
+      blocks.push_back(rectangle(here, here + Vec2{1.0, 1.0}));
+      blocks.push_back(rectangle(here + Vec2{shift, 1.0 - sunk}, here + Vec2{shift + 1.0, 2.0}));
+      continue;
+    }
+    const auto vertices = [&] {
+      return 3 + static_cast<int>(engine() % static_cast<unsigned>(most_vertices - 2));
+    };
+    const double direction = uniform(engine, 0.0, 2.0 * std::numbers::pi);
+    const double distance = uniform(engine, 1.2, 1.9);
+    blocks.push_back(corners_on_circle(engine, vertices(), here));
+    blocks.push_back(corners_on_circle(engine, vertices(),
+                                       here + distance * Vec2{std::cos(direction), std::sin(direction)}));
+  }
+  return system_of(blocks, {});
+}
+
+/// Two benches of the same blocks, one of which takes no pair as plain.
+struct TwoWays {
+  ContactBench plain;
+  ContactBench general;
+
+  TwoWays(const BlockSystem &system, const JointLaws &joints, double damping_ratio)
+      : plain(system, joints, damping_ratio), general(system, joints, damping_ratio) {
+    for (CandidatePair &pair : general.candidates.pairs) {
+      pair.is_plain = false;
+    }
+    general.candidates.plain.clear();
+  }
+};
+
+/// What a pair's numbers are compared against.
+struct Scales {
+  double force = 0.0;
+  double length = 1.0;
+};
+
+void expect_near(Vec2 a, Vec2 b, double tolerance, const char *what) {
+  EXPECT_NEAR(a.x, b.x, tolerance) << what;
+  EXPECT_NEAR(a.y, b.y, tolerance) << what;
+}
+
+void expect_near(const Mat2 &a, const Mat2 &b, double tolerance, const char *what) {
+  EXPECT_NEAR(norm(a - b), 0.0, tolerance) << what;
+}
+
+/// Moments do not depend on the point the dyad is about.
+Mat2 about_zero(const Mat2 &dyad, Vec2 origin, Vec2 force) {
+  return dyad + outer(origin, force);
+}
+
+void expect_same(const RegionForce &a, const RegionForce &b, double stiffness, double far) {
+  EXPECT_EQ(a.born, b.born);
+  EXPECT_EQ(a.normal_undefined, b.normal_undefined);
+  // Depths are differences of coordinates up to `far`, integrated along edges of a few metres.
+  const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * far;
+  const double force = stiffness * rounding + 1e-13 * norm(b.force);
+  const double turned = force / b.normal_force; // an error of n_r
+  const double forces = force + turned * norm(b.force);
+  expect_near(a.force, b.force, forces, "force");
+  EXPECT_NEAR(a.normal_force, b.normal_force, force);
+  expect_near(a.normal, b.normal, turned, "normal");
+  expect_near(a.point, b.point, rounding + turned, "point");
+  EXPECT_NEAR(a.overlap, b.overlap, rounding + turned);
+  EXPECT_NEAR(a.extent_end - a.extent_begin, b.extent_end - b.extent_begin, rounding + turned);
+  EXPECT_NEAR(a.shear, b.shear, forces);
+  EXPECT_NEAR(a.cap, b.cap, forces);
+  expect_near(a.shear_force, b.shear_force, forces, "shear force");
+  expect_near(a.damping_force, b.damping_force, forces, "damping force");
+  expect_near(about_zero(a.dyad, a.origin, a.force), about_zero(b.dyad, b.origin, b.force),
+              4.0 * far * forces, "dyad");
+  expect_near(about_zero(a.damping_dyad, a.origin, a.damping_force),
+              about_zero(b.damping_dyad, b.origin, b.damping_force), 4.0 * far * forces, "damping dyad");
+}
+
+TEST(PlainPairs, AgreeWithTheGeneralWay) {
+  std::mt19937 engine(91);
+  constexpr int count = 300;
+  const double stiffness = 1e6;
+  TwoWays ways(couples(engine, count, 4), one_law(stiffness, 0.3, 10.0), 0.1);
+  ASSERT_GE(ways.plain.candidates.plain.size(), static_cast<std::size_t>(count));
+  int touching = 0;
+  int sliding = 0;
+  for (int step = 0; step < 4; ++step) {
+    for (std::size_t row = 0; row < ways.plain.system.num_owned; ++row) {
+      const RigidDof motion{{uniform(engine, -3e-4, 3e-4), uniform(engine, -3e-4, 3e-4)},
+                            uniform(engine, -3e-4, 3e-4)};
+      for (ContactBench *bench : {&ways.plain, &ways.general}) {
+        bench->system.trial[row] += motion;
+        bench->system.velocity[row] = 100.0 * motion;
+      }
+    }
+    ways.plain.evaluate();
+    ways.general.evaluate();
+    EXPECT_EQ(ways.plain.report.evaluations, ways.general.report.evaluations);
+    for (std::size_t k = 0; k < ways.plain.candidates.pairs.size(); ++k) {
+      const auto a = ways.plain.forces.of_pair(k);
+      const auto b = ways.general.forces.of_pair(k);
+      if (a.size() != b.size()) { // touching or not is a matter of rounding only
+        EXPECT_LT((a.empty() ? b : a).front().normal_force, 1e-9) << k;
+        continue;
+      }
+      if (!a.empty() && b.front().normal_force > 1e-3) {
+        SCOPED_TRACE("pair " + std::to_string(k) + " step " + std::to_string(step));
+        expect_same(a.front(), b.front(), stiffness, 10.0 * count);
+        const RegionMemory &old = ways.plain.history.of_pair(k).front();
+        const RegionMemory &expected = ways.general.history.of_pair(k).front();
+        EXPECT_EQ(old.state, expected.state);
+        ++touching;
+        sliding += old.state == ContactState::slip ? 1 : 0;
+        if (::testing::Test::HasFailure()) {
+          return;
+        }
+      }
+    }
+  }
+  EXPECT_GT(touching, 4 * count / 2);
+  EXPECT_GT(sliding, 50);
+}
+
+} // namespace
+} // namespace gcpdda
