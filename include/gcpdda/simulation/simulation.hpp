@@ -72,8 +72,8 @@ struct FidelityReport {
 class Simulation {
 public:
   /// @param scene  valid by itself, the same on all ranks
-  /// @throws SceneError with all that is wrong with the block file, the overlaps, the monitors and the step
   /// @param restart_from  result folder whose newest checkpoint is the initial state; empty for t = 0
+  /// @throws SceneError with all that is wrong with the block file, the overlaps, the monitors and the step
   /// @throws FileError where that folder has no checkpoint that fits
   Simulation(const Communicator &communicator, Scene scene, const std::filesystem::path &restart_from = {});
 
