@@ -1,5 +1,7 @@
 // A checkpoint has the same bytes on any number of ranks, and any number goes on from it to the same files.
 
+#include "gcpdda/io/checkpoint.hpp"
+#include "gcpdda/io/result_files.hpp"
 #include "gcpdda/io/run_comparison.hpp"
 #include "gcpdda/simulation/restart.hpp"
 #include "gcpdda/simulation/run.hpp"
@@ -119,6 +121,91 @@ TEST_F(Checkpoints, OfASignalToOneRank) {
     expect_same("stopped", "whole");
   }
   world_.barrier();
+}
+
+/// Squares in a row, each with a state made of its id. Rows: those this rank takes.
+template <class Take> BlockSystem numbered_squares(std::int64_t count, Take &&take) {
+  const Material rock{"rock", 2600.0, 1e9, 0.2};
+  BlockSystem blocks;
+  for (std::int64_t id = 0; id < count; ++id) {
+    if (!take(id)) {
+      continue;
+    }
+    SceneBlock block;
+    const auto x = static_cast<double>(id);
+    block.vertices = {{x, 0}, {x + 1, 0}, {x + 1, 1}, {x, 1}};
+    append_block(blocks, BlockId{id}, block, rock, id % 3 == 0 ? BlockKind::deformable : BlockKind::rigid);
+    ++blocks.num_owned;
+  }
+  return blocks;
+}
+
+// Blocks anywhere, contacts between any two: after reading, each rank has the state of its slab and every
+// contact of a block in it, those of a pair in their order.
+TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
+  const Communicator world = Communicator::world();
+  const testing::SharedFolder folder(world);
+  const std::int64_t count = 97;
+  BlockSystem blocks =
+      numbered_squares(count, [&](std::int64_t id) { return (id * 31) % 7 % world.size() == world.rank(); });
+  for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+    const auto id = static_cast<double>(blocks.properties[row].id.value);
+    blocks.displacement[row] = {{id + 0.25, -id}, 1.0 / (id + 3.0)};
+    blocks.ledger[row].load_work = 3.0 * id;
+    if (blocks.is_deformable(row)) {
+      blocks.deformation_of(row).rate = {id, 2 * id, 3 * id, 4 * id};
+    }
+  }
+  std::vector<RegionRecord> records;
+  const auto num_regions = [](std::int64_t a, std::int64_t b) { return (a * b) % 5 == 0 ? (a + b) % 3 : 0; };
+  for (std::int64_t a = 0; a < count; ++a) {
+    for (std::int64_t b = a + 1; b < count; ++b) {
+      for (std::int64_t k = 0; k < num_regions(a, b) && (a + b) % world.size() == world.rank(); ++k) {
+        RegionRecord &record = records.emplace_back();
+        record.lower = BlockId{a};
+        record.higher = BlockId{b};
+        record.memory.shear = static_cast<double>(count * a + b);
+        record.memory.lower_stretch = static_cast<std::int32_t>(10 - k); // not in the order of their numbers
+      }
+    }
+  }
+  RunFacts facts;
+  facts.scene = {count, count, 0xfedcba9876543210U, 7};
+  facts.step = 12;
+  facts.time = 0.5;
+  facts.frame_times = {0.0, 0.25, 0.5};
+  CheckpointWriter(world, folder.path(""), {}).write(facts, blocks, records);
+
+  const std::int64_t first = slab_begin(count, world.size(), world.rank());
+  const std::int64_t last = slab_begin(count, world.size(), world.rank() + 1);
+  const auto mine = [&](std::int64_t id) { return first <= id && id < last; };
+  BlockSystem slab = numbered_squares(count, mine);
+  const Restored restored = restore_newest_checkpoint(world, folder.path(""), facts.scene, slab);
+  EXPECT_EQ(restored.facts.scene, facts.scene);
+  EXPECT_EQ(restored.facts.step, 12);
+  EXPECT_EQ(restored.facts.frame_times, facts.frame_times);
+  for (std::size_t row = 0; row < slab.num_owned; ++row) {
+    const auto id = static_cast<double>(slab.properties[row].id.value);
+    EXPECT_EQ(slab.displacement[row], (RigidDof{{id + 0.25, -id}, 1.0 / (id + 3.0)}));
+    EXPECT_EQ(slab.ledger[row].load_work, 3.0 * id);
+    if (slab.is_deformable(row)) {
+      EXPECT_EQ(slab.deformation_of(row).rate.yy, 4 * id);
+    }
+  }
+  auto record = restored.memory.begin();
+  for (std::int64_t a = 0; a < count; ++a) {
+    for (std::int64_t b = a + 1; b < count; ++b) {
+      for (std::int64_t k = 0; k < num_regions(a, b) && (mine(a) || mine(b)); ++k, ++record) {
+        ASSERT_NE(record, restored.memory.end());
+        EXPECT_EQ(record->lower.value, a);
+        EXPECT_EQ(record->higher.value, b);
+        EXPECT_EQ(record->memory.shear, static_cast<double>(count * a + b));
+        EXPECT_EQ(record->memory.lower_stretch, 10 - k);
+      }
+    }
+  }
+  EXPECT_EQ(record, restored.memory.end());
+  EXPECT_GE(restored.memory.size(), world.size() > 1 ? 50U : 500U);
 }
 
 } // namespace
