@@ -3,16 +3,20 @@
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/io/scene_reader.hpp"
 #include "gcpdda/io/scene_reference.hpp"
+#include "gcpdda/io/unclosed_files.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "gcpdda/simulation/inspect.hpp"
+#include "gcpdda/simulation/restart.hpp"
 #include "gcpdda/simulation/run.hpp"
 #include "gcpdda/simulation/simulation.hpp"
+#include "gcpdda/simulation/stop_signal.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <span>
 #include <sstream>
 
 namespace {
@@ -95,12 +99,25 @@ template <class Work> int with_scene(const Communicator &world, const Arguments 
 }
 
 int run(const Communicator &world, const Arguments &arguments) {
+  catch_stop_signal();
   return with_scene(world, arguments, [&](const Scene &scene) {
     RunOptions options;
     options.directory = arguments.directory.empty() ? std::filesystem::path("results") / scene.stem
                                                     : std::filesystem::path(arguments.directory);
     options.overwrite = arguments.overwrite;
     return run_scene(world, scene, options);
+  });
+}
+
+int restart(const Communicator &world, Arguments arguments) {
+  catch_stop_signal();
+  const std::filesystem::path scene = std::filesystem::path(arguments.directory) / "scene.toml";
+  arguments.scene = scene.string();
+  Arguments unchanged = arguments;
+  unchanged.sets.clear();
+  const SceneReading before = read_scene(read_on_root(world, arguments.scene), arguments.scene, {});
+  return with_scene(world, has_errors(before.diagnostics) ? unchanged : arguments, [&](const Scene &after) {
+    return restart_scene(world, before.scene, after, arguments.directory);
   });
 }
 
@@ -118,15 +135,22 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   CLI::App app("gcpdda: block-by-block simulation of jointed rock slopes and tunnels");
   app.require_subcommand(1);
   Arguments arguments;
-  const auto takes_scene = [&](CLI::App *command) {
-    command->add_option("SCENE", arguments.scene, "scene file (TOML)")->required();
+  const auto takes_sets = [&](CLI::App *command) {
     command->add_option("--set", arguments.sets, "path=value: replace a value of the scene; repeatable")
         ->allow_extra_args(false);
+  };
+  const auto takes_scene = [&](CLI::App *command) {
+    command->add_option("SCENE", arguments.scene, "scene file (TOML)")->required();
+    takes_sets(command);
   };
   CLI::App *run_command = app.add_subcommand("run", "run a scene");
   takes_scene(run_command);
   run_command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>");
   run_command->add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the result folder");
+  CLI::App *restart_command = app.add_subcommand(
+      "restart", "go on with a stopped or broken run from its newest checkpoint, on any number of ranks");
+  restart_command->add_option("DIR", arguments.directory, "result folder")->required();
+  takes_sets(restart_command);
   CLI::App *inspect_command =
       app.add_subcommand("inspect", "tell what a scene holds, costs and how it would be cut");
   takes_scene(inspect_command);
@@ -148,6 +172,9 @@ int dispatch(const Communicator &world, int argc, char **argv) {
     }
     return done;
   }
+  if (restart_command->parsed()) {
+    return restart(world, arguments);
+  }
   return inspect_command->parsed() ? inspect(world, arguments) : run(world, arguments);
 }
 
@@ -168,6 +195,11 @@ int main(int argc, char **argv) {
   } catch (const FileError &error) { // agreed on by all ranks where it is thrown
     if (world.is_root()) {
       std::cerr << error.what() << '\n';
+    }
+    std::int64_t unclosed = has_unclosed_files() ? 1 : 0;
+    world.max(std::span(&unclosed, 1));
+    if (unclosed > 0) {
+      MpiScope::abort(file_trouble);
     }
     return file_trouble;
   } catch (const std::exception &error) { // seen by this rank alone, perhaps: take the others along

@@ -136,44 +136,46 @@ public:
     }
   }
 
-  enum class Verdict { apart, plain, other };
-  Verdict find(std::size_t lower, std::size_t higher, EdgeChain &lower_chain, EdgeChain &higher_chain) {
-    if (!is_rigid_and_convex(lower) || !is_rigid_and_convex(higher)) {
-      return Verdict::other;
-    }
+  /// Is a pair plain?
+  [[nodiscard]] bool is_plain(std::size_t lower, std::size_t higher) const {
+    return has_few_edges(lower) && has_few_edges(higher);
+  }
+  /// The edges of a plain pair that can take part; false if the blocks cannot touch.
+  bool find(std::size_t lower, std::size_t higher, EdgeChain &lower_chain, EdgeChain &higher_chain) {
     const double rounding = 1e-9 * (norm(box_[lower].extent()) + norm(box_[higher].extent()));
     const Aabb first = box_[lower].inflated(half_skin_);
     const Aabb second = box_[higher].inflated(half_skin_);
     const Aabb common{{std::max(first.low.x, second.low.x), std::max(first.low.y, second.low.y)},
                       {std::min(first.high.x, second.high.x), std::min(first.high.y, second.high.y)}};
     const Aabb region = common.inflated(half_skin_ + rounding);
-    if (!mark_edges(lower, region, rounding) || !chain_of(lower, higher, lower_chain)) {
-      return can_touch_ ? Verdict::other : Verdict::apart;
+    if (!mark_edges(lower, region, rounding)) {
+      return false;
     }
-    if (!mark_edges(higher, region, rounding) || !chain_of(higher, lower, higher_chain)) {
-      return can_touch_ ? Verdict::other : Verdict::apart;
+    lower_chain = chain_of(lower, higher);
+    if (!mark_edges(higher, region, rounding)) {
+      return false;
     }
-    return Verdict::plain;
+    higher_chain = chain_of(higher, lower);
+    return true;
   }
 
 private:
-  [[nodiscard]] bool is_rigid_and_convex(std::size_t row) const {
-    return system_.properties[row].is_convex && !system_.is_deformable(row);
+  [[nodiscard]] bool has_few_edges(std::size_t row) const {
+    return system_.properties[row].is_convex && !system_.is_deformable(row) &&
+           system_.num_vertices(row) <= most_plain_edges;
   }
 
   /// Mark the edges of a block that can take part; false if none can.
   bool mark_edges(std::size_t row, const Aabb &region, double rounding) {
     const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
     const std::span<const Vec2> normal = system_.of_row(normal_, row);
-    takes_part_.assign(vertex.size(), true);
-    can_touch_ = true;
+    takes_part_.fill(true);
     if (!std::isfinite(half_skin_)) {
       return true;
     }
     const Vec2 centre = 0.5 * (region.low + region.high);
     const Vec2 half = 0.5 * region.extent();
     double smallest_high = std::numeric_limits<double>::infinity();
-    low_.resize(vertex.size());
     for (std::size_t j = 0; j < vertex.size(); ++j) {
       const double middle = dot(normal[j], vertex[j] - centre);
       const double spread = std::abs(normal[j].x) * half.x + std::abs(normal[j].y) * half.y;
@@ -184,34 +186,43 @@ private:
       const std::array<Vec2, 2> ends{vertex[j], vertex[j + 1 == vertex.size() ? 0 : j + 1]};
       takes_part_[j] = low_[j] <= smallest_high + rounding || bounding_box(ends).meets(region);
     }
-    can_touch_ = smallest_high >= -rounding;
-    return can_touch_;
+    return smallest_high >= -rounding;
   }
 
-  /// The marked edges, if they are neighbours and few. All around, they start at the vertex farthest from the
-  /// other block: a choice that has nothing to do with the number of a vertex.
-  bool chain_of(std::size_t row, std::size_t other, EdgeChain &chain) const {
-    const std::size_t n = takes_part_.size();
-    chain = {0, static_cast<std::size_t>(std::count(takes_part_.begin(), takes_part_.end(), true))};
-    if (chain.count > most_plain_edges) {
-      return false;
-    }
-    if (chain.count == n) {
-      const Vec2 away = 0.5 * (box_[other].low + box_[other].high);
-      const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
-      for (std::size_t j = 1; j < n; ++j) {
-        chain.first = norm(vertex[j] - away) > norm(vertex[chain.first] - away) ? j : chain.first;
-      }
-      return true;
-    }
+  /// The marked edges, or all where they are not neighbours. All of them start at the vertex farthest outside
+  /// the other block, as good as a gap: sums along the chain so meet the edges that touch in the same order
+  /// whatever else is in it, and whatever number a vertex has.
+  [[nodiscard]] EdgeChain chain_of(std::size_t row, std::size_t other) const {
+    const std::size_t n = system_.num_vertices(row);
+    EdgeChain chain;
     std::size_t starts = 0;
     for (std::size_t j = 0; j < n; ++j) {
+      chain.count += takes_part_[j] ? 1 : 0;
       if (takes_part_[j] && !takes_part_[j == 0 ? n - 1 : j - 1]) {
         chain.first = j;
         ++starts;
       }
     }
-    return starts == 1;
+    return starts == 1 ? chain : EdgeChain{farthest_outside(row, other), n};
+  }
+
+  [[nodiscard]] std::size_t farthest_outside(std::size_t row, std::size_t other) const {
+    const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
+    const std::span<const Vec2> line = system_.of_row(vertex_, other);
+    const std::span<const Vec2> normal = system_.of_row(normal_, other);
+    std::size_t farthest = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < vertex.size(); ++k) {
+      double outside = -std::numeric_limits<double>::infinity();
+      for (std::size_t j = 0; j < line.size(); ++j) {
+        outside = std::max(outside, dot(normal[j], vertex[k] - line[j]));
+      }
+      if (outside > most) {
+        most = outside;
+        farthest = k;
+      }
+    }
+    return farthest;
   }
 
   const BlockSystem &system_;
@@ -220,9 +231,8 @@ private:
   std::vector<Vec2> normal_;
   std::vector<Aabb> box_;
   // Of the block at hand.
-  std::vector<double> low_;
-  std::vector<bool> takes_part_;
-  bool can_touch_ = true;
+  std::array<double, most_plain_edges> low_{};
+  std::array<bool, most_plain_edges> takes_part_{};
 };
 
 /// Entries of BlockSystem::vertex at the ends of a chain's edges.
@@ -300,13 +310,14 @@ Candidates make_candidates(const BlockSystem &system,
   for (const auto &[lower, higher] : pairs) {
     EdgeChain lower_chain;
     EdgeChain higher_chain;
-    const auto verdict = finder.find(lower.value, higher.value, lower_chain, higher_chain);
-    if (verdict == ChainFinder::Verdict::apart) {
+    const bool is_plain =
+        parameters.potential == PotentialKind::exact && finder.is_plain(lower.value, higher.value);
+    if (is_plain && !finder.find(lower.value, higher.value, lower_chain, higher_chain)) {
       continue;
     }
     candidates.pairs.push_back(make_pair(system, lower, higher, parameters));
-    if (verdict == ChainFinder::Verdict::plain && parameters.potential == PotentialKind::exact) {
-      candidates.pairs.back().is_plain = true;
+    candidates.pairs.back().is_plain = is_plain;
+    if (is_plain) {
       candidates.plain.push_back({static_cast<std::uint32_t>(candidates.pairs.size() - 1), lower, higher,
                                   static_cast<std::uint32_t>(candidates.chain_vertices.size()),
                                   static_cast<std::uint8_t>(lower_chain.count),

@@ -1,5 +1,6 @@
 #include "lane_stretch.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -18,11 +19,21 @@ template <std::size_t count, class Visit> [[gnu::always_inline]] inline void eac
   (std::make_index_sequence<count>{});
 }
 
+/// Which edge stands for line j: beyond four, lines are padded with the last edge, which then is never the
+/// next active line, since its slope is not smaller.
+template <std::size_t lines>
+[[gnu::always_inline]] inline std::size_t edge_of(const LaneSide &side, std::size_t j) {
+  return lines <= 4 ? j : std::min(j, side.edges - 1);
+}
+
 /// Depth of a point below each line of a block.
 template <std::size_t lines>
 [[gnu::always_inline]] inline void find_depths(const LaneSide &side, const LaneVec &x,
                                                PerLine<lines> &depth) {
-  each<lines>([&](auto j) { depth[j] = dot(side.normal[j], side.vertex[j] - x); });
+  each<lines>([&](auto j) {
+    const std::size_t k = edge_of<lines>(side, j);
+    depth[j] = dot(side.normal[k], side.vertex[k] - x);
+  });
 }
 
 /// The line nearest at the begin of a stretch.
@@ -97,7 +108,7 @@ void cut_edge(const LaneSide &own, std::size_t edge, const LaneSide &other, cons
   Lanes begin = 0.0;
   Lanes end = edge_length;
   each<lines>([&](auto j) {
-    slope[j] = -dot(other.normal[j], tangent);
+    slope[j] = -dot(other.normal[edge_of<lines>(other, j)], tangent);
     root[j] = -at_begin[j] / slope[j];
     const Mask enters = at_begin[j] < 0.0;
     begin = max(begin, select(enters, root[j], 0.0));
@@ -120,7 +131,8 @@ void cut_edge(const LaneSide &own, std::size_t edge, const LaneSide &other, cons
     const Mask leaves = end < edge_length;
     Lanes near_end = dot(own.vertex[edge + 1] - a, tangent);
     each<lines>([&](auto j) {
-      depth[j] = select(entered, dot(other.normal[j], other.vertex[j] - a), depth[j]);
+      const std::size_t k = edge_of<lines>(other, j);
+      depth[j] = select(entered, dot(other.normal[k], other.vertex[k] - a), depth[j]);
       // Of lines that let it in at the same place the one of smallest slope.
       const Mask is_entry = (at_begin[j] < 0.0) & (root[j] == begin) & (slope[j] < entry_slope);
       entry_depth = select(is_entry, depth[j], entry_depth);
@@ -171,7 +183,7 @@ void cut_all(const LaneSide &own, const LaneSide &other, LaneStretches &stretche
 } // namespace
 
 void cut_edges(const LaneSide &own, const LaneSide &other, LaneStretches &stretches) {
-  static_assert(most_plain_edges == 4);
+  static_assert(most_plain_edges == 8);
   switch (other.edges) {
   case 1:
     return cut_all<1>(own, other, stretches);
@@ -179,8 +191,10 @@ void cut_edges(const LaneSide &own, const LaneSide &other, LaneStretches &stretc
     return cut_all<2>(own, other, stretches);
   case 3:
     return cut_all<3>(own, other, stretches);
-  default:
+  case 4:
     return cut_all<4>(own, other, stretches);
+  default:
+    return cut_all<8>(own, other, stretches);
   }
 }
 

@@ -48,12 +48,20 @@ void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t
   }
 }
 
+void sync_file(const std::filesystem::path &path) {
+  call_on(path, O_RDONLY, "sync", {EINVAL}, ::fsync); // EINVAL: a file system without a disk
+}
+
+void sync_directory(const std::filesystem::path &path) {
+  call_on(path, O_RDONLY | O_DIRECTORY, "sync", {EINVAL, EBADF, EACCES}, ::fsync);
+}
+
 void publish(const std::filesystem::path &path) {
   const std::filesystem::path unfinished = unfinished_name(path);
   // Space reserved and not used goes back.
   call_on(unfinished, O_WRONLY, "end", {},
           [](int descriptor) { return ::ftruncate(descriptor, ::lseek(descriptor, 0, SEEK_END)); });
-  call_on(unfinished, O_RDONLY, "sync", {EINVAL}, ::fsync); // EINVAL: a file system without a disk
+  sync_file(unfinished);
   std::error_code error;
   std::filesystem::rename(unfinished, path, error);
   if (error) {

@@ -20,6 +20,10 @@ void publish(const std::filesystem::path &path);
 /// The whole file at once, under its final name only when complete. Throws FileError.
 void write_file(const std::filesystem::path &path, const std::string &text);
 
+/// What has been written to a file, or the names in a folder, are on the disk afterwards. Throws FileError.
+void sync_file(const std::filesystem::path &path);
+void sync_directory(const std::filesystem::path &path);
+
 /// Throws FileError.
 void make_directory(const std::filesystem::path &path);
 

@@ -5,7 +5,9 @@
 #include "gcpdda/io/result_files.hpp"
 
 #include "durable_file.hpp"
+#include "hdf5_input.hpp"
 #include "hdf5_vtk_layout.hpp"
+#include "numbered_name.hpp"
 
 #include <fmt/format.h>
 
@@ -23,6 +25,10 @@ constexpr const char *xdmf_cells = "/XdmfTopology";
 
 std::string frame_name(int index) {
   return fmt::format("frame_{:06}.hdf", index);
+}
+
+std::string topology_name(int index) {
+  return fmt::format("topology_{:06}.h5", index);
 }
 
 // A FrameData as one message.
@@ -242,7 +248,7 @@ void FrameWriter::write(int index, double time, const FrameData &data) {
   const RowRange points = rows_in_rank_order(communicator_, std::ssize(slab.vertices));
 
   if (topology_.empty()) {
-    const std::string name = fmt::format("topology_{:06}.h5", index);
+    const std::string name = topology_name(index);
     const auto sizes = vtk::column(slab.rows, [](const FrameRow &row) { return row.num_vertices; });
     CollectiveFile file(communicator_, directory_ / "frames" / name);
     file.group("/VTKHDF");
@@ -274,9 +280,52 @@ void FrameWriter::write(int index, double time, const FrameData &data) {
   all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
 
   frames_.emplace_back(index, time);
+  write_indices();
+}
+
+void FrameWriter::write_indices() const {
   on_root(communicator_, [this] {
     write_file(directory_ / "run.hdf.series", series_index(frames_));
     write_file(directory_ / "run.xdmf", xdmf_index(frames_, num_blocks_, num_points_, topology_));
+  });
+}
+
+std::vector<double> FrameWriter::times() const {
+  std::vector<double> times;
+  for (const auto &[index, time] : frames_) {
+    times.push_back(time);
+  }
+  return times;
+}
+
+// The indices first: none ever tells of a frame that is gone.
+void FrameWriter::continue_behind(const std::vector<double> &times) {
+  expect(!times.empty() && frames_.empty(), "frames to go on behind, before any are written");
+  for (const double time : times) {
+    frames_.emplace_back(static_cast<int>(frames_.size()), time);
+  }
+  topology_ = topology_name(0);
+  const std::filesystem::path folder = directory_ / "frames";
+  on_root(communicator_, [&] {
+    const hdf5::QuietErrors quiet;
+    const hdf5::File file(hdf5::open_to_read(folder / topology_));
+    num_points_ = hdf5::read_numbers<std::int64_t>(file, vtk::at("NumberOfPoints")).at(0);
+  });
+  communicator_.max(std::span(&num_points_, 1));
+  write_indices();
+  on_root(communicator_, [&] {
+    std::vector<std::filesystem::path> later;
+    for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      const auto frame = number_of(name, "frame", ".hdf");
+      const std::int64_t number = frame ? *frame : number_of(name, "contacts", ".hdf").value_or(-1);
+      if (number >= std::ssize(times)) {
+        later.push_back(entry.path());
+      }
+    }
+    for (const std::filesystem::path &path : later) {
+      std::filesystem::remove(path);
+    }
   });
 }
 

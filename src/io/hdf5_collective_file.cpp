@@ -2,6 +2,8 @@
 
 #include "durable_file.hpp"
 
+#include "gcpdda/io/unclosed_files.hpp"
+
 #include <mpi.h>
 
 #include <algorithm>
@@ -10,6 +12,14 @@
 namespace gcpdda {
 
 namespace {
+
+bool close_failed = false;
+
+bool close(hdf5::File &file) {
+  const bool closed = file.close();
+  close_failed = close_failed || !closed;
+  return closed;
+}
 
 std::string file_name(const std::filesystem::path &path, const std::string &object) {
   return path.string() + (object.empty() ? "" : " at " + object);
@@ -40,6 +50,10 @@ hdf5::Dataspace simple_space(hsize_t rows, hsize_t columns) {
 }
 
 } // namespace
+
+bool has_unclosed_files() {
+  return close_failed;
+}
 
 void on_all_ranks(const Communicator &communicator, const std::function<void()> &action) {
   std::string trouble;
@@ -96,7 +110,7 @@ CollectiveFile::CollectiveFile(const Communicator &communicator, std::filesystem
 }
 
 CollectiveFile::~CollectiveFile() {
-  file_.close();
+  close(file_);
   if (!published_ && communicator_.is_root()) {
     std::error_code ignored;
     std::filesystem::remove(unfinished_name(path_), ignored);
@@ -221,7 +235,7 @@ void CollectiveFile::link(const std::string &name, const std::string &file) {
 
 void CollectiveFile::publish() {
   on_all_ranks(communicator_, [&] {
-    if (!file_.close()) {
+    if (!close(file_)) {
       throw FileError("cannot close " + unfinished_name(path_).string() + ": " + hdf5::last_error());
     }
   });

@@ -8,9 +8,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <initializer_list>
+#include <iterator>
+#include <limits>
 
 namespace gcpdda {
 
@@ -42,23 +46,54 @@ void write_to(const std::filesystem::path &path, const std::string &text, std::i
   }
 }
 
-std::filesystem::path history_path(const std::filesystem::path &directory, const std::string &name) {
-  return directory / "history" / (name + ".csv");
+/// Whole rows of an earlier history up to a time; none where there is no history with this header: a monitor
+/// may be new.
+std::string rows_until(const std::filesystem::path &path, const std::string &header, double last_time) {
+  std::ifstream stream(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!text.starts_with(header)) {
+    return "";
+  }
+  std::size_t end = header.size();
+  for (std::size_t next = text.find('\n', end); next != std::string::npos; next = text.find('\n', end)) {
+    if (std::strtod(text.c_str() + end, nullptr) > last_time) {
+      break;
+    }
+    end = next + 1;
+  }
+  return text.substr(header.size(), end - header.size());
 }
 
 } // namespace
 
 HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors)
+    : HistoryWriter(std::move(directory), std::move(monitors), -std::numeric_limits<double>::infinity()) {}
+
+HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time)
     : directory_(std::move(directory)), monitors_(std::move(monitors)), pending_(monitors_.size() + 1) {
   expect(std::none_of(monitors_.begin(), monitors_.end(),
                       [](const Monitor &monitor) { return monitor.name == energy_name; }),
          "no monitor by the name of the energy history");
   make_directory(directory_ / "history");
-  for (const Monitor &monitor : monitors_) {
-    write_to(history_path(directory_, monitor.name), monitor.is_point ? point_header : block_header,
-             std::ios::trunc);
+  for (std::size_t i = 0; i < pending_.size(); ++i) {
+    const std::string header = header_of(i);
+    if (std::isfinite(last_time)) {
+      write_file(path_of(i), header + rows_until(path_of(i), header, last_time));
+    } else {
+      write_to(path_of(i), header, std::ios::trunc);
+    }
   }
-  write_to(history_path(directory_, energy_name), energy_header, std::ios::trunc);
+}
+
+std::string HistoryWriter::header_of(std::size_t history) const {
+  return history == monitors_.size()   ? energy_header
+         : monitors_[history].is_point ? point_header
+                                       : block_header;
+}
+
+std::filesystem::path HistoryWriter::path_of(std::size_t history) const {
+  const std::string name = history < monitors_.size() ? monitors_[history].name : energy_name;
+  return directory_ / "history" / (name + ".csv");
 }
 
 void HistoryWriter::write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row) {
@@ -81,10 +116,15 @@ void HistoryWriter::write_energy(double time, const EnergyRow &row) {
 void HistoryWriter::flush() {
   for (std::size_t i = 0; i < pending_.size(); ++i) {
     if (!pending_[i].empty()) {
-      const std::string name = i < monitors_.size() ? monitors_[i].name : energy_name;
-      write_to(history_path(directory_, name), pending_[i], std::ios::app);
+      write_to(path_of(i), pending_[i], std::ios::app);
       pending_[i].clear();
     }
+  }
+}
+
+void HistoryWriter::sync() const {
+  for (std::size_t i = 0; i < pending_.size(); ++i) {
+    sync_file(path_of(i));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "gcpdda/io/result_files.hpp"
 
 #include "durable_file.hpp"
+#include "numbered_name.hpp"
 
 #include "gcpdda/base/check.hpp"
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iterator>
 
 namespace gcpdda {
 
@@ -24,17 +26,6 @@ bool is_own_history(const fs::path &path) {
   return path.extension() == ".csv" && std::getline(stream, line) && line.starts_with("time[s],");
 }
 
-// Names in `frames` and `decomposition`: <stem>_<digits><extension>.
-bool is_numbered(const std::string &name, const std::string &stem, const std::string &extension) {
-  if (!name.starts_with(stem + "_") || !name.ends_with(extension) ||
-      name.size() <= stem.size() + 1 + extension.size()) {
-    return false;
-  }
-  const auto first = name.begin() + static_cast<std::ptrdiff_t>(stem.size() + 1);
-  return std::all_of(first, name.end() - static_cast<std::ptrdiff_t>(extension.size()),
-                     [](char c) { return '0' <= c && c <= '9'; });
-}
-
 bool is_own_file(const fs::path &folder, const fs::path &path) {
   std::string name = path.filename().string();
   if (name.ends_with(".tmp")) {
@@ -43,6 +34,9 @@ bool is_own_file(const fs::path &folder, const fs::path &path) {
   if (folder == "frames") {
     return is_numbered(name, "frame", ".hdf") || is_numbered(name, "contacts", ".hdf") ||
            is_numbered(name, "topology", ".h5");
+  }
+  if (folder == "checkpoints") {
+    return is_numbered(name, "checkpoint", ".h5");
   }
   if (folder == "decomposition") {
     return is_numbered(name, "owners", ".csv");
@@ -69,6 +63,7 @@ std::vector<fs::path> own_files(const fs::path &directory) {
   for (const char *folder : folders) {
     look_into(folder);
   }
+  look_into("checkpoints");
   return found;
 }
 
@@ -111,6 +106,21 @@ void prepare_result_directory(const fs::path &directory, bool overwrite, const s
     make_directory(directory / folder);
   }
   write_file(directory / "scene.toml", resolved_scene);
+}
+
+void reopen_result_directory(const fs::path &directory, const std::string &resolved_scene) {
+  for (const char *folder : folders) {
+    make_directory(directory / folder);
+  }
+  write_file(directory / "scene.toml", resolved_scene);
+  std::error_code none; // that it says "stopped" harms nobody
+  fs::remove(directory / "summary.json", none);
+}
+
+bool says_completed(const fs::path &directory) {
+  std::ifstream stream(directory / "summary.json");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return text.find("\"verdict\": \"completed\"") != std::string::npos;
 }
 
 void write_owners(const fs::path &directory, std::int64_t step,

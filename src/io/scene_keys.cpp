@@ -101,6 +101,7 @@ constexpr Key all_keys[] = {
   {"output", Kind::table, optional, any, "", "", "[output]", "What is written and when."},
   {"output.interval", Kind::number, optional, above_to(0, 1e12), "", "<duration/100>", "0.02", "[s] Time between frames."},
   {"output.history_interval", Kind::number, optional, above_to(0, 1e12), "", "<interval>", "0.02", "[s] Time between rows of the histories; divides interval or is a multiple of it."},
+  {"output.checkpoint_interval", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.5", "[s] Simulated time between checkpoints, from which gcpdda restart goes on; rounded to whole steps; 0 for none but that of SIGUSR1."},
   {"output.contacts", Kind::boolean, optional, any, "", "true", "true", "Whether contacts are written beside the frames."},
 
   {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks and points whose history is written to history/<name>.csv: either block, or name and point."},

@@ -1,5 +1,6 @@
 #include "gcpdda/io/scene_reader.hpp"
 
+#include "scene_keys.hpp"
 #include "scene_parts.hpp"
 #include "scene_sets.hpp"
 #include "scene_writer.hpp"
@@ -42,6 +43,14 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.monitors = read_monitors(source, scene);
 }
 
+/// The resolved scene will lie in another folder, and may be read from a third one.
+void name_from_everywhere(const BlockFile &file, toml::table &root) {
+  const std::string path = file.path.empty() ? "" : std::filesystem::absolute(file.path).string();
+  if (!path.empty() && path.size() <= longest_text) {
+    *root["blocks"]["file"].as_string() = path;
+  }
+}
+
 } // namespace
 
 } // namespace scene_text
@@ -61,6 +70,7 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     read_parts({*root, faulty, faults}, file, reading.scene);
     reading.diagnostics = faults.sorted();
     if (!has_errors(reading.diagnostics)) {
+      name_from_everywhere(reading.scene.block_file, *root);
       reading.scene.resolved = to_toml(*root, origins);
     }
   } else {

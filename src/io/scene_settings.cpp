@@ -70,6 +70,7 @@ OutputSettings read_output(const SceneSource &source, double duration) {
   settings.history_interval = settings.interval;
   output.read("history_interval", settings.history_interval);
   output.read("contacts", settings.contacts);
+  output.read("checkpoint_interval", settings.checkpoint_interval);
 
   if (duration > 0.0 && settings.interval == 0.0) { // the smallest numbers have no hundredth
     const Section run = section(source.root, "run", source.faulty);

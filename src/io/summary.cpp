@@ -84,6 +84,9 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
     counters.add(name, count);
   }
   JsonObject object(",\n ");
+  if (summary.restarted_at >= 0.0) {
+    object.add("restarted_at", summary.restarted_at);
+  }
   object.add("ranks", summary.ranks)
       .add("blocks", summary.blocks)
       .add("fixed_blocks", summary.fixed_blocks)

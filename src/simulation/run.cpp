@@ -1,10 +1,13 @@
 #include "gcpdda/simulation/run.hpp"
 
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/io/checkpoint.hpp"
+#include "gcpdda/io/folder_lock.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/simulation/energy_ledger.hpp"
 #include "gcpdda/simulation/results.hpp"
 #include "gcpdda/simulation/simulation.hpp"
+#include "gcpdda/simulation/stop_signal.hpp"
 #include "run_log.hpp"
 
 #include <algorithm>
@@ -12,6 +15,7 @@
 #include <cmath>
 #include <ctime>
 #include <fmt/format.h>
+#include <iostream>
 #include <numeric>
 #include <optional>
 
@@ -79,33 +83,50 @@ std::vector<std::int64_t> counts_by_rank(const Communicator &communicator, std::
 /// A run with its files.
 class SceneRun {
 public:
-  SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options)
-      : communicator_(communicator), directory_(options.directory), simulation_(communicator, scene) {
-    on_root(communicator, [&] {
-      prepare_result_directory(directory_, options.overwrite, scene.resolved);
-      histories_.emplace(directory_, scene.monitors);
-    });
-    log_.emplace(communicator.is_root(), directory_);
-    frames_.emplace(communicator, directory_, simulation_.num_blocks());
-    ledger_.emplace(simulation_);
+  /// @param lock  of the folder, if there is one yet
+  SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
+      : communicator_(communicator), directory_(options.directory),
+        simulation_(communicator, scene, options.restart ? options.directory : std::filesystem::path()) {
+    if (!simulation_.restored()) {
+      begin_results(scene, options.overwrite);
+    } else if (!simulation_.finished()) {
+      continue_results(scene, *simulation_.restored());
+    }
+    on_root(communicator, [&] { lock.acquire(directory_); });
     set_up_seconds_ = seconds_since(start_);
   }
 
   int run() {
+    if (simulation_.finished() && simulation_.restored()) {
+      if (communicator_.is_root()) {
+        std::cerr << fmt::format(
+            "the run in {} is finished at t = {:g} s, a longer run.duration goes on from "
+            "there\n",
+            directory_.string(), simulation_.restored()->facts.time);
+      }
+      return 0;
+    }
     announce();
     write_owners_of_blocks();
-    write_due();
+    if (!simulation_.restored()) {
+      write_due();
+    }
     const Clock::time_point loop_start = Clock::now();
     const double cpu_start = cpu_seconds();
     const double output_before = output_seconds();
     const double output_cpu_before = output_cpu_seconds_;
-    while (!simulation_.finished()) {
+    first_step_ = simulation_.step_count();
+    while (!simulation_.finished() && !simulation_.stop_agreed()) {
+      if (stop_signal_came()) {
+        simulation_.ask_to_stop();
+      }
       simulation_.step();
       if (simulation_.step_count() ==
-          std::min<std::int64_t>(steps_to_predict, simulation_.plan().num_steps)) {
+          std::min<std::int64_t>(first_step_ + steps_to_predict, simulation_.plan().num_steps)) {
         predict_duration(seconds_since(loop_start));
       }
       write_due();
+      write_checkpoint_if_due();
       show_progress(loop_start);
     }
     loop_seconds_ = seconds_since(loop_start) - (output_seconds() - output_before);
@@ -115,6 +136,36 @@ public:
 
 private:
   static constexpr std::int64_t steps_to_predict = 20;
+
+  void begin_results(const Scene &scene, bool overwrite) {
+    on_root(communicator_, [&] {
+      prepare_result_directory(directory_, overwrite, scene.resolved);
+      histories_.emplace(directory_, scene.monitors);
+    });
+    log_.emplace(communicator_.is_root(), directory_, std::ios::trunc);
+    frames_.emplace(communicator_, directory_, simulation_.num_blocks());
+    ledger_.emplace(simulation_);
+    checkpoints_.emplace(communicator_, directory_, std::filesystem::path());
+  }
+
+  // What was written after the checkpoint goes: it will be written again.
+  void continue_results(const Scene &scene, const Restored &restored) {
+    const RunFacts &facts = restored.facts;
+    on_root(communicator_, [&] { reopen_result_directory(directory_, scene.resolved); });
+    frames_.emplace(communicator_, directory_, simulation_.num_blocks());
+    frames_->continue_behind(facts.frame_times);
+    on_root(communicator_,
+            [&] { histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step); });
+    log_.emplace(communicator_.is_root(), directory_, std::ios::app);
+    for (const std::string &rejected : restored.rejected) {
+      log_->line("warning: a checkpoint is not used, " + rejected);
+    }
+    log_->line(fmt::format("restart from {}: t = {:.9g} s, step {}, {} frames", restored.path.string(),
+                           facts.time, facts.step, facts.frame_times.size()));
+    ledger_.emplace(facts);
+    num_frames_ = static_cast<int>(facts.frame_times.size());
+    checkpoints_.emplace(communicator_, directory_, restored.path);
+  }
 
   void announce() {
     const auto owned =
@@ -172,26 +223,28 @@ private:
   }
 
   void predict_duration(double seconds) {
-    const auto steps = static_cast<double>(simulation_.step_count());
-    log_->line(fmt::format("predicted time of the step loop: {:.3g} s",
-                           seconds / steps * static_cast<double>(simulation_.plan().num_steps)));
+    const auto steps = static_cast<double>(simulation_.step_count() - first_step_);
+    log_->line(
+        fmt::format("predicted time of the step loop: {:.3g} s",
+                    seconds / steps * static_cast<double>(simulation_.plan().num_steps - first_step_)));
   }
 
   void show_progress(Clock::time_point loop_start) {
     if (!log_->progress_due()) {
       return;
     }
-    const auto steps = static_cast<double>(simulation_.step_count());
+    const auto steps = static_cast<double>(simulation_.step_count() - first_step_);
     const double elapsed = seconds_since(loop_start);
-    const double share = steps / static_cast<double>(simulation_.plan().num_steps);
+    const auto all_steps = static_cast<double>(simulation_.plan().num_steps);
+    const double share = static_cast<double>(simulation_.step_count()) / all_steps;
     constexpr std::size_t bar_length = 20;
     const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_length));
-    log_->progress(
-        fmt::format("[{:.<{}}] {:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  remaining {:.0f} s  "
-                    "unbalanced {:.1e}  max speed {:.3g} m/s",
-                    std::string(filled, '='), bar_length, 100.0 * share, simulation_.time(),
-                    simulation_.step_count(), steps * static_cast<double>(simulation_.num_blocks()) / elapsed,
-                    elapsed * (1.0 - share) / share, energy_.unbalanced_ratio, energy_.max_speed));
+    log_->progress(fmt::format(
+        "[{:.<{}}] {:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  remaining {:.0f} s  "
+        "unbalanced {:.1e}  max speed {:.3g} m/s",
+        std::string(filled, '='), bar_length, 100.0 * share, simulation_.time(), simulation_.step_count(),
+        steps * static_cast<double>(simulation_.num_blocks()) / elapsed,
+        elapsed * (1.0 - share) * all_steps / steps, energy_.unbalanced_ratio, energy_.max_speed));
   }
 
   void write_due() {
@@ -213,6 +266,26 @@ private:
     if (failed || plan.history_due(step)) {
       write_history(failed);
     }
+    output_cpu_seconds_ += cpu_seconds() - cpu_start;
+  }
+
+  // After frames and histories of this step, so that a restart owes none.
+  void write_checkpoint_if_due() {
+    const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
+    if (simulation_.fault() || (!stopping && !simulation_.plan().checkpoint_due(simulation_.step_count()))) {
+      return;
+    }
+    const auto scope = simulation_.phases().measure(Phase::output);
+    const double cpu_start = cpu_seconds();
+    const Clock::time_point start = Clock::now();
+    on_root(communicator_, [&] { histories_->sync(); });
+    RunFacts facts = simulation_.facts();
+    facts.total_at_start = ledger_->total_at_start();
+    facts.stick_at_start = ledger_->stick_at_start();
+    facts.frame_times = frames_->times();
+    checkpoints_->write(facts, simulation_.blocks(), simulation_.contacts_that_count_here());
+    log_->line(fmt::format("checkpoint at t = {:.9g} s, written in {:.3g} s", simulation_.time(),
+                           seconds_since(start)));
     output_cpu_seconds_ += cpu_seconds() - cpu_start;
   }
 
@@ -281,9 +354,17 @@ private:
 
   int finish() {
     const bool failed = simulation_.fault().has_value();
+    const bool stopped = !simulation_.finished();
     RunSummary summary;
-    summary.verdict = failed ? "failed" : "completed";
-    summary.message = failed ? fault_message() : fmt::format("reached t = {:g} s", simulation_.time());
+    summary.verdict = failed ? "failed" : stopped ? "stopped" : "completed";
+    summary.message = failed ? fault_message()
+                      : stopped
+                          ? fmt::format("stopped by a signal at t = {:g} s, go on with gcpdda restart {}",
+                                        simulation_.time(), directory_.string())
+                          : fmt::format("reached t = {:g} s", simulation_.time());
+    if (stopped) {
+      contacts_at_end_ = count_contacts();
+    }
     fill(summary);
     for (const Diagnostic &warning : simulation_.warnings()) {
       log_->line(to_string(warning));
@@ -300,7 +381,8 @@ private:
         summary.steps, summary.contacts, summary.max_overlap, summary.energy.residual, summary.wall_s));
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());
-    return failed ? 5 : 0;
+    forget_stop_signal();
+    return failed ? 5 : stopped ? 6 : 0;
   }
 
   void fill(RunSummary &summary) {
@@ -327,7 +409,10 @@ private:
     communicator_.max(std::span(&max_overlap, 1));
     summary.max_overlap = max_overlap;
     summary.energy = energy_;
-    const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps, 1));
+    if (simulation_.restored()) {
+      summary.restarted_at = simulation_.restored()->facts.time;
+    }
+    const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps - first_step_, 1));
     summary.bytes_sent_per_step =
         static_cast<double>(total(communicator_, simulation_.ghosts().bytes_sent())) / steps;
     summary.messages_per_step =
@@ -354,8 +439,10 @@ private:
   std::optional<RunLog> log_;
   std::optional<FrameWriter> frames_;
   std::optional<EnergyLedger> ledger_;
+  std::optional<CheckpointWriter> checkpoints_;
   EnergyRow energy_;
   int num_frames_ = 0;
+  std::int64_t first_step_ = 0; ///< of this part of the run
   std::int64_t contacts_at_end_ = 0;
   double set_up_seconds_ = 0.0;
   double output_cpu_seconds_ = 0.0;
@@ -366,7 +453,9 @@ private:
 } // namespace
 
 int run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
-  return SceneRun(communicator, scene, options).run();
+  FolderLock lock;
+  on_root(communicator, [&] { lock.acquire(options.directory); });
+  return SceneRun(communicator, scene, options, lock).run();
 }
 
 } // namespace gcpdda

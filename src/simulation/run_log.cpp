@@ -5,10 +5,10 @@
 
 namespace gcpdda {
 
-RunLog::RunLog(bool speaks, const std::filesystem::path &directory)
+RunLog::RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode)
     : speaks_(speaks), terminal_(speaks && isatty(STDERR_FILENO) != 0) {
   if (speaks_) {
-    file_.open(directory / "run.log");
+    file_.open(directory / "run.log", std::ios::out | mode);
   }
 }
 

@@ -13,7 +13,8 @@ namespace gcpdda {
 /// on other ranks.
 class RunLog {
 public:
-  RunLog(bool speaks, const std::filesystem::path &directory);
+  /// @param mode  std::ios::trunc, or std::ios::app to go on with an earlier run.log
+  RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode);
 
   void line(const std::string &text);
   void diagnostic(const Diagnostic &diagnostic);

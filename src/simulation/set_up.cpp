@@ -69,7 +69,8 @@ double agreed_median(const Communicator &communicator, std::span<const double> s
 
 } // namespace
 
-Simulation::Simulation(const Communicator &communicator, Scene scene)
+Simulation::Simulation(const Communicator &communicator, Scene scene,
+                       const std::filesystem::path &restart_from)
     : communicator_(communicator), scene_(std::move(scene)), ghosts_(communicator),
       contacts_({scene_.joints, scene_.run.contact_damping, scene_.run.potential}),
       scheme_(make_scheme(scene_.run.scheme, scene_.run.spectral_radius, scene_.run.contact_time)) {
@@ -79,20 +80,24 @@ Simulation::Simulation(const Communicator &communicator, Scene scene)
                                PrescribedMotion(scene_.blocks[i].velocity_table));
     }
   }
-  distribute();
+  distribute(restart_from);
   find_bound();
   plan_ = plan_time(scene_.run, scene_.output, bound_.time_step, notes_);
   warn_of_lively_impacts();
   make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity,
                       stiffest_joint(scene_.joints));
-  refresh();
+  refresh(restored_ ? std::move(restored_->memory) : std::vector<RegionRecord>());
   warn_of_driven_paths(scene_, blocks_, notes_);
-  find_initial_state();
+  if (restored_) {
+    go_on();
+  } else {
+    find_initial_state();
+  }
   stop_on_errors(notes_);
 }
 
 // Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
-void Simulation::distribute() {
+void Simulation::distribute(const std::filesystem::path &restart_from) {
   stop_on_errors(open_block_file(communicator_, scene_));
   const std::vector<SceneBlock> slab = load_slab();
   resolve_stiffness(slab);
@@ -107,8 +112,12 @@ void Simulation::distribute() {
   communicator_.sum(weights);
   map_ = partition_cells(map_.grid, weights, communicator_.size(), &partition_);
   take_blocks(slab);
+  identify(slab);
   std::vector<RegionRecord> none;
-  migrate(communicator_, map_, blocks_, none);
+  if (!restart_from.empty()) { // rows are those of the slab still
+    restored_ = restore_newest_checkpoint(communicator_, restart_from, identity_, blocks_);
+  }
+  migrate(communicator_, map_, blocks_, restored_ ? restored_->memory : none);
   map_ = partition_cells(map_.grid, count_contact_work(), communicator_.size(), &partition_);
 }
 

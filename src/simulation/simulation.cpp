@@ -26,7 +26,7 @@ std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
 
 void Simulation::step() {
   if (stale_) { // some block may use up half the skin in this step; all ranks agree
-    refresh();
+    refresh(remembered_contacts());
   }
   load_time_ = time() + scheme_.load_time * plan_.time_step;
   predict_next();
@@ -58,15 +58,8 @@ Vec2 Simulation::gravity() const {
 
 // Each block to the rank that owns its centroid, who is seen by whom, which pairs may touch: on a finished
 // state.
-void Simulation::refresh() {
+void Simulation::refresh(std::vector<RegionRecord> memory) {
   const auto scope = phases_.measure(Phase::refresh);
-  std::vector<RegionRecord> memory;
-  for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    for (const RegionMemory &region : history_.of_pair(k)) {
-      memory.push_back({blocks_.properties[candidates_.pairs[k].lower.value].id,
-                        blocks_.properties[candidates_.pairs[k].higher.value].id, region});
-    }
-  }
   const std::int64_t left = migrate(communicator_, map_, blocks_, memory);
 
   // Fast blocks would use up the usual skin at once: it grows so that half of it outlasts several steps.
@@ -227,7 +220,7 @@ void Simulation::add_half_works(std::size_t row) {
   ledger.gravity_work += half.gravity;
 }
 
-// One reduction: does anybody need a refresh, has anybody failed.
+// One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop.
 void Simulation::report() {
   const auto scope = phases_.measure(Phase::report);
   counters_.evaluations += force_report_.evaluations;
@@ -270,7 +263,10 @@ void Simulation::report() {
   if (local_fault_) {
     status = failed;
   }
-  communicator_.max(std::span(&status, 1));
+  std::array<double, 2> agreed{status, stop_asked_ ? 1.0 : 0.0};
+  communicator_.max(agreed);
+  status = agreed[0];
+  stop_agreed_ = agreed[1] > 0.0;
   stale_ = status >= needs_refresh;
   if (status >= failed) {
     agree_on_fault();

@@ -21,6 +21,22 @@ double steps_in(double stretch, double wanted) {
   return std::max(1.0, is_whole(ratio) ? std::round(ratio) : std::ceil(ratio));
 }
 
+void plan_checkpoints(double interval, TimePlan &plan, Diagnostics &notes) {
+  if (interval <= 0.0) {
+    return;
+  }
+  const double count = interval / plan.time_step;
+  plan.steps_per_checkpoint = static_cast<std::int64_t>(std::min(std::max(1.0, std::round(count)), 1e18));
+  if (!is_whole(count)) {
+    notes.push_back({Severity::info,
+                     {},
+                     fmt::format("checkpoints are written every {:g} s, not every {:g} s",
+                                 static_cast<double>(plan.steps_per_checkpoint) * plan.time_step, interval),
+                     "they fall on whole steps",
+                     ""});
+  }
+}
+
 } // namespace
 
 TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double bound, Diagnostics &notes) {
@@ -74,7 +90,30 @@ TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double 
   plan.num_steps = steps(run.duration);
   plan.steps_per_output = steps(output.interval);
   plan.steps_per_history = steps(output.history_interval);
+  plan_checkpoints(output.checkpoint_interval, plan, notes);
   return plan;
+}
+
+std::int64_t step_to_go_on_from(const TimePlan &plan, double time, double time_step, Diagnostics &notes) {
+  const double count = time / plan.time_step;
+  if (!is_whole(count)) {
+    notes.push_back(
+        {Severity::error,
+         {},
+         fmt::format("the checkpoint at t = {} s is between two steps of {} s", time, plan.time_step),
+         fmt::format("it was made with steps of {} s", time_step),
+         fmt::format("set run.time_step to a whole part of t, for example {}", time / std::ceil(count))});
+    return 0;
+  }
+  if (std::abs(plan.time_step / time_step - 1.0) > whole) {
+    notes.push_back({Severity::warning,
+                     {},
+                     fmt::format("the time step changes from {:g} s to {:g} s", time_step, plan.time_step),
+                     "the step across the change is of neither length, and the energies may jump there by "
+                     "O(dt^2)",
+                     "set run.time_step to the old one for the same results"});
+  }
+  return std::llround(count);
 }
 
 } // namespace gcpdda

@@ -2,10 +2,12 @@
 
 #include "support/run_facts.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <fcntl.h>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 #include <sys/wait.h>
@@ -80,17 +82,16 @@ void WorkFolder::write(const std::string &name, const std::string &text) const {
   file << text;
 }
 
-Outcome run_program(const std::vector<std::string> &words, const fs::path &folder,
-                    const std::vector<std::string> &environment) {
-  const WorkFolder streams;
+Process::Process(const std::vector<std::string> &words, const fs::path &folder,
+                 const std::vector<std::string> &environment) {
   std::vector<std::string> arguments = words;
   std::vector<std::string> variables = clean_environment(environment);
   const std::vector<char *> argv = pointers(arguments);
   const std::vector<char *> envp = pointers(variables);
-  const std::string out = streams / "out";
-  const std::string err = streams / "err";
-  const pid_t child = fork();
-  if (child == 0) {
+  const std::string out = *streams_ / "out";
+  const std::string err = *streams_ / "err";
+  child_ = fork();
+  if (child_ == 0) {
     setpgid(0, 0);
     const int in = open("/dev/null", O_RDONLY);
     const int to_out = open(out.c_str(), O_CREAT | O_WRONLY, 0600);
@@ -100,24 +101,63 @@ Outcome run_program(const std::vector<std::string> &words, const fs::path &folde
     }
     _exit(127);
   }
-  if (child < 0) {
+  if (child_ < 0) {
     throw std::runtime_error("cannot fork");
   }
+}
+
+Process::~Process() {
+  if (!ended_) {
+    kill(-child_, SIGKILL);
+    waitpid(child_, nullptr, 0);
+  }
+}
+
+std::vector<pid_t> Process::children() const {
+  std::vector<pid_t> found;
+  for (const fs::directory_entry &entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) {
+      continue;
+    }
+    std::ifstream file(entry.path() / "stat");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t behind_name = text.rfind(')'); // "pid (name) state parent ..."
+    if (behind_name != std::string::npos &&
+        std::stoi(text.substr(std::min(behind_name + 4, text.size()))) == child_) {
+      found.push_back(std::stoi(name));
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+Outcome Process::wait() {
   Outcome outcome;
-  outcome.exit_code = wait_for(child);
-  outcome.out = file_text(out);
-  outcome.err = file_text(err);
+  outcome.exit_code = wait_for(child_);
+  ended_ = true;
+  outcome.out = file_text(*streams_ / "out");
+  outcome.err = file_text(*streams_ / "err");
   return outcome;
 }
 
-Outcome run_gcpdda(int ranks, const std::vector<std::string> &arguments, const WorkFolder &folder) {
+Outcome run_program(const std::vector<std::string> &words, const fs::path &folder,
+                    const std::vector<std::string> &environment) {
+  return Process(words, folder, environment).wait();
+}
+
+std::vector<std::string> gcpdda_words(int ranks, const std::vector<std::string> &arguments) {
   std::vector<std::string> words;
   if (ranks > 0) {
     words = {GCPDDA_MPIEXEC, "-n", std::to_string(ranks), "--oversubscribe", "--bind-to", "none"};
   }
   words.emplace_back(GCPDDA_EXECUTABLE);
   words.insert(words.end(), arguments.begin(), arguments.end());
-  return run_program(words, folder.path());
+  return words;
+}
+
+Outcome run_gcpdda(int ranks, const std::vector<std::string> &arguments, const WorkFolder &folder) {
+  return run_program(gcpdda_words(ranks, arguments), folder.path());
 }
 
 } // namespace gcpdda::testing

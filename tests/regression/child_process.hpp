@@ -2,7 +2,9 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <sys/types.h>
 #include <vector>
 
 namespace gcpdda::testing {
@@ -29,11 +31,34 @@ struct Outcome {
   std::string err;
 };
 
-/// Start a program in a folder and wait for it. It sees this process's environment without what MPI
-/// launchers left in it, plus `environment` ("NAME=value"). After two minutes it is killed, children
-/// included.
+/// A program started in a folder. It sees this process's environment without what MPI launchers left in it,
+/// plus `environment` ("NAME=value").
+class Process {
+public:
+  Process(const std::vector<std::string> &words, const std::filesystem::path &folder,
+          const std::vector<std::string> &environment = {});
+  ~Process();
+  Process(const Process &) = delete;
+  Process &operator=(const Process &) = delete;
+
+  [[nodiscard]] pid_t id() const { return child_; }
+  /// Of the processes it has started itself, mpirun's ranks say; sorted.
+  [[nodiscard]] std::vector<pid_t> children() const;
+  /// To its end; after two minutes it is killed, children included.
+  Outcome wait();
+
+private:
+  std::unique_ptr<WorkFolder> streams_ = std::make_unique<WorkFolder>();
+  pid_t child_ = -1;
+  bool ended_ = false;
+};
+
+/// Start a program and wait for it.
 Outcome run_program(const std::vector<std::string> &words, const std::filesystem::path &folder,
                     const std::vector<std::string> &environment = {});
+
+/// The words of gcpdda with these arguments: without mpirun, or on that many ranks (0: without).
+std::vector<std::string> gcpdda_words(int ranks, const std::vector<std::string> &arguments);
 
 /// gcpdda with these arguments in this folder: without mpirun, or on that many ranks (0: without).
 Outcome run_gcpdda(int ranks, const std::vector<std::string> &arguments, const WorkFolder &folder);

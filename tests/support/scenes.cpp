@@ -118,4 +118,37 @@ std::string falling_pile_toml(int num_blocks, double duration) {
   return toml;
 }
 
+std::string mixed_wall_toml(int rows, int columns, double duration) {
+  const double squeeze = 0.002;
+  std::string toml = fmt::format("[run]\nduration = {}\n[material.rock]\ndensity = 2600.0\n"
+                                 "youngs_modulus = 2e9\npoissons_ratio = 0.25\n[joint.default]\n"
+                                 "normal_stiffness = 1e9\nfriction_angle_deg = 30.0\n"
+                                 "[output]\ninterval = {}\n[[monitor]]\nblock = \"l2_2\"\n[[monitor]]\n"
+                                 "name = \"tip\"\npoint = [7.9, 3.2]\n",
+                                 duration, duration / 2.0);
+  toml += block_toml("floor", rectangle({-2.0, -1.0}, {2.0 * columns + 3.0, squeeze}),
+                     "velocity_table = [[0, 3, 0, 0], [0.007, 4, 0.5, 0], [0.011, 2, 0, 0.1]]");
+  std::mt19937 random(5);
+  const auto speed = [&](double most) { return most * (static_cast<double>(random()) / 2147483648.0 - 1.0); };
+  const auto add = [&](const std::string &name, const std::vector<Vec2> &vertices, bool deformable) {
+    toml += block_toml(name, vertices,
+                       fmt::format("velocity = [{:.6g}, {:.6g}, {:.6g}]\nfidelity = \"{}\"", 4.0 + speed(1.0),
+                                   1.0 + speed(1.0), speed(0.3), deformable ? "deformable" : "rigid"));
+  };
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const double x = 2.0 * column + 0.5 * (row % 2);
+      const double y = row;
+      const double right = x + 2.0 + squeeze;
+      const double top = y + 1.0 + squeeze;
+      add(fmt::format("l{}_{}", row, column),
+          {{x, y}, {right, y}, {right, y + 0.5}, {x + 1.0, y + 0.5}, {x + 1.0, top}, {x, top}},
+          (row + column) % 2 == 0);
+      add(fmt::format("b{}_{}", row, column), rectangle({x + 1.0 - squeeze, y + 0.5 - squeeze}, {right, top}),
+          (row + column) % 3 == 0);
+    }
+  }
+  return toml;
+}
+
 } // namespace gcpdda::testing

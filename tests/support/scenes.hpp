@@ -34,4 +34,8 @@ std::vector<Vec2> random_polygon(unsigned seed, int num_vertices, double radius,
 /// touches, slides and crosses subdomain corners.
 std::string falling_pile_toml(int num_blocks, double duration);
 
+/// A wall of cells of an L and a brick in its notch, each rigid or deformable by turns, on a floor that
+/// shakes it; two outputs, a monitored block and point.
+std::string mixed_wall_toml(int rows, int columns, double duration);
+
 } // namespace gcpdda::testing

@@ -26,7 +26,7 @@ std::vector<Vec2> corners_on_circle(std::mt19937 &engine, int num_vertices, Vec2
 }
 
 /// Couples of blocks that overlap a little, far from each other; every third couple touches face to face.
-BlockSystem couples(std::mt19937 &engine, int count, int most_vertices) {
+BlockSystem couples(std::mt19937 &engine, int count, std::size_t most_vertices) {
   std::vector<std::vector<Vec2>> blocks;
   for (int k = 0; k < count; ++k) {
     const Vec2 here{10.0 * k, uniform(engine, -5.0, 5.0)};
@@ -37,9 +37,7 @@ BlockSystem couples(std::mt19937 &engine, int count, int most_vertices) {
       blocks.push_back(rectangle(here + Vec2{shift, 1.0 - sunk}, here + Vec2{shift + 1.0, 2.0}));
       continue;
     }
-    const auto vertices = [&] {
-      return 3 + static_cast<int>(engine() % static_cast<unsigned>(most_vertices - 2));
-    };
+    const auto vertices = [&] { return 3 + static_cast<int>(engine() % (most_vertices - 2)); };
     const double direction = uniform(engine, 0.0, 2.0 * std::numbers::pi);
     const double distance = uniform(engine, 1.2, 1.9);
     blocks.push_back(corners_on_circle(engine, vertices(), here));
@@ -111,7 +109,7 @@ TEST(PlainPairs, AgreeWithTheGeneralWay) {
   std::mt19937 engine(91);
   constexpr int count = 300;
   const double stiffness = 1e6;
-  TwoWays ways(couples(engine, count, 4), one_law(stiffness, 0.3, 10.0), 0.1);
+  TwoWays ways(couples(engine, count, most_plain_edges), one_law(stiffness, 0.3, 10.0), 0.1);
   ASSERT_GE(ways.plain.candidates.plain.size(), static_cast<std::size_t>(count));
   int touching = 0;
   int sliding = 0;

@@ -37,6 +37,7 @@ TEST(SceneReader, ReadsRunAndOutput) {
   EXPECT_FALSE(scene.run.plane_strain);
   EXPECT_EQ(scene.output.interval, 0.02);
   EXPECT_EQ(scene.output.history_interval, 0.001);
+  EXPECT_EQ(scene.output.checkpoint_interval, 0.5);
   EXPECT_FALSE(scene.output.contacts);
 }
 
@@ -208,7 +209,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     expect_same(good(text, {path + "=" + std::string(key.fallback)}), scene);
     ++compared;
   }
-  EXPECT_EQ(compared, 24);
+  EXPECT_EQ(compared, 25);
 }
 
 TEST(SceneReader, EveryKeyHasASentenceAndAnExample) {

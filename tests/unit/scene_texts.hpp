@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,7 @@ fixed = true
 [output]
 interval = 0.02
 history_interval = 0.001
+checkpoint_interval = 0.5
 contacts = false
 [[monitor]]
 block = "b1"
@@ -172,6 +174,7 @@ inline void expect_same(const Scene &a, const Scene &b) {
   EXPECT_EQ(a.run.plane_strain, b.run.plane_strain);
   EXPECT_EQ(a.output.interval, b.output.interval);
   EXPECT_EQ(a.output.history_interval, b.output.history_interval);
+  EXPECT_EQ(a.output.checkpoint_interval, b.output.checkpoint_interval);
   EXPECT_EQ(a.output.contacts, b.output.contacts);
   EXPECT_EQ(a.joints.num_materials, b.joints.num_materials);
   EXPECT_EQ(a.joints.of_material, b.joints.of_material);
@@ -208,7 +211,10 @@ inline void expect_same(const Scene &a, const Scene &b) {
       EXPECT_EQ(a.blocks[i].loads[k].force, b.blocks[i].loads[k].force);
     }
   }
-  EXPECT_EQ(a.block_file.path, b.block_file.path);
+  const auto whole = [](const std::string &path) { // the resolved text names it by its absolute path
+    return path.empty() ? path : std::filesystem::absolute(path).string();
+  };
+  EXPECT_EQ(whole(a.block_file.path), whole(b.block_file.path));
   ASSERT_EQ(a.generators.size(), b.generators.size());
   for (std::size_t i = 0; i < a.generators.size(); ++i) {
     EXPECT_EQ(a.generators[i].kind, b.generators[i].kind);

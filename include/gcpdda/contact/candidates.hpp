@@ -27,7 +27,9 @@ struct CandidatePair {
   bool is_plain = false;        ///< listed in Candidates::plain
 };
 
-/// A pair of convex rigid blocks of which at most four neighbouring edges each can take part in the contact.
+/// A pair of convex rigid blocks with few edges, and those neighbouring ones of each that can take part in
+/// the contact before the next refresh. Whether a pair is plain depends on its shapes alone, so that no bit
+/// of a run depends on when the neighbourhood is refreshed.
 struct PlainPair {
   std::uint32_t pair = 0;
   BlockIndex lower;
@@ -56,7 +58,7 @@ struct Candidates {
 };
 
 /// Most edges of one block of a plain pair.
-constexpr std::size_t most_plain_edges = 4;
+constexpr std::size_t most_plain_edges = 8;
 
 /// What a pair's constants follow from.
 struct ContactParameters {

@@ -60,14 +60,22 @@ public:
   /// @param num_blocks  all blocks of the scene, fixed ones included
   FrameWriter(const Communicator &communicator, std::filesystem::path directory, std::int64_t num_blocks);
 
+  /// Go on behind the first frames of a run: later ones are removed, the indices tell of those that stay.
+  /// @param times  of frames 0, 1, ... that stay, s
+  void continue_behind(const std::vector<double> &times);
+
   /// Frame number `index` (0, 1, ...); every block is in exactly one rank's data.
   void write(int index, double time, const FrameData &data);
   /// The same for frames/contacts_<index>.hdf; every region is on exactly one rank.
   void write_contacts(int index, double time, const std::vector<ContactRow> &rows);
   /// False once HDF5 has broken a collective write into independent ones: slow, and worth a test.
   [[nodiscard]] bool all_writes_collective() const { return all_writes_collective_; }
+  /// Of all frames, s; frame k is the k-th.
+  [[nodiscard]] std::vector<double> times() const;
 
 private:
+  void write_indices() const;
+
   Communicator communicator_;
   std::filesystem::path directory_;
   std::int64_t num_blocks_;
@@ -105,12 +113,20 @@ struct EnergyRow {
 class HistoryWriter {
 public:
   HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors);
+  /// Go on with the histories of a run: rows later than `last_time` (s) are cut off, and a last row that was
+  /// not written to its end.
+  HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time);
   void write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row);
   void write_energy(double time, const EnergyRow &row);
   /// What has been written is on its way to the disk; throws FileError when the disk is full.
   void flush();
+  /// What has been flushed is on the disk. Throws FileError.
+  void sync() const;
 
 private:
+  [[nodiscard]] std::string header_of(std::size_t history) const;
+  [[nodiscard]] std::filesystem::path path_of(std::size_t history) const;
+
   std::filesystem::path directory_;
   std::vector<Monitor> monitors_;
   std::vector<std::string> pending_; ///< text not yet appended, per monitor; energy last
@@ -142,6 +158,8 @@ struct RunSummary {
   std::vector<std::pair<std::string, std::array<double, 3>>> phases;
   /// name, count: extra facts a test or a person may want (migrations, refreshes, cross_rank_contacts, ...)
   std::vector<std::pair<std::string, double>> counters;
+  double restarted_at = -1.0; ///< s, negative for a run from t = 0; times and counters "of the run" then are
+                              ///< of all of it, wall and CPU times, evaluations and messages of this part
   std::string verdict;
   std::string message;
 };
@@ -153,6 +171,12 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
 /// `overwrite`, which removes only what a run writes. Writes scene.toml (the resolved text).
 void prepare_result_directory(const std::filesystem::path &directory, bool overwrite,
                               const std::string &resolved_scene);
+
+/// Makes a run's folder fit to go on with: its scene.toml is this one, its summary is gone. Root only.
+void reopen_result_directory(const std::filesystem::path &directory, const std::string &resolved_scene);
+
+/// Whether summary.json says that the run has reached its end. Root only.
+bool says_completed(const std::filesystem::path &directory);
 
 /// Root only: decomposition/owners_<step>.csv, `block,rank` in BlockId order; anything that depends on ranks
 /// lives there.

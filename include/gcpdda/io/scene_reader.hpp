@@ -14,8 +14,8 @@ struct SceneReading {
   Diagnostics diagnostics; ///< every fault of the text, in file order
 };
 
-/// Read and validate one scene. Pure: no file is touched and no MPI call made, so that every rank that is
-/// given the same text gets the same answer.
+/// Read and validate one scene. No file is touched and no MPI call made, so that every rank that is given the
+/// same text gets the same answer. The resolved text names a block file by its absolute path.
 ///
 /// @param text  the TOML text
 /// @param file  its name as the user gave it, for diagnostics and Scene::stem

@@ -100,8 +100,9 @@ struct BlockFile {
 };
 
 struct OutputSettings {
-  double interval = 0.0;         ///< s; 0 until the default is put in
-  double history_interval = 0.0; ///< s
+  double interval = 0.0;            ///< s; 0 until the default is put in
+  double history_interval = 0.0;    ///< s
+  double checkpoint_interval = 0.0; ///< s; 0 for no checkpoints by time
   bool contacts = true;
 };
 

@@ -23,6 +23,12 @@ class EnergyLedger {
 public:
   /// Energies of the initial state. Collective.
   explicit EnergyLedger(Simulation &simulation);
+  /// Of a run that goes on: what the first one found.
+  explicit EnergyLedger(const RunFacts &facts)
+      : total_at_start_(facts.total_at_start), stick_at_start_(facts.stick_at_start) {}
+
+  [[nodiscard]] double total_at_start() const { return total_at_start_; }
+  [[nodiscard]] double stick_at_start() const { return stick_at_start_; }
 
   /// The row of the current state, which stays as it is. Collective.
   [[nodiscard]] EnergyRow row(Simulation &simulation) const;

@@ -12,10 +12,12 @@ namespace gcpdda {
 struct RunOptions {
   std::filesystem::path directory;
   bool overwrite = false;
+  bool restart = false; ///< go on from the newest checkpoint in the folder
 };
 
-/// Run a valid scene to its end and write everything. Collective.
-/// @return exit code: 0 done, 5 numerical failure
+/// Run a valid scene to its end and write everything, with checkpoints by output.checkpoint_interval and when
+/// SIGUSR1 comes (stop_signal.hpp). Collective.
+/// @return exit code: 0 done, 5 numerical failure, 6 stopped by the signal with a checkpoint
 /// @throws SceneError, FileError
 int run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options);
 

@@ -4,6 +4,7 @@
 #include "gcpdda/contact/contact_forces.hpp"
 #include "gcpdda/dynamics/integrate.hpp"
 #include "gcpdda/dynamics/scheme.hpp"
+#include "gcpdda/io/checkpoint.hpp"
 #include "gcpdda/model/generators.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
@@ -12,6 +13,7 @@
 #include "gcpdda/simulation/time_plan.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -70,8 +72,10 @@ struct FidelityReport {
 class Simulation {
 public:
   /// @param scene  valid by itself, the same on all ranks
+  /// @param restart_from  result folder whose newest checkpoint is the initial state; empty for t = 0
   /// @throws SceneError with all that is wrong with the block file, the overlaps, the monitors and the step
-  Simulation(const Communicator &communicator, Scene scene);
+  /// @throws FileError where that folder has no checkpoint that fits
+  Simulation(const Communicator &communicator, Scene scene, const std::filesystem::path &restart_from = {});
 
   /// Advance all blocks from t_n to t_{n+1}.
   void step();
@@ -79,6 +83,10 @@ public:
   [[nodiscard]] bool finished() const { return step_count_ >= plan_.num_steps || fault_.has_value(); }
   [[nodiscard]] double time() const { return plan_.time(step_count_); }
   [[nodiscard]] std::int64_t step_count() const { return step_count_; }
+  /// This rank wants the run to stop after the next step; one rank is enough.
+  void ask_to_stop() { stop_asked_ = true; }
+  /// Some rank asked before the last step; the same on all ranks.
+  [[nodiscard]] bool stop_agreed() const { return stop_agreed_; }
   /// Why the run cannot go on; the same on all ranks.
   [[nodiscard]] const std::optional<Fault> &fault() const { return fault_; }
 
@@ -106,6 +114,12 @@ public:
   /// This rank writes what is known of the pair: one rank for each pair.
   [[nodiscard]] bool counts_here(const CandidatePair &pair) const;
   [[nodiscard]] std::int64_t num_blocks() const { return gcpdda::num_blocks(scene_); }
+  /// The checkpoint this run began with; none for a run from t = 0.
+  [[nodiscard]] const std::optional<Restored> &restored() const { return restored_; }
+  /// Everything a checkpoint holds besides the blocks and their contacts, but what the output knows.
+  [[nodiscard]] RunFacts facts() const;
+  /// Memory of all contacts, each region on one rank, those of a pair in their order.
+  [[nodiscard]] std::vector<RegionRecord> contacts_that_count_here() const;
 
   /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On
   /// return the state is as before.
@@ -122,7 +136,9 @@ public:
   }
 
 private:
-  void distribute();
+  void distribute(const std::filesystem::path &restart_from);
+  void identify(std::span<const SceneBlock> slab);
+  void go_on();
   [[nodiscard]] std::vector<SceneBlock> load_slab();
   void resolve_stiffness(std::span<const SceneBlock> slab);
   void lay_grid(std::span<const SceneBlock> slab);
@@ -137,7 +153,9 @@ private:
   void check_initial_overlaps();
   void find_initial_friction();
   void accelerate_owned();
-  void refresh();
+  [[nodiscard]] RegionRecord record_of(std::size_t pair, const RegionMemory &region) const;
+  [[nodiscard]] std::vector<RegionRecord> remembered_contacts() const;
+  void refresh(std::vector<RegionRecord> memory);
   void predict_next();
   void prescribe_trials();
   void prescribe_motion();
@@ -171,6 +189,10 @@ private:
   double base_skin_ = 0.0;
   double skin_ = 0.0;
   bool stale_ = true;
+  bool stop_asked_ = false;
+  bool stop_agreed_ = false;
+  SceneIdentity identity_;
+  std::optional<Restored> restored_;
   ForceReport force_report_;
   std::optional<Fault> local_fault_;
   std::optional<Fault> fault_;

@@ -16,6 +16,7 @@ struct TimePlan {
   std::int64_t num_steps = 0;
   std::int64_t steps_per_output = 1;
   std::int64_t steps_per_history = 1;
+  std::int64_t steps_per_checkpoint = 0; ///< 0 for none
 
   [[nodiscard]] double time(std::int64_t step) const {
     // Rounded once: output times come out as written in the scene.
@@ -28,15 +29,25 @@ struct TimePlan {
   [[nodiscard]] bool history_due(std::int64_t step) const {
     return step % steps_per_history == 0 || step == num_steps;
   }
+  [[nodiscard]] bool checkpoint_due(std::int64_t step) const {
+    return steps_per_checkpoint > 0 && step > 0 && (step % steps_per_checkpoint == 0 || step == num_steps);
+  }
 };
 
 /// Choose the step: the scene's, lowered once if it does not divide the output intervals; or the largest that
 /// divides them and meets the bound.
 ///
 /// @param bound  largest recommended step (s), infinite where nothing can touch
-/// @param notes  gets a warning when the scene's step lies above the bound, an info when it was lowered, an
-/// error
-///               when duration and intervals have no common step
+/// @param notes  gets a warning when the scene's step lies above the bound, an info when it was lowered or
+///               when checkpoints fall on other times than asked for, an error when duration and intervals
+///               have no common step
 TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double bound, Diagnostics &notes);
+
+/// The step at which a run goes on that has reached `time` (s) with steps of `time_step` (s).
+///
+/// @param notes  gets a warning where the plan's step is another one, an error where none of its steps falls
+/// on
+///               that time
+std::int64_t step_to_go_on_from(const TimePlan &plan, double time, double time_step, Diagnostics &notes);
 
 } // namespace gcpdda

@@ -1,0 +1,90 @@
+#pragma once
+
+// DIR/checkpoints/checkpoint_<step>.h5: everything of a run that its scene does not say and that cannot be
+// computed again. Rows are in BlockId order, so the bytes do not depend on the number of ranks, and neither
+// does the number that reads them. The file appears under its name only when it is complete and on the disk;
+// the two newest are kept. A checksum over all numbers tells a damaged one.
+
+#include "gcpdda/model/block_system.hpp"
+#include "gcpdda/model/contact_history.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace gcpdda {
+
+/// What a state fits (model/fingerprint.hpp).
+struct SceneIdentity {
+  std::int64_t num_blocks = 0; ///< fixed ones included
+  std::int64_t num_mobile = 0;
+  std::uint64_t blocks = 0; ///< sum of the fingerprints of all
+  std::uint64_t materials = 0;
+
+  friend bool operator==(const SceneIdentity &, const SceneIdentity &) = default;
+};
+
+/// What a checkpoint holds besides blocks and contacts; the same on all ranks.
+struct RunFacts {
+  SceneIdentity scene;
+  std::int64_t step = 0;
+  double time = 0.0;              ///< s
+  double time_step = 0.0;         ///< s
+  double total_at_start = 0.0;    ///< of the energies, J/m
+  double stick_at_start = 0.0;    ///< energy of the stick springs, J/m
+  std::int64_t contact_steps = 0; ///< and what follows: of the run so far, for its summary
+  double max_overlap = 0.0;
+  double max_overlap_share = 0.0;
+  double fastest_turn = 0.0;
+  std::vector<double> frame_times; ///< of the frames written, s
+};
+
+/// Writes checkpoints of one run.
+class CheckpointWriter {
+public:
+  /// @param last  the checkpoint the run goes on from; empty for a run from t = 0
+  CheckpointWriter(const Communicator &communicator, std::filesystem::path directory,
+                   std::filesystem::path last);
+
+  /// State of all mobile blocks at the end of a step, read again before an older one is removed. Afterwards
+  /// this and the checkpoint before are there, no others. Collective; throws FileError on all ranks and
+  /// leaves what was there.
+  ///
+  /// @param blocks  each mobile block is owned by one rank
+  /// @param memory  each region on one rank, those of a pair in their order
+  void write(const RunFacts &facts, const BlockSystem &blocks, std::span<const RegionRecord> memory);
+
+private:
+  Communicator communicator_;
+  std::filesystem::path directory_;
+  std::filesystem::path last_;
+};
+
+/// A state that has been read.
+struct Restored {
+  std::filesystem::path path;
+  RunFacts facts;
+  std::vector<RegionRecord> memory;  ///< of all contacts of the rows
+  std::vector<std::string> rejected; ///< newer checkpoints that could not be used, and why
+};
+
+/// Put the newest checkpoint of a run's folder that is whole and fits into the rows of `blocks`. Collective.
+///
+/// @param directory  the result folder
+/// @param blocks  owned: the mobile ones of this rank's slab of ids (result_files.hpp), ascending; shapes and
+///                constants as the scene says
+/// @throws FileError with every file that was tried and why it was rejected
+Restored restore_newest_checkpoint(const Communicator &communicator, const std::filesystem::path &directory,
+                                   const SceneIdentity &scene, BlockSystem &blocks);
+
+/// Reads a checkpoint again and compares its checksum: not every file system tells of a write that failed.
+/// Collective.
+/// @throws FileError where it is not whole
+void expect_readable_checkpoint(const Communicator &communicator, const std::filesystem::path &path);
+
+/// Names of the files in DIR/checkpoints that are called like complete checkpoints; by one rank alone.
+std::vector<std::filesystem::path> checkpoint_files(const std::filesystem::path &directory);
+
+} // namespace gcpdda

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "gcpdda/model/scene.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+
+#include <filesystem>
+
+namespace gcpdda {
+
+/// What a changed scene asks of a state that was computed with another one: an error for every change under
+/// which the state would mean nothing, or that would do nothing. Where the state was is not looked at.
+Diagnostics unfit_changes(const Scene &before, const Scene &after);
+
+/// Go on with the run in a result folder from its newest checkpoint, to the end of the scene. Collective.
+///
+/// @param before  the scene of the folder
+/// @param after   the scene to go on with
+/// @return exit code: 0 done, now or before; 5 numerical failure; 6 stopped by a signal
+/// @throws SceneError, FileError
+int restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
+                  const std::filesystem::path &directory);
+
+} // namespace gcpdda

@@ -1,0 +1,402 @@
+#include "checkpoint_layout.hpp"
+#include "hdf5_collective_file.hpp"
+#include "hdf5_input.hpp"
+#include "numbered_name.hpp"
+
+#include "gcpdda/io/result_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace gcpdda {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A checkpoint that opens, by what it says of itself.
+struct Found {
+  fs::path path;
+  RunFacts facts;
+  std::int64_t checksum = 0;
+};
+
+std::int64_t only_number(const hdf5::File &file, const char *name) {
+  const auto values = hdf5::read_numbers<std::int64_t>(file, name);
+  if (values.size() != 1) {
+    throw FileError(fmt::format("{} is not one number", name));
+  }
+  return values.front();
+}
+
+bool is_checkpoint(const hdf5::File &file) {
+  const std::string format = checkpoint::format;
+  try {
+    const std::vector<std::byte> bytes = hdf5::read_content(file, "/@format").bytes;
+    return bytes.size() == format.size() && std::memcmp(bytes.data(), format.data(), format.size()) == 0;
+  } catch (const FileError &) {
+    return false;
+  }
+}
+
+/// By one process alone; throws where the file is none or of a later version.
+Found look_at(const fs::path &path) {
+  const hdf5::QuietErrors quiet;
+  const hdf5::File file(hdf5::open_to_read(path));
+  if (!is_checkpoint(file)) {
+    throw FileError("it is an HDF5 file, but no checkpoint of gcpdda");
+  }
+  if (const std::int64_t version = only_number(file, "/version"); version != checkpoint::version) {
+    throw FileError(
+        fmt::format("it has format version {}, this gcpdda reads version {}", version, checkpoint::version));
+  }
+  Found found;
+  found.path = path;
+  RunFacts &facts = found.facts;
+  facts.step = only_number(file, "/clock/step");
+  facts.contact_steps = only_number(file, "/run/contact_steps");
+  facts.scene = {only_number(file, "/scene/num_blocks"), only_number(file, "/scene/num_mobile"),
+                 static_cast<std::uint64_t>(only_number(file, "/scene/blocks")),
+                 static_cast<std::uint64_t>(only_number(file, "/scene/materials"))};
+  for (const auto &[name, member] : checkpoint::real_facts) {
+    const auto values = hdf5::read_numbers<double>(file, name);
+    if (values.size() != 1) {
+      throw FileError(fmt::format("{} is not one number", name));
+    }
+    facts.*member = values.front();
+  }
+  facts.frame_times = hdf5::read_numbers<double>(file, checkpoint::frame_times);
+  found.checksum = only_number(file, checkpoint::checksum);
+  return found;
+}
+
+/// Throws where the scene is another one.
+void expect_same_scene(const SceneIdentity &saved, const SceneIdentity &scene) {
+  if (saved.num_blocks != scene.num_blocks || saved.num_mobile != scene.num_mobile) {
+    throw FileError(
+        fmt::format("it is of another scene: {} blocks of which {} can move, this one has {} and {}",
+                    saved.num_blocks, saved.num_mobile, scene.num_blocks, scene.num_mobile));
+  }
+  if (saved.materials != scene.materials) {
+    throw FileError("it is of another scene: a material has another density or elasticity");
+  }
+  if (saved.blocks != scene.blocks) {
+    throw FileError("it is of another scene, or its block file has changed: a block has another outline, "
+                    "material or initial velocity, or is held or driven differently");
+  }
+}
+
+/// Reads rows and sums up what it has read.
+class SummedInput {
+public:
+  SummedInput(const Communicator &communicator, const Found &found)
+      : communicator_(communicator), input_(communicator, found.path), checksum_(found.checksum) {
+    if (communicator.is_root()) {
+      sum_facts(found.facts);
+    }
+  }
+
+  /// Dataset of exactly that many rows in all.
+  template <class T> std::vector<T> rows(const char *name, RowRange range, hsize_t columns = 1) {
+    if (const std::int64_t there = input_.num_rows(name); there != range.total) {
+      throw FileError(fmt::format("{} has {} rows and not {}", name, there, range.total));
+    }
+    if (range.total == 0) {
+      return {};
+    }
+    std::vector<T> values = input_.rows<T>(name, range.first, range.count, columns);
+    sum_.add(name, range.first * static_cast<std::int64_t>(columns), std::span<const T>(values));
+    return values;
+  }
+
+  /// An equal share of all rows of a dataset.
+  RowRange share_of(const char *name) {
+    RowRange range{0, 0, input_.num_rows(name)};
+    range.first = slab_begin(range.total, communicator_.size(), communicator_.rank());
+    range.count = slab_begin(range.total, communicator_.size(), communicator_.rank() + 1) - range.first;
+    return range;
+  }
+
+  /// Once all has been read.
+  void expect_whole() const {
+    if (static_cast<std::int64_t>(sum_.total(communicator_)) != checksum_) {
+      throw FileError("it is damaged: its checksum is wrong");
+    }
+  }
+
+private:
+  void sum_facts(const RunFacts &facts) {
+    for (const auto &[name, value] : checkpoint::whole_facts(facts)) {
+      sum_.add(name, 0, std::span<const std::int64_t>(&value, 1));
+    }
+    for (const auto &[name, member] : checkpoint::real_facts) {
+      sum_.add(name, 0, std::span<const double>(&(facts.*member), 1));
+    }
+    sum_.add(checkpoint::frame_times, 0, std::span<const double>(facts.frame_times));
+  }
+
+  Communicator communicator_;
+  hdf5::CollectiveInput input_;
+  std::int64_t checksum_;
+  checkpoint::ContentSum sum_;
+};
+
+/// Reads the rows of this rank.
+class StateReader {
+public:
+  StateReader(const Communicator &communicator, const Found &found)
+      : communicator_(communicator), found_(found), input_(communicator, found) {}
+
+  std::vector<RegionRecord> restore(BlockSystem &blocks) {
+    read_blocks(blocks);
+    read_deformations(blocks);
+    const std::vector<RegionRecord> records = read_regions();
+    input_.expect_whole();
+    apply(blocks);
+    return send_to_slabs(records);
+  }
+
+private:
+  void expect_here(bool condition, const char *what) {
+    on_all_ranks(communicator_, [&] {
+      if (!condition) {
+        throw FileError(what);
+      }
+    });
+  }
+
+  void read_blocks(const BlockSystem &blocks) {
+    const RowRange range = rows_in_rank_order(communicator_, static_cast<std::int64_t>(blocks.num_owned));
+    const auto ids = input_.rows<std::int64_t>(checkpoint::block_ids, range);
+    const auto kinds = input_.rows<std::uint8_t>(checkpoint::block_kinds, range);
+    bool same_ids = true;
+    bool same_kinds = true;
+    for (std::size_t row = 0; row < ids.size(); ++row) {
+      same_ids = same_ids && ids[row] == blocks.properties[row].id.value;
+      same_kinds = same_kinds && kinds[row] == static_cast<std::uint8_t>(blocks.properties[row].kind);
+    }
+    expect_here(same_ids, "it is damaged: its blocks are not those of its scene");
+    expect_here(same_kinds, "a block that was rigid would now be deformable or the other way round: its "
+                            "stiffness or that of its joints has changed, or the fidelity");
+    for (const auto &field : checkpoint::block_fields) {
+      block_values_.push_back(input_.rows<double>(field.name, range, field.columns));
+    }
+  }
+
+  void read_deformations(const BlockSystem &blocks) {
+    const RowRange range = rows_in_rank_order(
+        communicator_, static_cast<std::int64_t>(blocks.deformation_begin[blocks.num_owned]));
+    const auto ids = input_.rows<std::int64_t>(checkpoint::deformation_ids, range);
+    std::size_t next = 0;
+    bool same_ids = true;
+    for (std::size_t row = 0; row < blocks.num_owned && !ids.empty(); ++row) {
+      if (blocks.is_deformable(row)) {
+        same_ids = same_ids && ids[next++] == blocks.properties[row].id.value;
+      }
+    }
+    expect_here(same_ids, "it is damaged: its deformable blocks are not those of its scene");
+    for (const auto &field : checkpoint::deformation_fields) {
+      deformation_values_.push_back(input_.rows<double>(field.name, range, field.columns));
+    }
+  }
+
+  /// An equal share of them all, in the order of the file.
+  std::vector<RegionRecord> read_regions() {
+    const RowRange range = input_.share_of(checkpoint::region_blocks);
+    const auto blocks = input_.rows<std::int64_t>(checkpoint::region_blocks, range, 2);
+    const auto stretches = input_.rows<std::int32_t>(checkpoint::region_stretches, range, 2);
+    const auto states = input_.rows<std::uint8_t>(checkpoint::region_states, range);
+    std::vector<RegionRecord> records(states.size());
+    bool sound = true;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      RegionRecord &record = records[k];
+      record.lower = BlockId{blocks[2 * k]};
+      record.higher = BlockId{blocks[2 * k + 1]};
+      record.memory.lower_stretch = stretches[2 * k];
+      record.memory.higher_stretch = stretches[2 * k + 1];
+      record.memory.state = static_cast<ContactState>(states[k]);
+      sound = sound && 0 <= record.lower.value && record.lower < record.higher &&
+              record.higher.value < found_.facts.scene.num_blocks;
+    }
+    for (const auto &field : checkpoint::region_fields) {
+      const std::vector<double> values = input_.rows<double>(field.name, range, field.columns);
+      for (std::size_t k = 0; k < records.size(); ++k) {
+        field.set(records, k, values.data() + k * field.columns);
+      }
+    }
+    expect_here(sound, "it is damaged: its contacts are not those of its scene");
+    return records;
+  }
+
+  void apply(BlockSystem &blocks) const {
+    for (std::size_t f = 0; f < checkpoint::block_fields.size(); ++f) {
+      const auto &field = checkpoint::block_fields[f];
+      for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+        field.set(blocks, row, block_values_[f].data() + row * field.columns);
+      }
+    }
+    for (std::size_t f = 0; f < checkpoint::deformation_fields.size(); ++f) {
+      const auto &field = checkpoint::deformation_fields[f];
+      for (std::size_t row = 0; row < blocks.deformation_begin[blocks.num_owned]; ++row) {
+        field.set(blocks.deformation, row, deformation_values_[f].data() + row * field.columns);
+      }
+    }
+  }
+
+  /// To the slabs of both blocks: each rank knows all contacts of its rows.
+  std::vector<RegionRecord> send_to_slabs(const std::vector<RegionRecord> &records) const {
+    const int num_ranks = communicator_.size();
+    std::vector<std::vector<RegionRecord>> leaving(static_cast<std::size_t>(num_ranks));
+    for (const RegionRecord &record : records) {
+      const int lower = slab_owner(found_.facts.scene.num_blocks, num_ranks, record.lower.value);
+      const int higher = slab_owner(found_.facts.scene.num_blocks, num_ranks, record.higher.value);
+      leaving[static_cast<std::size_t>(lower)].push_back(record);
+      if (higher != lower) {
+        leaving[static_cast<std::size_t>(higher)].push_back(record);
+      }
+    }
+    std::vector<RegionRecord> memory;
+    for (const std::vector<RegionRecord> &message : communicator_.all_to_all(leaving)) {
+      memory.insert(memory.end(), message.begin(), message.end());
+    }
+    return memory;
+  }
+
+  Communicator communicator_;
+  const Found &found_;
+  SummedInput input_;
+  std::vector<std::vector<double>> block_values_;
+  std::vector<std::vector<double>> deformation_values_;
+};
+
+/// The root's finding for all. Only facts of fixed size and the frames' times travel.
+void share(const Communicator &communicator, Found &found) {
+  std::string path = found.path.string();
+  communicator.broadcast(path);
+  found.path = path;
+  RunFacts &facts = found.facts;
+  Bytes bytes;
+  const auto each = [&](auto &&visit) {
+    visit(facts.scene), visit(facts.step), visit(facts.contact_steps), visit(found.checksum);
+    for (const auto &[name, member] : checkpoint::real_facts) {
+      visit(facts.*member);
+    }
+  };
+  each([&](auto &value) {
+    const auto *first = reinterpret_cast<const std::byte *>(&value);
+    bytes.insert(bytes.end(), first, first + sizeof(value));
+  });
+  const std::size_t fixed = bytes.size();
+  const auto *times = reinterpret_cast<const std::byte *>(facts.frame_times.data());
+  bytes.insert(bytes.end(), times, times + facts.frame_times.size() * sizeof(double));
+  communicator.broadcast(bytes);
+  std::size_t at = 0;
+  each([&](auto &value) {
+    std::memcpy(&value, bytes.data() + at, sizeof(value));
+    at += sizeof(value);
+  });
+  facts.frame_times.resize((bytes.size() - fixed) / sizeof(double));
+  if (!facts.frame_times.empty()) {
+    std::memcpy(facts.frame_times.data(), bytes.data() + fixed, bytes.size() - fixed);
+  }
+}
+
+std::string reason(const fs::path &path, const std::string &why) {
+  return fmt::format("{}: {}", path.string(), why);
+}
+
+/// Root only: those that open, newest first; the others into `rejected`.
+std::vector<Found> look_at_all(const fs::path &directory, const SceneIdentity &scene,
+                               std::vector<std::string> &rejected) {
+  std::vector<Found> found;
+  for (const fs::path &path : checkpoint_files(directory)) {
+    try {
+      found.push_back(look_at(path));
+      expect_same_scene(found.back().facts.scene, scene);
+    } catch (const FileError &error) {
+      if (!found.empty() && found.back().path == path) {
+        found.pop_back();
+      }
+      rejected.push_back(reason(path, error.what()));
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found &a, const Found &b) { return a.facts.time > b.facts.time; });
+  return found;
+}
+
+} // namespace
+
+std::vector<fs::path> checkpoint_files(const fs::path &directory) {
+  std::vector<fs::path> files;
+  std::error_code none;
+  for (const fs::directory_entry &entry : fs::directory_iterator(checkpoint::folder(directory), none)) {
+    if (is_numbered(entry.path().filename().string(), "checkpoint", ".h5")) {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void expect_readable_checkpoint(const Communicator &communicator, const fs::path &path) {
+  Found found;
+  on_root(communicator, [&] { found = look_at(path); });
+  share(communicator, found);
+  SummedInput input(communicator, found);
+  input.rows<std::int64_t>(checkpoint::block_ids, input.share_of(checkpoint::block_ids));
+  input.rows<std::uint8_t>(checkpoint::block_kinds, input.share_of(checkpoint::block_ids));
+  input.rows<std::int64_t>(checkpoint::deformation_ids, input.share_of(checkpoint::deformation_ids));
+  input.rows<std::int64_t>(checkpoint::region_blocks, input.share_of(checkpoint::region_blocks), 2);
+  input.rows<std::int32_t>(checkpoint::region_stretches, input.share_of(checkpoint::region_blocks), 2);
+  input.rows<std::uint8_t>(checkpoint::region_states, input.share_of(checkpoint::region_blocks));
+  const auto fields = [&](const auto &table, const char *ids) {
+    for (const auto &field : table) {
+      input.rows<double>(field.name, input.share_of(ids), field.columns);
+    }
+  };
+  fields(checkpoint::block_fields, checkpoint::block_ids);
+  fields(checkpoint::deformation_fields, checkpoint::deformation_ids);
+  fields(checkpoint::region_fields, checkpoint::region_blocks);
+  input.expect_whole();
+}
+
+Restored restore_newest_checkpoint(const Communicator &communicator, const fs::path &directory,
+                                   const SceneIdentity &scene, BlockSystem &blocks) {
+  Restored restored;
+  std::vector<Found> found;
+  on_root(communicator, [&] { found = look_at_all(directory, scene, restored.rejected); });
+  std::int64_t count = std::ssize(found);
+  communicator.max(std::span(&count, 1));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+    Found candidate = communicator.is_root() ? found[k] : Found{};
+    share(communicator, candidate);
+    try {
+      restored.memory = StateReader(communicator, candidate).restore(blocks);
+      restored.path = candidate.path;
+      restored.facts = candidate.facts;
+      return restored;
+    } catch (const FileError &error) { // on all ranks
+      restored.rejected.push_back(reason(candidate.path, error.what()));
+    }
+  }
+  std::string text = fmt::format("cannot restart {}: ", directory.string());
+  if (restored.rejected.empty()) {
+    text += fmt::format("there is no checkpoint in {}, try gcpdda run with output.checkpoint_interval",
+                        checkpoint::folder(directory).string());
+  } else {
+    text += "no checkpoint can be used";
+    for (const std::string &why : restored.rejected) {
+      text += "\n  " + why;
+    }
+  }
+  communicator.broadcast(text);
+  throw FileError(text);
+}
+
+} // namespace gcpdda

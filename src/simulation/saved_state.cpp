@@ -1,0 +1,82 @@
+// What a Simulation gives to a checkpoint and takes from one. Physics does not depend on when the
+// neighbourhood was refreshed (a candidate that does not touch adds nothing, sums go in the order of ids), so
+// a run goes on from its blocks and the memory of its contacts alone: a restart begins with a refresh.
+
+#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/model/fingerprint.hpp"
+#include "gcpdda/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace gcpdda {
+
+void Simulation::identify(std::span<const SceneBlock> slab) {
+  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+  std::uint64_t sum = 0;
+  for (std::size_t k = 0; k < slab.size(); ++k) {
+    sum += fingerprint(first + static_cast<std::int64_t>(k), slab[k]);
+  }
+  // Modulo 2^64, in halves that cannot overflow.
+  std::array<std::int64_t, 3> parts{static_cast<std::int64_t>(sum & 0xffffffffU),
+                                    static_cast<std::int64_t>(sum >> 32),
+                                    static_cast<std::int64_t>(blocks_.num_owned)};
+  communicator_.sum(parts);
+  identity_ = {num_blocks(), parts[2],
+               static_cast<std::uint64_t>(parts[0]) + (static_cast<std::uint64_t>(parts[1]) << 32),
+               fingerprint(scene_.materials)};
+}
+
+void Simulation::go_on() {
+  const RunFacts &facts = restored_->facts;
+  step_count_ = step_to_go_on_from(plan_, facts.time, facts.time_step, notes_);
+  counters_.contact_steps = communicator_.is_root() ? facts.contact_steps : 0;
+  counters_.max_overlap = facts.max_overlap;
+  counters_.max_overlap_share = facts.max_overlap_share;
+  counters_.fastest_turn = facts.fastest_turn;
+}
+
+RunFacts Simulation::facts() const {
+  RunFacts facts;
+  facts.scene = identity_;
+  facts.step = step_count_;
+  facts.time = time();
+  facts.time_step = plan_.time_step;
+  facts.contact_steps = counters_.contact_steps;
+  communicator_.sum(std::span(&facts.contact_steps, 1));
+  std::array<double, 3> largest{counters_.max_overlap, counters_.max_overlap_share, counters_.fastest_turn};
+  communicator_.max(largest);
+  facts.max_overlap = largest[0];
+  facts.max_overlap_share = largest[1];
+  facts.fastest_turn = largest[2];
+  return facts;
+}
+
+RegionRecord Simulation::record_of(std::size_t pair, const RegionMemory &region) const {
+  return {blocks_.properties[candidates_.pairs[pair].lower.value].id,
+          blocks_.properties[candidates_.pairs[pair].higher.value].id, region};
+}
+
+std::vector<RegionRecord> Simulation::remembered_contacts() const {
+  std::vector<RegionRecord> memory;
+  for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
+    for (const RegionMemory &region : history_.of_pair(k)) {
+      memory.push_back(record_of(k, region));
+    }
+  }
+  return memory;
+}
+
+std::vector<RegionRecord> Simulation::contacts_that_count_here() const {
+  std::vector<RegionRecord> memory;
+  for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
+    if (counts_here(candidates_.pairs[k])) {
+      for (const RegionMemory &region : history_.of_pair(k)) {
+        memory.push_back(record_of(k, region));
+      }
+    }
+  }
+  return memory;
+}
+
+} // namespace gcpdda
