@@ -326,7 +326,7 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
       {"[[wall]]", {"name", "material", "origin", "rows", "columns", "block_size", "bond", "gap"}},
       {"[[pyramid]]", {"name", "material", "origin", "rows", "block_size", "gap"}},
       {"[blocks]", {"file"}},
-      {"[output]", {"interval", "history_interval", "contacts"}},
+      {"[output]", {"interval", "history_interval", "checkpoint_interval", "contacts"}},
       {"[[monitor]]", {"block", "name", "point"}}};
   for (const auto &[title, keys] : contract) {
     const std::string text = section(title);
