@@ -178,6 +178,7 @@ void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const 
     }
   }
   const std::vector<Bytes> received = communicator_.all_to_all(messages);
+  motion_ = MessageRound(); // its buffers go
   neighbours_.clear();
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (!rows[r].empty() || !received[r].empty()) {
@@ -204,22 +205,43 @@ void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const 
     append_row(whole, system, row);
   }
   system = std::move(whole);
+  prepare_motion(system);
 }
 
-void Ghosts::transfer() {
-  outgoing_.clear();
-  incoming_.clear();
+void Ghosts::prepare_motion(const BlockSystem &system) {
+  std::vector<Communicator::Message> outgoing;
+  std::vector<Communicator::Message> incoming;
+  bytes_ = 0;
   for (Neighbour &n : neighbours_) {
+    n.send.resize(bytes_of_motion(system, n.send_rows));
+    n.receive.resize(bytes_of_motion(system, n.receive_rows));
     if (!n.send.empty()) {
-      outgoing_.push_back({n.rank, n.send});
-      ++messages_sent_;
-      bytes_sent_ += static_cast<std::int64_t>(n.send.size());
+      outgoing.push_back({n.rank, n.send});
+      bytes_ += static_cast<std::int64_t>(n.send.size());
     }
     if (!n.receive.empty()) {
-      incoming_.push_back({n.rank, n.receive});
+      incoming.push_back({n.rank, n.receive});
     }
   }
-  communicator_.exchange(outgoing_, incoming_);
+  messages_ = static_cast<std::int64_t>(outgoing.size());
+  motion_ = MessageRound(communicator_, outgoing, incoming);
+}
+
+std::vector<Bytes> Ghosts::exchange(std::vector<Bytes> &send, std::size_t bytes_per_row) const {
+  std::vector<Bytes> received(neighbours_.size());
+  std::vector<Communicator::Message> outgoing;
+  std::vector<Communicator::Message> incoming;
+  for (std::size_t k = 0; k < neighbours_.size(); ++k) {
+    received[k].resize(neighbours_[k].receive_rows.size() * bytes_per_row);
+    if (!send[k].empty()) {
+      outgoing.push_back({neighbours_[k].rank, send[k]});
+    }
+    if (!received[k].empty()) {
+      incoming.push_back({neighbours_[k].rank, received[k]});
+    }
+  }
+  communicator_.exchange(outgoing, incoming);
+  return received;
 }
 
 void Ghosts::copy_accelerations(BlockSystem &system) {
@@ -236,10 +258,8 @@ void Ghosts::copy_accelerations(BlockSystem &system) {
   }
 }
 
-void Ghosts::update(BlockSystem &system) {
+void Ghosts::begin(const BlockSystem &system) {
   for (Neighbour &n : neighbours_) {
-    n.send.resize(bytes_of_motion(system, n.send_rows));
-    n.receive.resize(bytes_of_motion(system, n.receive_rows));
     std::byte *to = n.send.data();
     for (const std::uint32_t row : n.send_rows) {
       to = put(to, GhostMotion{system.trial[row], system.velocity[row]});
@@ -249,7 +269,11 @@ void Ghosts::update(BlockSystem &system) {
       }
     }
   }
-  transfer();
+  motion_.start();
+}
+
+void Ghosts::finish(BlockSystem &system) {
+  motion_.finish();
   for (const Neighbour &n : neighbours_) {
     const std::byte *from = n.receive.data();
     for (const std::uint32_t row : n.receive_rows) {

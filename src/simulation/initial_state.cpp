@@ -104,8 +104,10 @@ void Simulation::find_initial_state() {
   gather_forces();
   accelerate_owned();
   report();
-  counters_.evaluations = 0; // these two are of steps
+  counters_.evaluations = 0; // these are of steps
   counters_.contact_steps = 0;
+  counters_.messages = 0;
+  counters_.bytes = 0;
 }
 
 void Simulation::find_initial_friction() {

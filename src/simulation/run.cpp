@@ -328,10 +328,8 @@ private:
     summary.max_overlap = max_overlap;
     summary.energy = energy_;
     const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps, 1));
-    summary.bytes_sent_per_step =
-        static_cast<double>(total(communicator_, simulation_.ghosts().bytes_sent())) / steps;
-    summary.messages_per_step =
-        static_cast<double>(total(communicator_, simulation_.ghosts().messages_sent())) / steps;
+    summary.bytes_sent_per_step = static_cast<double>(total(communicator_, counters.bytes)) / steps;
+    summary.messages_per_step = static_cast<double>(total(communicator_, counters.messages)) / steps;
     for (std::size_t p = 0; p < phase_names.size(); ++p) {
       const double seconds = simulation_.phases().seconds(static_cast<Phase>(p));
       summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));

@@ -12,6 +12,10 @@ namespace gcpdda {
 
 namespace {
 
+// What a rank tells the others after a step; the largest counts.
+constexpr double needs_refresh = 1.0;
+constexpr double failed = 2.0;
+
 /// Row of a block if this rank owns it.
 std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
   const auto end = blocks.properties.begin() + static_cast<std::ptrdiff_t>(blocks.num_owned);
@@ -123,7 +127,8 @@ void Simulation::predict_next() {
     prescribe_trials();
   }
   const auto scope = phases_.measure(Phase::ghosts);
-  ghosts_.update(blocks_);
+  ghosts_.begin(blocks_);
+  ghosts_.finish(blocks_);
 }
 
 // At t_n + c1 dt, where the family takes x* of constant velocity.
@@ -227,11 +232,42 @@ void Simulation::add_half_works(std::size_t row) {
   ledger.gravity_work += half.gravity;
 }
 
-// One reduction: does anybody need a refresh, has anybody failed.
+// One reduction: does anybody need a refresh, has anybody failed. It runs while this rank counts. It cannot
+// run on into the next step: how far a block may go in two steps depends on contacts that nobody has
+// evaluated yet, so a flag one step late is no bound.
 void Simulation::report() {
   const auto scope = phases_.measure(Phase::report);
+  PendingMax status = communicator_.start_max(own_status());
+  count();
+  const double agreed = status.wait();
+  stale_ = agreed >= needs_refresh;
+  if (agreed >= failed) {
+    agree_on_fault();
+  }
+}
+
+double Simulation::own_status() {
+  const double most =
+      0.25 * thinnest_; // two blocks that close by half their width in a step skip the force that parts them
+  double status = 0.0;
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    const BlockProperties &block = blocks_.properties[row];
+    const double ahead = motion_bound(blocks_, row, plan_.time_step);
+    if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
+      status = needs_refresh;
+    }
+    if (ahead > most && num_blocks() > 1) {
+      keep_first(local_fault_, {Fault::Cause::too_fast, block.id, {}, ahead, most});
+    }
+  }
+  return local_fault_ ? failed : status;
+}
+
+void Simulation::count() {
   counters_.evaluations += force_report_.evaluations;
   counters_.normals_undefined += force_report_.normals_undefined;
+  counters_.messages += ghosts_.messages_per_update();
+  counters_.bytes += ghosts_.bytes_per_update();
   counters_.max_overlap = std::max(counters_.max_overlap, force_report_.max_overlap);
   counters_.max_overlap_share = std::max(counters_.max_overlap_share, force_report_.max_overlap_share);
   std::int64_t crossing = 0;
@@ -247,33 +283,11 @@ void Simulation::report() {
     }
   }
   counters_.cross_rank_contacts = std::max(counters_.cross_rank_contacts, crossing);
-
-  constexpr double failed = 2.0;
-  constexpr double needs_refresh = 1.0;
-  const double most =
-      0.25 * thinnest_; // two blocks that close by half their width in a step skip the force that parts them
-  double status = 0.0;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    const BlockProperties &block = blocks_.properties[row];
-    const double ahead = motion_bound(blocks_, row, plan_.time_step);
-    if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
-      status = needs_refresh;
-    }
     if (blocks_.is_deformable(row)) {
       counters_.fastest_turn =
           std::max(counters_.fastest_turn, plan_.time_step * std::abs(blocks_.velocity[row].r));
     }
-    if (ahead > most && num_blocks() > 1) {
-      keep_first(local_fault_, {Fault::Cause::too_fast, block.id, {}, ahead, most});
-    }
-  }
-  if (local_fault_) {
-    status = failed;
-  }
-  communicator_.max(std::span(&status, 1));
-  stale_ = status >= needs_refresh;
-  if (status >= failed) {
-    agree_on_fault();
   }
 }
 

@@ -41,6 +41,8 @@ struct Counters {
   std::int64_t normals_undefined = 0;
   std::int64_t migrations = 0;    ///< blocks that left this rank, the first distribution not counted
   std::int64_t refreshes = 0;     ///< of the neighbourhood after the first
+  std::int64_t messages = 0;      ///< sent to ghosts by steps; refreshes and outputs send more
+  std::int64_t bytes = 0;         ///< in these messages
   double max_overlap = 0.0;       ///< m
   double max_overlap_share = 0.0; ///< of the narrowest width
   double fastest_turn = 0.0;      ///< of a deformable block, rad per step
@@ -147,6 +149,8 @@ private:
   void gather_gradient(std::size_t row);
   void add_half_works(std::size_t row);
   void report();
+  [[nodiscard]] double own_status();
+  void count();
   void agree_on_fault();
 
   Communicator communicator_;
