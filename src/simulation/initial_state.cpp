@@ -105,6 +105,7 @@ void Simulation::find_initial_state() {
   accelerate_owned();
   report();
   counters_.evaluations = 0; // these are of steps
+  counters_.block_steps = 0;
   counters_.contact_steps = 0;
   counters_.messages = 0;
   counters_.bytes = 0;

@@ -71,6 +71,9 @@ void Simulation::refresh() {
                         blocks_.properties[candidates_.pairs[k].higher.value].id, history_.regions[i]});
     }
   }
+  if (step_count_ > 0) {
+    rebalance();
+  }
   const std::int64_t left = migrate(communicator_, map_, blocks_, memory);
 
   // Fast blocks would use up the usual skin at once: it grows so that half of it outlasts several steps.
@@ -87,7 +90,7 @@ void Simulation::refresh() {
   communicator_.max(std::span(&reach, 1));
   skin_ = std::max(base_skin_, steps_in_skin * reach);
 
-  ghosts_.rebuild(map_, blocks_, reach_boxes(blocks_, skin_));
+  ghosts_.rebuild(blocks_, reach_boxes(blocks_, skin_));
   candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, skin_)),
                                 contacts_.parameters(), std::move(memory), history_);
   pose(blocks_, 0, blocks_.num_rows());
@@ -95,6 +98,21 @@ void Simulation::refresh() {
   if (step_count_ > 0) {
     counters_.migrations += left;
     ++counters_.refreshes;
+  }
+}
+
+// The blocks follow by the migration of the refresh.
+void Simulation::rebalance() {
+  if (!balance_.is_lost(counters_.evaluations + counters_.block_steps)) {
+    return;
+  }
+  std::vector<Vec2> centroids;
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    centroids.push_back(blocks_.centroid(row));
+  }
+  if (auto map = balance_.better_map(centroids, work_of_blocks(blocks_, candidates_), partition_)) {
+    map_ = std::move(*map);
+    ++counters_.rebalances;
   }
 }
 
@@ -265,6 +283,7 @@ double Simulation::own_status() {
 
 void Simulation::count() {
   counters_.evaluations += force_report_.evaluations;
+  counters_.block_steps += static_cast<std::int64_t>(blocks_.num_owned);
   counters_.normals_undefined += force_report_.normals_undefined;
   counters_.messages += ghosts_.messages_per_update();
   counters_.bytes += ghosts_.bytes_per_update();

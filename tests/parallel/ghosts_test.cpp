@@ -57,7 +57,7 @@ struct Case {
       : whole(testing::random_system(seed, num_mobile, num_fixed, region)), boxes(reach_boxes(whole, skin)),
         map(domain_map), mine(testing::part_of(whole, map, world.rank())), num_owned(mine.num_owned),
         ghosts(world) {
-    ghosts.rebuild(map, mine, reach_boxes(mine, skin));
+    ghosts.rebuild(mine, reach_boxes(mine, skin));
   }
 
   [[nodiscard]] int owner(std::size_t id) const { return map.rank_of(whole.centroid(id)); }
@@ -95,9 +95,11 @@ void expect_all_that_meet(const Case &c, int rank) {
 // And no more than the header promises: boxes of a cell's blocks are published as one.
 void expect_no_superfluous(const Case &c, int rank) {
   std::map<std::int64_t, Aabb> of_cell;
+  const BlockSystem part = testing::part_of(c.whole, c.map, rank);
+  const CellGrid grid = publishing_grid(part, reach_boxes(part, skin));
   for (std::size_t a = 0; a < num_mobile; ++a) {
     if (c.owner(a) == rank) {
-      of_cell[c.map.grid.cell_of(c.whole.centroid(a))].include(c.boxes[a]);
+      of_cell[grid.cell_of(c.whole.centroid(a))].include(c.boxes[a]);
     }
   }
   for (const std::size_t ghost : c.ghost_ids()) {
@@ -255,7 +257,7 @@ TEST(Ghosts, AreRebuiltFromOwnedBlocksAlone) {
   Case c(world, map, 7);
   const std::set<std::size_t> before = c.ghost_ids();
   c.mine = testing::part_of(c.whole, map, world.rank());
-  c.ghosts.rebuild(map, c.mine, reach_boxes(c.mine, skin)); // a second time, with the plan of the first
+  c.ghosts.rebuild(c.mine, reach_boxes(c.mine, skin)); // a second time, with the plan of the first
   EXPECT_EQ(c.ghost_ids(), before);
   expect_bits_of_whole(c);
   update(c);

@@ -141,7 +141,8 @@ TEST(Identity, OfAFallingPile) {
   EXPECT_GE(runs.counted("contacts"), 100);
   EXPECT_EQ(ranks_with_blocks(runs.together()).size(), static_cast<std::size_t>(runs.world().size()));
   if (runs.world().size() > 1) {
-    EXPECT_GE(runs.counted("migrations"), 1);
+    EXPECT_GE(runs.counted("migrations"), 100);
+    EXPECT_GE(runs.counted("rebalances"), 2);
     EXPECT_GE(runs.counted("cross_rank_contacts_formed"), 50);
   }
 }

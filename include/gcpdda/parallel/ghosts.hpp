@@ -4,11 +4,11 @@
 //
 // Requirement: if the reach boxes (box at the refresh, inflated by half the skin) of an owned block of rank p
 // and of an owned block of rank q meet, each rank holds a ghost of the other's block. Every rank therefore
-// publishes, per occupied background cell, the union of the reach boxes of the blocks whose centroid lies
-// there, and a block goes to every rank one of whose published boxes its own reach box meets. The union
-// contains the partner's box, so the requirement follows; testing a block's box against cells alone would
-// miss blocks that stick out of their cell, and one box per rank would let a single huge block inflate the
-// whole halo.
+// publishes, per occupied cell of a grid over its own blocks, the union of the reach boxes of the blocks
+// whose centroid lies there, and a block goes to every rank one of whose published boxes its own reach box
+// meets. The union contains the partner's box, so the requirement follows; testing a block's box against
+// cells alone would miss blocks that stick out of their cell, and one box per rank would let a single huge
+// block inflate the whole halo.
 
 #include "gcpdda/model/block_system.hpp"
 #include "gcpdda/parallel/communicator.hpp"
@@ -29,7 +29,7 @@ public:
   /// before.
   ///
   /// @param boxes  reach boxes of the owned rows
-  void rebuild(const DomainMap &map, BlockSystem &system, std::span<const Aabb> boxes);
+  void rebuild(BlockSystem &system, std::span<const Aabb> boxes);
 
   /// Owners' trial configurations and velocities set out to their ghosts, by requests that were prepared at
   /// the rebuild. Until finish() ghost rows keep the old ones, and owned rows may be read.
@@ -83,8 +83,12 @@ private:
   std::int64_t bytes_ = 0;
 };
 
+/// The grid by whose cells this rank publishes its blocks: cells of about half a block, over strips that lie
+/// askew too.
+CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes);
+
 /// For each rank the owned rows it needs, ascending; nothing for the own rank. Collective.
-std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator, const DomainMap &map,
+std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator,
                                                     const BlockSystem &system, std::span<const Aabb> boxes);
 
 } // namespace gcpdda

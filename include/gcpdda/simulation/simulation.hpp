@@ -9,6 +9,7 @@
 #include "gcpdda/parallel/communicator.hpp"
 #include "gcpdda/parallel/ghosts.hpp"
 #include "gcpdda/partition/domain_map.hpp"
+#include "gcpdda/simulation/balance.hpp"
 #include "gcpdda/simulation/time_plan.hpp"
 
 #include <cstdint>
@@ -33,6 +34,7 @@ private:
 /// Counts of this rank since the start.
 struct Counters {
   std::int64_t evaluations = 0;   ///< candidate pairs looked at closely
+  std::int64_t block_steps = 0;   ///< owned blocks summed over steps
   std::int64_t contact_steps = 0; ///< touching pairs summed over steps; each pair on one rank only
   /// Largest number of touching pairs with a ghost in one step, and how many were formed in the run; each
   /// pair on one rank.
@@ -41,6 +43,7 @@ struct Counters {
   std::int64_t normals_undefined = 0;
   std::int64_t migrations = 0;    ///< blocks that left this rank, the first distribution not counted
   std::int64_t refreshes = 0;     ///< of the neighbourhood after the first
+  std::int64_t rebalances = 0;    ///< of these with a new map
   std::int64_t messages = 0;      ///< sent to ghosts by steps; refreshes and outputs send more
   std::int64_t bytes = 0;         ///< in these messages
   double max_overlap = 0.0;       ///< m
@@ -127,10 +130,10 @@ private:
   void distribute();
   [[nodiscard]] std::vector<SceneBlock> load_slab();
   void resolve_stiffness(std::span<const SceneBlock> slab);
-  void lay_grid(std::span<const SceneBlock> slab);
+  void survey(std::span<const SceneBlock> slab);
   void warn_of_rounding(double size, double farthest);
   void warn_of_lively_impacts();
-  void take_blocks(std::span<const SceneBlock> slab);
+  void take_blocks(std::vector<SceneBlock> slab);
   void place_monitors(std::span<const SceneBlock> slab);
   [[nodiscard]] std::vector<std::int64_t> count_contact_work();
   void find_bound();
@@ -140,6 +143,7 @@ private:
   void find_initial_friction();
   void accelerate_owned();
   void refresh();
+  void rebalance();
   void predict_next();
   void prescribe_trials();
   void prescribe_motion();
@@ -158,6 +162,7 @@ private:
   BlockSystem blocks_;
   DomainMap map_;
   PartitionReport partition_;
+  Balance balance_;
   Ghosts ghosts_;
   Candidates candidates_;
   ContactHistory history_;
