@@ -34,12 +34,12 @@ def bricks(rows, columns, size, overlap, is_pyramid):
 
 
 def grains(rows, columns, random):
-    """Polygons of 3 to 8 vertices on circles around the places of a grid of 1.01 m."""
+    """Polygons of 5 to 8 vertices on circles around the places of a grid of 1 m."""
     row, column = (index.ravel() for index in numpy.mgrid[0:rows, 0:columns])
     count = row.size
-    centre = numpy.stack([1.01 * column, 0.5 + 1.01 * row], axis=1) + random.uniform(-0.005, 0.005, (count, 2))
-    vertices = random.integers(3, 9, count)
-    radius = random.uniform(0.4, 0.495, count)
+    centre = numpy.stack([1.0 * column, 0.5 + 1.0 * row], axis=1) + random.uniform(-0.005, 0.005, (count, 2))
+    vertices = random.integers(5, 9, count)
+    radius = random.uniform(0.47, 0.494, count)
     start = random.uniform(0.0, 2.0 * numpy.pi, count)
     begin = numpy.concatenate([[0], numpy.cumsum(vertices)])
     block = numpy.repeat(numpy.arange(count), vertices)

@@ -29,7 +29,8 @@ std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
 } // namespace
 
 void Simulation::step() {
-  if (stale_) { // some block may use up half the skin in this step; all ranks agree
+  const bool borders_moved = rebalance_if_uneven();
+  if (stale_ || borders_moved) { // stale: some block may use up half the skin in this step; all ranks agree
     refresh();
   }
   load_time_ = time() + scheme_.load_time * plan_.time_step;
@@ -71,9 +72,6 @@ void Simulation::refresh() {
                         blocks_.properties[candidates_.pairs[k].higher.value].id, history_.regions[i]});
     }
   }
-  if (step_count_ > 0) {
-    rebalance();
-  }
   const std::int64_t left = migrate(communicator_, map_, blocks_, memory);
 
   // Fast blocks would use up the usual skin at once: it grows so that half of it outlasts several steps.
@@ -101,19 +99,25 @@ void Simulation::refresh() {
   }
 }
 
-// The blocks follow by the migration of the refresh.
-void Simulation::rebalance() {
-  if (!balance_.is_lost(counters_.evaluations + counters_.block_steps)) {
-    return;
+// A look now and then; the blocks follow a new map by the migration of a refresh.
+bool Simulation::rebalance_if_uneven() {
+  constexpr std::int64_t steps_between_looks = 64;
+  if (step_count_ == 0 || step_count_ % steps_between_looks != 0 ||
+      !balance_.is_lost(counters_.evaluations + counters_.block_steps)) {
+    return false;
   }
+  const auto scope = phases_.measure(Phase::refresh);
   std::vector<Vec2> centroids;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     centroids.push_back(blocks_.centroid(row));
   }
-  if (auto map = balance_.better_map(centroids, work_of_blocks(blocks_, candidates_), partition_)) {
-    map_ = std::move(*map);
-    ++counters_.rebalances;
+  auto map = balance_.better_map(centroids, work_of_blocks(blocks_, candidates_), partition_);
+  if (!map) {
+    return false;
   }
+  map_ = std::move(*map);
+  ++counters_.rebalances;
+  return true;
 }
 
 Diagnostics Simulation::warnings() const {

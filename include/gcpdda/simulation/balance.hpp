@@ -7,10 +7,10 @@
 // share of that: two for itself, one for each such pair of the last step. The last step says more about the
 // next ones than a sum over many: what falls has moved on.
 //
-// Maps change at refreshes only, which come when blocks have moved, the same for any number of ranks; where
-// nothing moves the balance does not change either. Hysteresis is twofold: a new map is made only when the
-// work since the last refresh was more uneven than is tolerated, and taken only when it is better by more
-// than moving the blocks is worth. A map that was not taken raises what is tolerated.
+// Hysteresis is twofold: a new map is made only when the work since the last look was more uneven than is
+// tolerated, and taken only when it is better by more than moving the blocks is worth. A map that was not
+// taken raises what is tolerated. A map that is taken brings a refresh of the neighbourhood, which may come at
+// any time.
 //
 // The grid is laid over the blocks as they lie then, few strays left out, so that a pile that has left its
 // place is still cut into small cells. No result depends on any of this.

@@ -43,7 +43,7 @@ struct Counters {
   std::int64_t normals_undefined = 0;
   std::int64_t migrations = 0;    ///< blocks that left this rank, the first distribution not counted
   std::int64_t refreshes = 0;     ///< of the neighbourhood after the first
-  std::int64_t rebalances = 0;    ///< of these with a new map
+  std::int64_t rebalances = 0;    ///< new maps; each brings a refresh
   std::int64_t messages = 0;      ///< sent to ghosts by steps; refreshes and outputs send more
   std::int64_t bytes = 0;         ///< in these messages
   double max_overlap = 0.0;       ///< m
@@ -143,7 +143,7 @@ private:
   void find_initial_friction();
   void accelerate_owned();
   void refresh();
-  void rebalance();
+  bool rebalance_if_uneven();
   void predict_next();
   void prescribe_trials();
   void prescribe_motion();
