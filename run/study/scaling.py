@@ -152,6 +152,29 @@ def time_rounds(runner, work, cases, rounds):
     return rows
 
 
+def model(counts):
+    """What the surface law, fitted to the most cut wall, says of more ranks and blocks than a machine here holds."""
+    most_cut = max(counts, key=lambda row: row["ranks"])
+    cut = [row for row in counts if row["problem"] == "wall" and row["blocks"] == most_cut["blocks"] and row["ranks"] >= 4]
+    # Ghosts a rank over the square root of its blocks; messages level off at the neighbours of a part.
+    per_root = [row["ghosts_per_rank"] / math.sqrt(row["blocks"] / row["ranks"]) for row in cut]
+    bytes_per_ghost = cut[-1]["bytes_per_rank_and_step"] / cut[-1]["ghosts_per_rank"]
+    messages = max(row["messages_per_rank_and_step"] for row in cut)
+    rows = []
+    for blocks in (1e6, 1e7, 1e8, 1e9):
+        for ranks in (1e3, 1e4, 1e5):
+            own = blocks / ranks
+            ghosts = per_root[-1] * math.sqrt(own)
+            cells = min(2.0**27, 2.0 * blocks, max(2.0**20, 1024.0 * ranks))
+            rows.append({"blocks": int(blocks), "ranks": int(ranks), "blocks_per_rank": own, "ghosts_per_rank": ghosts,
+                         "bytes_per_rank_and_step": bytes_per_ghost * ghosts, "messages_per_rank_and_step": messages,
+                         "share_of_ghosts": ghosts / own, "cells_on_every_rank": int(cells),
+                         "map_bytes_on_every_rank": 4 * int(cells), "weights_bytes_while_cutting": 8 * int(cells)})
+    print(f"surface law: {per_root[-1]:.2f} sqrt(blocks a rank) ghosts ({min(per_root):.2f} to {max(per_root):.2f} over "
+          f"{cut[0]['ranks']} to {cut[-1]['ranks']} ranks), {bytes_per_ghost:.0f} bytes each, {messages:.1f} messages")
+    return rows
+
+
 def main():
     build, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     quick = sys.argv[3:] == ["--quick"]
@@ -164,12 +187,15 @@ def main():
             counted = [(name, 5000, 40, (1, 2, 4) if name == "pile" else (1, 2)) for name in PROBLEMS]
             timed = [("wall", 2000, 40)]
         else:
-            counted = [(name, 5000, 1000, (1, 2, 4, 8)) for name in PROBLEMS]
-            counted += [(name, 100000, 40, (1, 2, 4, 8)) for name in PROBLEMS]
-            counted += [("pile", 100000, 10, (1, 16, 32, 64))]
-            counted += [(name, 1000000, 5, (1, 2)) for name in PROBLEMS]
+            counted = [(name, 5000, 300, (1, 2, 4, 8)) for name in PROBLEMS]
+            counted += [(name, 100000, 20, (1, 2, 4, 8)) for name in PROBLEMS]
+            counted += [("wall", 20000, 4, (1, 2, 4, 8, 16, 32, 64))]
+            counted += [(name, 1000000, 4, (1, 2)) for name in PROBLEMS]
             timed = [(name, 5000, 400) for name in PROBLEMS] + [(name, 100000, 20) for name in PROBLEMS]
-        write(folder / "scaling.csv", count(runner, work, counted))
+        counts = count(runner, work, counted)
+        write(folder / "scaling.csv", counts)
+        if not quick:
+            write(folder / "scaling_model.csv", model(counts))
         write(folder / "scaling_times.csv", time_rounds(runner, work, timed, 1 if quick else 7))
 
 

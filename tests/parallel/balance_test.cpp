@@ -61,6 +61,19 @@ TEST(Balance, StaysEvenInACollapse) {
   EXPECT_LE(worst, allowed) << simulation.counters().rebalances << " maps, " << moved << " blocks moved";
 }
 
+// Neither the sweeps of the initial friction nor the ledger's look ahead are of a step.
+TEST(Balance, MessagesAreCountedByStepsAlone) {
+  const Communicator world = Communicator::world();
+  Simulation simulation(world, testing::scene_of(bursting_heap_toml(20, 4, 0.01)));
+  EXPECT_EQ(simulation.counters().bytes, 0);
+  simulation.look_ahead([](const BlockSystem &) {});
+  EXPECT_EQ(simulation.counters().messages, 0);
+  simulation.step();
+  EXPECT_EQ(simulation.counters().bytes, simulation.ghosts().bytes_per_update());
+  EXPECT_EQ(simulation.counters().messages, simulation.ghosts().messages_per_update());
+  EXPECT_EQ(simulation.counters().bytes > 0, world.size() > 1);
+}
+
 TEST(Balance, IsLostOnlyBeyondWhatIsTolerated) {
   const Communicator world = Communicator::world();
   Balance balance(world);
