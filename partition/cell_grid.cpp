@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gcpdda {
 
@@ -39,6 +40,30 @@ CellGrid CellGrid::over(const Aabb &region, std::int64_t num_cells) {
     return {.origin = region.low};
   }
   return {region.low, size, cells_along(extent.x, size), cells_along(extent.y, size)};
+}
+
+Aabb box_without_strays(std::span<const Vec2> points) {
+  constexpr std::size_t few = 20;
+  constexpr std::size_t points_per_stray = 1000;
+  if (points.size() < few) {
+    return bounding_box(points);
+  }
+  const auto strays = static_cast<std::ptrdiff_t>(1 + points.size() / points_per_stray);
+  const auto range = [&](double Vec2::*coordinate) {
+    std::vector<double> values;
+    values.reserve(points.size());
+    for (const Vec2 p : points) {
+      values.push_back(p.*coordinate);
+    }
+    const auto lowest = values.begin() + strays;
+    const auto highest = values.end() - 1 - strays;
+    std::nth_element(values.begin(), lowest, values.end());
+    std::nth_element(lowest + 1, highest, values.end());
+    return std::pair(*lowest, *highest);
+  };
+  const auto [left, right] = range(&Vec2::x);
+  const auto [low, high] = range(&Vec2::y);
+  return {{left, low}, {right, high}};
 }
 
 std::int64_t CellGrid::cell_of(Vec2 point) const {

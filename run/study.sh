@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# study.sh verify|stability|accuracy|fidelity|all [--quick]: one of the studies, or all; tables and charts go to
+# study.sh verify|stability|accuracy|fidelity|scaling|all [--quick]: one of the studies, or all; tables and charts go to
 # run/results/studies. --quick: fewer points, never fewer problems.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -8,7 +8,7 @@ source "$here/set_up.sh"
 studies=(verify stability accuracy fidelity)
 case "${1:-}" in
   all) ;;
-  verify | stability | accuracy | fidelity) studies=("$1") ;;
+  verify | stability | accuracy | fidelity | scaling) studies=("$1") ;;
   *)
     sed -n '2,3s/^# //p' "${BASH_SOURCE[0]}" >&2
     exit 2
@@ -21,12 +21,15 @@ quick=${2:-}
 }
 results=$here/results/studies${quick:+_quick}
 install_packages tests
-build_targets gcpdda-study verification_tests
+build_targets gcpdda gcpdda-study verification_tests
 mkdir -p "$results"
 run_study() {
   local study=$1 start=$SECONDS
   if [ "$study" = verify ]; then
     "$here/study/verify.sh" "$build" "$results" $quick
+  elif [ "$study" = scaling ]; then
+    "$here/study/scaling.py" "$build" "$results" $quick
+    "$here/study/plot_scaling.py" "$results"
   else
     "$build/gcpdda-study" "$study" "$results" $quick
     "$here/study/plot_$study.py" "$results"
@@ -50,4 +53,8 @@ if [ -n "$verification" ]; then
     exit 1
   }
   tail -n 2 "$results/verify.log"
+fi
+# Times of two ranks need both cores.
+if [ "${1:-}" = all ]; then
+  run_study scaling
 fi

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace gcpdda {
 
@@ -235,6 +236,33 @@ private:
   std::array<bool, most_plain_edges> takes_part_{};
 };
 
+/// Pairs without a ghost can be evaluated before the ghosts have come.
+void order_evaluation(const BlockSystem &system, Candidates &candidates) {
+  const auto has_ghost = [&](std::uint32_t number) {
+    const CandidatePair &pair = candidates.pairs[number];
+    const auto is_ghost = [&](BlockIndex row) {
+      return row.value >= system.num_owned && !system.is_fixed(row.value);
+    };
+    return is_ghost(pair.lower) || is_ghost(pair.higher);
+  };
+  const auto order = [&](const PlainPair &plain) {
+    return std::tuple(has_ghost(plain.pair), plain.lower_edges, plain.higher_edges);
+  };
+  std::stable_sort(candidates.plain.begin(), candidates.plain.end(),
+                   [&](const PlainPair &a, const PlainPair &b) { return order(a) < order(b); });
+  candidates.num_interior_plain =
+      static_cast<std::size_t>(std::count_if(candidates.plain.begin(), candidates.plain.end(),
+                                             [&](const PlainPair &plain) { return !has_ghost(plain.pair); }));
+  for (std::uint32_t k = 0; k < candidates.pairs.size(); ++k) {
+    if (!candidates.pairs[k].is_plain) {
+      candidates.general.push_back(k);
+    }
+  }
+  const auto border = std::stable_partition(candidates.general.begin(), candidates.general.end(),
+                                            [&](std::uint32_t k) { return !has_ghost(k); });
+  candidates.num_interior_general = static_cast<std::size_t>(border - candidates.general.begin());
+}
+
 /// Entries of BlockSystem::vertex at the ends of a chain's edges.
 void append_chain(const BlockSystem &system, std::size_t row, const EdgeChain &chain,
                   std::vector<std::uint32_t> &vertices) {
@@ -340,10 +368,7 @@ Candidates make_candidates(const BlockSystem &system,
     history.ranges.push_back({begin, static_cast<std::uint32_t>(history.regions.size()) - begin});
   }
 
-  std::stable_sort(
-      candidates.plain.begin(), candidates.plain.end(), [](const PlainPair &a, const PlainPair &b) {
-        return std::pair(a.lower_edges, a.higher_edges) < std::pair(b.lower_edges, b.higher_edges);
-      });
+  order_evaluation(system, candidates);
 
   candidates.contact_begin.assign(system.num_owned + 1, 0);
   const auto for_owned_ends = [&](auto &&visit) {

@@ -354,15 +354,22 @@ void ContactForces::recall(const BlockSystem &system, const CandidatePair &pair,
   memory.higher_stretch = region.faces.second;
 }
 
-std::int64_t ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
-                                                 const ContactHistory &history) {
+void ContactForces::find_increments(const BlockSystem &system, std::size_t first, std::size_t last) {
+  for (std::size_t row = first; row < last; ++row) {
+    increments_[row] = trial_increment(system, row);
+  }
+}
+
+void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
+                                         const ContactHistory &history, std::size_t first, std::size_t last) {
   const std::vector<PlainPair> &plain = candidates.plain;
-  meeting_.resize(plain.size());
+  meeting_.resize(last - first);
   std::size_t num_meeting = 0;
-  for (std::uint32_t k = 0; k < plain.size(); ++k) {
-    meeting_[num_meeting] = k;
+  for (std::size_t k = first; k < last; ++k) {
+    meeting_[num_meeting] = static_cast<std::uint32_t>(k);
     num_meeting += system.box[plain[k].lower.value].meets(system.box[plain[k].higher.value]) ? 1 : 0;
   }
+  evaluations_ += static_cast<std::int64_t>(num_meeting);
   const PlainScene scene{system, candidates, history, increments_, parameters_.damping_ratio};
   const auto alike = [&](std::size_t a, std::size_t b) {
     return plain[meeting_[a]].lower_edges == plain[meeting_[b]].lower_edges &&
@@ -385,34 +392,43 @@ std::int64_t ContactForces::evaluate_plain_pairs(const BlockSystem &system, cons
       }
     }
   }
-  return static_cast<std::int64_t>(num_meeting);
 }
 
-ForceReport ContactForces::evaluate(const BlockSystem &system, const Candidates &candidates,
-                                    ContactHistory &history) {
-  increments_.resize(system.num_rows());
-  for (std::size_t row = 0; row < system.num_mobile(); ++row) {
-    increments_[row] = trial_increment(system, row);
-  }
-  for (std::size_t row = system.first_fixed(); row < system.num_rows(); ++row) {
-    increments_[row] = {};
-  }
-
-  ForceReport report;
-  forces_.clear();
-  next_.regions.clear();
-  ranges_.assign(candidates.pairs.size(), {});
-  report.evaluations = evaluate_plain_pairs(system, candidates, history);
-  for (std::uint32_t k = 0; k < candidates.pairs.size(); ++k) {
+void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
+                                           ContactHistory &history, std::span<const std::uint32_t> pairs) {
+  for (const std::uint32_t k : pairs) {
     const CandidatePair &pair = candidates.pairs[k];
-    if (!pair.is_plain && system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
-      ++report.evaluations;
+    if (system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
+      ++evaluations_;
       const auto begin = static_cast<std::uint32_t>(forces_.size());
       evaluate_pair(system, candidates, k,
                     std::span(history.regions).subspan(history.ranges[k].begin, history.ranges[k].count));
       ranges_[k] = {begin, static_cast<std::uint32_t>(forces_.size()) - begin};
     }
   }
+}
+
+void ContactForces::evaluate_interior(const BlockSystem &system, const Candidates &candidates,
+                                      ContactHistory &history) {
+  increments_.assign(system.num_rows(), {});
+  find_increments(system, 0, system.num_owned);
+  forces_.clear();
+  next_.regions.clear();
+  ranges_.assign(candidates.pairs.size(), {});
+  evaluations_ = 0;
+  evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);
+  evaluate_general_pairs(system, candidates, history,
+                         std::span(candidates.general).first(candidates.num_interior_general));
+}
+
+ForceReport ContactForces::evaluate_border(const BlockSystem &system, const Candidates &candidates,
+                                           ContactHistory &history) {
+  find_increments(system, system.num_owned, system.first_fixed());
+  evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
+  evaluate_general_pairs(system, candidates, history,
+                         std::span(candidates.general).subspan(candidates.num_interior_general));
+  ForceReport report;
+  report.evaluations = evaluations_;
   next_.ranges = ranges_;
   std::swap(history, next_);
 

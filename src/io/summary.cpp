@@ -97,6 +97,8 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
       .add("contacts", summary.contacts)
       .add("contact_steps", summary.contact_steps)
       .add("evaluations_per_rank", summary.evaluations_per_rank)
+      .add("work_per_rank", summary.work_per_rank)
+      .add("ghosts_per_rank", summary.ghosts_per_rank)
       .add("wall_s", summary.wall_s)
       .add("cpu_s", summary.cpu_s)
       .add("setup_wall_s", summary.setup_wall_s)

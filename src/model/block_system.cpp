@@ -109,6 +109,15 @@ void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
   close_lists(to);
 }
 
+void keep_rows(BlockSystem &system, std::size_t count) {
+  std::apply([&](auto... field) { ((system.*field).resize(count), ...); }, BlockSystem::row_fields());
+  const auto keep_list = [&](auto begins, auto... fields) {
+    (system.*begins).resize(count + 1);
+    ((system.*fields).resize((system.*begins).back()), ...);
+  };
+  std::apply([&](auto... list) { (std::apply(keep_list, list), ...); }, BlockSystem::lists());
+}
+
 namespace {
 
 void pose_rigid(BlockSystem &system, std::size_t row) {

@@ -4,7 +4,7 @@
 #include "gcpdda/parallel/packing.hpp"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <numeric>
 
 namespace gcpdda {
@@ -90,27 +90,51 @@ private:
   std::vector<std::pair<std::int64_t, std::uint32_t>> entries_;
 };
 
-/// Union of the reach boxes of the blocks in each occupied cell.
-std::vector<Aabb> boxes_of_cells(const DomainMap &map, const BlockSystem &system,
+/// Union of the reach boxes of the owned blocks in each occupied cell.
+std::vector<Aabb> boxes_of_cells(const CellGrid &grid, const BlockSystem &system,
                                  std::span<const Aabb> boxes) {
-  std::map<std::int64_t, Aabb> by_cell;
+  std::vector<std::pair<std::int64_t, std::uint32_t>> rows_by_cell;
+  rows_by_cell.reserve(system.num_owned);
   for (std::size_t row = 0; row < system.num_owned; ++row) {
-    by_cell[map.grid.cell_of(system.centroid(row))].include(boxes[row]);
+    rows_by_cell.emplace_back(grid.cell_of(system.centroid(row)), static_cast<std::uint32_t>(row));
   }
+  std::sort(rows_by_cell.begin(), rows_by_cell.end());
   std::vector<Aabb> published;
-  published.reserve(by_cell.size());
-  for (const auto &[cell, box] : by_cell) {
-    published.push_back(box);
+  for (std::size_t k = 0; k < rows_by_cell.size(); ++k) {
+    if (k == 0 || rows_by_cell[k].first != rows_by_cell[k - 1].first) {
+      published.emplace_back();
+    }
+    published.back().include(boxes[rows_by_cell[k].second]);
   }
   return published;
 }
 
 } // namespace
 
-std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator, const DomainMap &map,
+CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes) {
+  if (system.num_owned == 0) {
+    return {};
+  }
+  std::vector<Vec2> centroids;
+  centroids.reserve(system.num_owned);
+  double extent = 0.0;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    centroids.push_back(system.centroid(row));
+    extent += std::max(boxes[row].extent().x, boxes[row].extent().y);
+  }
+  const auto num_blocks = static_cast<double>(system.num_owned);
+  const double cell_size = std::sqrt(0.5) * extent / num_blocks;
+  const Aabb region = box_without_strays(centroids);
+  const double cells = region.extent().x / cell_size * (region.extent().y / cell_size);
+  const double most = std::min(64.0 * num_blocks, static_cast<double>(max_background_cells));
+  return CellGrid::over(region, static_cast<std::int64_t>(std::clamp(cells, 1.0, most)));
+}
+
+std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator,
                                                     const BlockSystem &system, std::span<const Aabb> boxes) {
   const auto num_ranks = static_cast<std::size_t>(communicator.size());
-  const std::vector<Aabb> mine = boxes_of_cells(map, system, boxes);
+  const CellGrid grid = publishing_grid(system, boxes);
+  const std::vector<Aabb> mine = boxes_of_cells(grid, system, boxes);
   Aabb hull;
   for (const Aabb &box : mine) {
     hull.include(box);
@@ -131,7 +155,7 @@ std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communic
       published.push_back({static_cast<std::int32_t>(r), box});
     }
   }
-  const BoxesByCell lookup(map.grid, published);
+  const BoxesByCell lookup(grid, published);
   std::vector<std::vector<std::uint32_t>> rows(num_ranks);
   std::vector<std::int32_t> ranks;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
@@ -168,9 +192,12 @@ struct Arrivals {
 
 } // namespace
 
-void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const Aabb> boxes) {
+void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes) {
   expect(system.num_ghosts == 0, "ghosts are rebuilt from owned blocks alone");
-  const auto rows = border_rows(communicator_, map, system, boxes);
+  if (communicator_.size() == 1) {
+    return;
+  }
+  const auto rows = border_rows(communicator_, system, boxes);
   std::vector<Bytes> messages(rows.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (const std::uint32_t row : rows[r]) {
@@ -178,6 +205,7 @@ void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const 
     }
   }
   const std::vector<Bytes> received = communicator_.all_to_all(messages);
+  motion_ = MessageRound(); // its buffers go
   neighbours_.clear();
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (!rows[r].empty() || !received[r].empty()) {
@@ -185,41 +213,60 @@ void Ghosts::rebuild(const DomainMap &map, BlockSystem &system, std::span<const 
     }
   }
 
-  BlockSystem whole;
-  whole.num_owned = system.num_owned;
-  whole.num_fixed = system.num_fixed;
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    append_row(whole, system, row);
+  BlockSystem fixed;
+  for (std::size_t row = system.num_owned; row < system.num_rows(); ++row) {
+    append_row(fixed, system, row);
   }
+  keep_rows(system, system.num_owned);
   // Senders pack in order of id, so walking the ghosts by id meets each sender's rows in message order.
   const Arrivals arrivals(received);
   for (const std::size_t ghost : arrivals.by_id()) {
     const auto neighbour = std::find_if(neighbours_.begin(), neighbours_.end(),
                                         [&](const Neighbour &n) { return n.rank == arrivals.sender[ghost]; });
-    neighbour->receive_rows.push_back(static_cast<std::uint32_t>(whole.num_rows()));
-    append_row(whole, arrivals.blocks, ghost);
-    ++whole.num_ghosts;
+    neighbour->receive_rows.push_back(static_cast<std::uint32_t>(system.num_rows()));
+    append_row(system, arrivals.blocks, ghost);
+    ++system.num_ghosts;
   }
-  for (std::size_t row = system.num_owned; row < system.num_rows(); ++row) {
-    append_row(whole, system, row);
+  for (std::size_t row = 0; row < fixed.num_rows(); ++row) {
+    append_row(system, fixed, row);
   }
-  system = std::move(whole);
+  prepare_motion(system);
 }
 
-void Ghosts::transfer() {
-  outgoing_.clear();
-  incoming_.clear();
+void Ghosts::prepare_motion(const BlockSystem &system) {
+  std::vector<Communicator::Message> outgoing;
+  std::vector<Communicator::Message> incoming;
+  bytes_ = 0;
   for (Neighbour &n : neighbours_) {
+    n.send.resize(bytes_of_motion(system, n.send_rows));
+    n.receive.resize(bytes_of_motion(system, n.receive_rows));
     if (!n.send.empty()) {
-      outgoing_.push_back({n.rank, n.send});
-      ++messages_sent_;
-      bytes_sent_ += static_cast<std::int64_t>(n.send.size());
+      outgoing.push_back({n.rank, n.send});
+      bytes_ += static_cast<std::int64_t>(n.send.size());
     }
     if (!n.receive.empty()) {
-      incoming_.push_back({n.rank, n.receive});
+      incoming.push_back({n.rank, n.receive});
     }
   }
-  communicator_.exchange(outgoing_, incoming_);
+  messages_ = static_cast<std::int64_t>(outgoing.size());
+  motion_ = MessageRound(communicator_, outgoing, incoming);
+}
+
+std::vector<Bytes> Ghosts::exchange(std::vector<Bytes> &send, std::size_t bytes_per_row) const {
+  std::vector<Bytes> received(neighbours_.size());
+  std::vector<Communicator::Message> outgoing;
+  std::vector<Communicator::Message> incoming;
+  for (std::size_t k = 0; k < neighbours_.size(); ++k) {
+    received[k].resize(neighbours_[k].receive_rows.size() * bytes_per_row);
+    if (!send[k].empty()) {
+      outgoing.push_back({neighbours_[k].rank, send[k]});
+    }
+    if (!received[k].empty()) {
+      incoming.push_back({neighbours_[k].rank, received[k]});
+    }
+  }
+  communicator_.exchange(outgoing, incoming);
+  return received;
 }
 
 void Ghosts::copy_accelerations(BlockSystem &system) {
@@ -236,10 +283,8 @@ void Ghosts::copy_accelerations(BlockSystem &system) {
   }
 }
 
-void Ghosts::update(BlockSystem &system) {
+void Ghosts::begin(const BlockSystem &system) {
   for (Neighbour &n : neighbours_) {
-    n.send.resize(bytes_of_motion(system, n.send_rows));
-    n.receive.resize(bytes_of_motion(system, n.receive_rows));
     std::byte *to = n.send.data();
     for (const std::uint32_t row : n.send_rows) {
       to = put(to, GhostMotion{system.trial[row], system.velocity[row]});
@@ -249,7 +294,11 @@ void Ghosts::update(BlockSystem &system) {
       }
     }
   }
-  transfer();
+  motion_.start();
+}
+
+void Ghosts::finish(BlockSystem &system) {
+  motion_.finish();
   for (const Neighbour &n : neighbours_) {
     const std::byte *from = n.receive.data();
     for (const std::uint32_t row : n.receive_rows) {

@@ -10,22 +10,38 @@ namespace gcpdda {
 
 namespace {
 
-/// The system with its owned rows sorted by id, without ghosts.
-BlockSystem settle_rows(const BlockSystem &system, const BlockSystem &owned) {
-  std::vector<std::size_t> order(owned.num_rows());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return owned.properties[a].id < owned.properties[b].id; });
-  BlockSystem sorted;
-  for (const std::size_t row : order) {
-    append_row(sorted, owned, row);
-  }
+/// Owned rows are `staying` and all of `arrived`, sorted by id; ghosts are dropped. Where nothing changes
+/// owned rows are not touched.
+void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, const BlockSystem &arrived) {
+  BlockSystem fixed;
   for (std::size_t row = system.first_fixed(); row < system.num_rows(); ++row) {
-    append_row(sorted, system, row);
+    append_row(fixed, system, row);
   }
-  sorted.num_owned = order.size();
-  sorted.num_fixed = system.num_fixed;
-  return sorted;
+  if (staying.size() == system.num_owned && arrived.num_rows() == 0) {
+    keep_rows(system, system.num_owned);
+  } else {
+    std::vector<std::pair<std::int64_t, std::size_t>>
+        order; // id and row, arrived ones behind all of the system
+    for (const std::size_t row : staying) {
+      order.emplace_back(system.properties[row].id.value, row);
+    }
+    for (std::size_t row = 0; row < arrived.num_rows(); ++row) {
+      order.emplace_back(arrived.properties[row].id.value, system.num_rows() + row);
+    }
+    std::sort(order.begin(), order.end());
+    BlockSystem sorted;
+    for (const auto &[id, row] : order) {
+      const bool is_new = row >= system.num_rows();
+      append_row(sorted, is_new ? arrived : system, is_new ? row - system.num_rows() : row);
+    }
+    sorted.num_owned = order.size();
+    sorted.num_fixed = system.num_fixed;
+    system = std::move(sorted);
+  }
+  system.num_ghosts = 0;
+  for (std::size_t row = 0; row < fixed.num_rows(); ++row) {
+    append_row(system, fixed, row);
+  }
 }
 
 } // namespace
@@ -34,11 +50,11 @@ std::int64_t migrate(const Communicator &communicator, const DomainMap &map, Blo
                      std::vector<RegionRecord> &memory) {
   std::vector<Bytes> leaving(static_cast<std::size_t>(communicator.size()));
   std::unordered_map<std::int64_t, int> destination;
-  BlockSystem owned;
+  std::vector<std::size_t> staying;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     const int rank = map.rank_of(system.centroid(row));
     if (rank == communicator.rank()) {
-      append_row(owned, system, row);
+      staying.push_back(row);
     } else {
       pack_row(system, row, leaving[static_cast<std::size_t>(rank)]);
       destination.emplace(system.properties[row].id.value, rank);
@@ -52,13 +68,14 @@ std::int64_t migrate(const Communicator &communicator, const DomainMap &map, Blo
       }
     }
   }
+  BlockSystem arrived;
   for (const Bytes &message : communicator.all_to_all(leaving)) {
-    unpack_rows(message, owned);
+    unpack_rows(message, arrived);
   }
-  for (const auto &arrived : communicator.all_to_all(records)) {
-    memory.insert(memory.end(), arrived.begin(), arrived.end());
+  for (const auto &brought : communicator.all_to_all(records)) {
+    memory.insert(memory.end(), brought.begin(), brought.end());
   }
-  system = settle_rows(system, owned);
+  settle_rows(system, staying, arrived);
   return static_cast<std::int64_t>(destination.size());
 }
 

@@ -96,7 +96,7 @@ void Simulation::accelerate_owned() {
 
 // a_0 = M^-1 F(0): constant acceleration is then exact from the first step.
 void Simulation::find_initial_state() {
-  evaluate_contacts();
+  take(contacts_.evaluate(blocks_, candidates_, history_)); // ghosts are whole copies yet
   check_initial_overlaps();
   if (scene_.run.initial_friction == InitialFriction::consistent) {
     find_initial_friction();
@@ -104,8 +104,11 @@ void Simulation::find_initial_state() {
   gather_forces();
   accelerate_owned();
   report();
-  counters_.evaluations = 0; // these two are of steps
+  counters_.evaluations = 0; // these are of steps
+  counters_.block_steps = 0;
   counters_.contact_steps = 0;
+  counters_.messages = 0;
+  counters_.bytes = 0;
 }
 
 void Simulation::find_initial_friction() {

@@ -212,13 +212,12 @@ private:
   void partition() {
     const CellGrid &grid = simulation_.domain_map().grid;
     const BlockSystem &blocks = simulation_.blocks();
-    std::vector<std::int64_t> weights(static_cast<std::size_t>(grid.num_cells()), 0);
+    std::vector<Vec2> centroids;
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
-      const std::uint32_t contacts =
-          simulation_.candidates().contact_begin[row + 1] - simulation_.candidates().contact_begin[row];
-      weights[static_cast<std::size_t>(grid.cell_of(blocks.centroid(row)))] += 1 + 2 * std::int64_t{contacts};
+      centroids.push_back(blocks.centroid(row));
     }
-    communicator_.sum(weights);
+    const auto weights =
+        weights_by_cell(communicator_, grid, centroids, work_of_blocks(blocks, simulation_.candidates()));
     map_ = partition_cells(grid, weights, num_subdomains_, &partition_);
   }
 

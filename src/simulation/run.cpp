@@ -399,6 +399,9 @@ private:
     summary.contact_steps = total(communicator_, counters.contact_steps);
     summary.evaluations_per_rank = counts_by_rank(communicator_, counters.evaluations);
     summary.imbalance = imbalance_of(summary.evaluations_per_rank);
+    summary.work_per_rank = counts_by_rank(communicator_, counters.evaluations + counters.block_steps);
+    summary.ghosts_per_rank =
+        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_ghosts));
     summary.wall_s = spread(communicator_, loop_seconds_)[2];
     const auto num_ranks = static_cast<double>(communicator_.size());
     summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
@@ -413,10 +416,8 @@ private:
       summary.restarted_at = simulation_.restored()->facts.time;
     }
     const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps - first_step_, 1));
-    summary.bytes_sent_per_step =
-        static_cast<double>(total(communicator_, simulation_.ghosts().bytes_sent())) / steps;
-    summary.messages_per_step =
-        static_cast<double>(total(communicator_, simulation_.ghosts().messages_sent())) / steps;
+    summary.bytes_sent_per_step = static_cast<double>(total(communicator_, counters.bytes)) / steps;
+    summary.messages_per_step = static_cast<double>(total(communicator_, counters.messages)) / steps;
     for (std::size_t p = 0; p < phase_names.size(); ++p) {
       const double seconds = simulation_.phases().seconds(static_cast<Phase>(p));
       summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
@@ -426,6 +427,7 @@ private:
     };
     add("migrations", total(communicator_, counters.migrations));
     add("refreshes", counters.refreshes);
+    add("rebalances", counters.rebalances);
     add("cross_rank_contacts", total(communicator_, counters.cross_rank_contacts));
     add("cross_rank_contacts_formed", total(communicator_, counters.cross_rank_contacts_formed));
     add("normals_undefined", total(communicator_, counters.normals_undefined));

@@ -18,9 +18,9 @@ void Simulation::identify(std::span<const SceneBlock> slab) {
     sum += fingerprint(first + static_cast<std::int64_t>(k), slab[k]);
   }
   // Modulo 2^64, in halves that cannot overflow.
-  std::array<std::int64_t, 3> parts{static_cast<std::int64_t>(sum & 0xffffffffU),
-                                    static_cast<std::int64_t>(sum >> 32),
-                                    static_cast<std::int64_t>(blocks_.num_owned)};
+  std::array<std::int64_t, 3> parts{
+      static_cast<std::int64_t>(sum & 0xffffffffU), static_cast<std::int64_t>(sum >> 32),
+      std::count_if(slab.begin(), slab.end(), [](const SceneBlock &block) { return !block.fixed; })};
   communicator_.sum(parts);
   identity_ = {num_blocks(), parts[2],
                static_cast<std::uint64_t>(parts[0]) + (static_cast<std::uint64_t>(parts[1]) << 32),

@@ -71,7 +71,7 @@ double agreed_median(const Communicator &communicator, std::span<const double> s
 
 Simulation::Simulation(const Communicator &communicator, Scene scene,
                        const std::filesystem::path &restart_from)
-    : communicator_(communicator), scene_(std::move(scene)), ghosts_(communicator),
+    : communicator_(communicator), scene_(std::move(scene)), balance_(communicator), ghosts_(communicator),
       contacts_({scene_.joints, scene_.run.contact_damping, scene_.run.potential}),
       scheme_(make_scheme(scene_.run.scheme, scene_.run.spectral_radius, scene_.run.contact_time)) {
   for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
@@ -99,20 +99,22 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
 // Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
 void Simulation::distribute(const std::filesystem::path &restart_from) {
   stop_on_errors(open_block_file(communicator_, scene_));
-  const std::vector<SceneBlock> slab = load_slab();
+  std::vector<SceneBlock> slab = load_slab();
   resolve_stiffness(slab);
   place_monitors(slab);
-  lay_grid(slab);
-  std::vector<std::int64_t> weights(static_cast<std::size_t>(map_.grid.num_cells()), 0);
+  survey(slab);
+  std::vector<Vec2> centroids;
   for (const SceneBlock &block : slab) {
     if (!block.fixed) {
-      ++weights[static_cast<std::size_t>(map_.grid.cell_of(polygon_moments(block.vertices).centroid))];
+      centroids.push_back(polygon_moments(block.vertices).centroid);
     }
   }
-  communicator_.sum(weights);
-  map_ = partition_cells(map_.grid, weights, communicator_.size(), &partition_);
-  take_blocks(slab);
+  map_.grid = lay_grid(communicator_, centroids);
+  const std::vector<std::int64_t> equal(centroids.size(), 1);
+  map_ = partition_cells(map_.grid, weights_by_cell(communicator_, map_.grid, centroids, equal),
+                         communicator_.size(), &partition_);
   identify(slab);
+  take_blocks(std::exchange(slab, {}));
   std::vector<RegionRecord> none;
   if (!restart_from.empty()) { // rows are those of the slab still
     restored_ = restore_newest_checkpoint(communicator_, restart_from, identity_, blocks_);
@@ -182,8 +184,8 @@ void Simulation::place_monitors(std::span<const SceneBlock> slab) {
   stop_on_errors(notes_);
 }
 
-// About two cells a mobile block: fine enough to balance, coarse enough that most blocks stay in theirs.
-void Simulation::lay_grid(std::span<const SceneBlock> slab) {
+// What is thinnest, what is smallest, how far the model reaches.
+void Simulation::survey(std::span<const SceneBlock> slab) {
   Aabb region;
   double smallest_mobile = infinite;
   thinnest_ = infinite;
@@ -199,13 +201,11 @@ void Simulation::lay_grid(std::span<const SceneBlock> slab) {
   std::array<double, 6> largest{-region.low.x, -region.low.y,    region.high.x,
                                 region.high.y, -smallest_mobile, -thinnest_};
   communicator_.max(largest);
-  region = {{-largest[0], -largest[1]}, {largest[2], largest[3]}};
   smallest_mobile = -largest[4];
   thinnest_ = -largest[5];
   num_mobile = agreed_sum(communicator_, num_mobile);
   constexpr double skin_per_size = 0.1;
   base_skin_ = num_mobile > 0 ? skin_per_size * std::sqrt(smallest_mobile) : 0.0;
-  map_.grid = CellGrid::over(region, std::max(std::int64_t{64} * communicator_.size(), 2 * num_mobile));
   if (num_mobile > 0) {
     const double farthest = *std::max_element(largest.begin(), largest.begin() + 4,
                                               [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -251,7 +251,7 @@ void Simulation::warn_of_rounding(double size, double farthest) {
 }
 
 // Mobile blocks of the slab become owned rows, to be migrated; everybody gets all fixed ones.
-void Simulation::take_blocks(std::span<const SceneBlock> slab) {
+void Simulation::take_blocks(std::vector<SceneBlock> slab) {
   const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
   BlockSystem fixed;
   for (std::size_t k = 0; k < slab.size(); ++k) {
@@ -287,25 +287,20 @@ void Simulation::take_blocks(std::span<const SceneBlock> slab) {
   blocks_.num_fixed = blocks_.num_rows() - blocks_.num_owned;
 }
 
-// By cell: one for each block and two for each of its candidate pairs in the initial configuration.
+// By cell, of the initial configuration. Faces that touch count as contacts whatever their rounding.
 std::vector<std::int64_t> Simulation::count_contact_work() {
-  std::vector<std::int64_t> weights(static_cast<std::size_t>(map_.grid.num_cells()), 0);
-  const auto add = [&](std::size_t row, std::int64_t weight) {
-    weights[static_cast<std::size_t>(map_.grid.cell_of(blocks_.centroid(row)))] += weight;
-  };
-  ghosts_.rebuild(map_, blocks_, reach_boxes(blocks_, base_skin_));
+  const std::vector<Aabb> boxes = reach_boxes(blocks_, base_skin_);
+  ghosts_.rebuild(blocks_, boxes);
+  blocks_.box = reach_boxes(blocks_, 0.1 * base_skin_);
+  Candidates candidates;
+  for (const auto &[lower, higher] : find_pairs(blocks_, blocks_.box)) {
+    candidates.pairs.push_back({.lower = lower, .higher = higher});
+  }
+  std::vector<Vec2> centroids;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    add(row, 1);
+    centroids.push_back(blocks_.centroid(row));
   }
-  for (const auto &[lower, higher] : find_pairs(blocks_, reach_boxes(blocks_, base_skin_))) {
-    for (const BlockIndex end : {lower, higher}) {
-      if (end.value < blocks_.num_owned) {
-        add(end.value, 2);
-      }
-    }
-  }
-  communicator_.sum(weights);
-  return weights;
+  return weights_by_cell(communicator_, map_.grid, centroids, work_of_blocks(blocks_, candidates));
 }
 
 void Simulation::find_bound() {

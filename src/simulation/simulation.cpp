@@ -12,6 +12,11 @@ namespace gcpdda {
 
 namespace {
 
+// What a rank tells the others after a step; the largest counts.
+constexpr double needs_refresh = 1.0;
+constexpr double asked_to_stop = 2.0; // a refresh does no harm then
+constexpr double failed = 3.0;
+
 /// Row of a block if this rank owns it.
 std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
   const auto end = blocks.properties.begin() + static_cast<std::ptrdiff_t>(blocks.num_owned);
@@ -25,11 +30,12 @@ std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
 } // namespace
 
 void Simulation::step() {
-  if (stale_) { // some block may use up half the skin in this step; all ranks agree
+  const bool borders_moved = rebalance_if_uneven();
+  if (stale_ || borders_moved) { // stale: some block may use up half the skin in this step; all ranks agree
     refresh(remembered_contacts());
   }
   load_time_ = time() + scheme_.load_time * plan_.time_step;
-  predict_next();
+  predict_own();
   evaluate_contacts();
   gather_forces();
   {
@@ -76,7 +82,7 @@ void Simulation::refresh(std::vector<RegionRecord> memory) {
   communicator_.max(std::span(&reach, 1));
   skin_ = std::max(base_skin_, steps_in_skin * reach);
 
-  ghosts_.rebuild(map_, blocks_, reach_boxes(blocks_, skin_));
+  ghosts_.rebuild(blocks_, reach_boxes(blocks_, skin_));
   candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, skin_)),
                                 contacts_.parameters(), std::move(memory), history_, skin_);
   pose(blocks_, 0, blocks_.num_rows());
@@ -85,6 +91,27 @@ void Simulation::refresh(std::vector<RegionRecord> memory) {
     counters_.migrations += left;
     ++counters_.refreshes;
   }
+}
+
+// A look now and then; the blocks follow a new map by the migration of a refresh.
+bool Simulation::rebalance_if_uneven() {
+  constexpr std::int64_t steps_between_looks = 64;
+  if (step_count_ == 0 || step_count_ % steps_between_looks != 0 ||
+      !balance_.is_lost(counters_.evaluations + counters_.block_steps)) {
+    return false;
+  }
+  const auto scope = phases_.measure(Phase::refresh);
+  std::vector<Vec2> centroids;
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    centroids.push_back(blocks_.centroid(row));
+  }
+  auto map = balance_.better_map(centroids, work_of_blocks(blocks_, candidates_), partition_);
+  if (!map) {
+    return false;
+  }
+  map_ = std::move(*map);
+  ++counters_.rebalances;
+  return true;
 }
 
 Diagnostics Simulation::warnings() const {
@@ -109,14 +136,20 @@ Diagnostics Simulation::warnings() const {
   return warnings;
 }
 
-void Simulation::predict_next() {
+// Ghosts are on their way then.
+void Simulation::predict_own() {
   {
     const auto scope = phases_.measure(Phase::predict);
     predict(blocks_, scheme_, plan_.time_step);
     prescribe_trials();
   }
   const auto scope = phases_.measure(Phase::ghosts);
-  ghosts_.update(blocks_);
+  ghosts_.begin(blocks_);
+}
+
+void Simulation::finish_ghosts() {
+  const auto scope = phases_.measure(Phase::ghosts);
+  ghosts_.finish(blocks_);
 }
 
 // At t_n + c1 dt, where the family takes x* of constant velocity.
@@ -143,10 +176,19 @@ void Simulation::prescribe_motion() {
 }
 
 void Simulation::evaluate_contacts() {
+  {
+    const auto scope = phases_.measure(Phase::forces);
+    contacts_.evaluate_interior(blocks_, candidates_, history_);
+  }
+  finish_ghosts();
   const auto scope = phases_.measure(Phase::forces);
-  force_report_ = contacts_.evaluate(blocks_, candidates_, history_);
-  if (force_report_.fault) {
-    keep_first(local_fault_, *force_report_.fault);
+  take(contacts_.evaluate_border(blocks_, candidates_, history_));
+}
+
+void Simulation::take(const ForceReport &report) {
+  force_report_ = report;
+  if (report.fault) {
+    keep_first(local_fault_, *report.fault);
   }
 }
 
@@ -220,11 +262,44 @@ void Simulation::add_half_works(std::size_t row) {
   ledger.gravity_work += half.gravity;
 }
 
-// One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop.
+// One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop. It runs while
+// this rank counts. It cannot run on into the next step: how far a block may go in two steps depends on
+// contacts that nobody has evaluated yet, so a flag one step late is no bound.
 void Simulation::report() {
   const auto scope = phases_.measure(Phase::report);
+  PendingMax status = communicator_.start_max(own_status());
+  count();
+  const double agreed = status.wait();
+  stale_ = agreed >= needs_refresh;
+  stop_agreed_ = agreed == asked_to_stop;
+  if (agreed >= failed) {
+    agree_on_fault();
+  }
+}
+
+double Simulation::own_status() {
+  const double most =
+      0.25 * thinnest_; // two blocks that close by half their width in a step skip the force that parts them
+  double status = 0.0;
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    const BlockProperties &block = blocks_.properties[row];
+    const double ahead = motion_bound(blocks_, row, plan_.time_step);
+    if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
+      status = needs_refresh;
+    }
+    if (ahead > most && num_blocks() > 1) {
+      keep_first(local_fault_, {Fault::Cause::too_fast, block.id, {}, ahead, most});
+    }
+  }
+  return local_fault_ ? failed : stop_asked_ ? asked_to_stop : status;
+}
+
+void Simulation::count() {
   counters_.evaluations += force_report_.evaluations;
+  counters_.block_steps += static_cast<std::int64_t>(blocks_.num_owned);
   counters_.normals_undefined += force_report_.normals_undefined;
+  counters_.messages += ghosts_.messages_per_update();
+  counters_.bytes += ghosts_.bytes_per_update();
   counters_.max_overlap = std::max(counters_.max_overlap, force_report_.max_overlap);
   counters_.max_overlap_share = std::max(counters_.max_overlap_share, force_report_.max_overlap_share);
   std::int64_t crossing = 0;
@@ -240,36 +315,11 @@ void Simulation::report() {
     }
   }
   counters_.cross_rank_contacts = std::max(counters_.cross_rank_contacts, crossing);
-
-  constexpr double failed = 2.0;
-  constexpr double needs_refresh = 1.0;
-  const double most =
-      0.25 * thinnest_; // two blocks that close by half their width in a step skip the force that parts them
-  double status = 0.0;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    const BlockProperties &block = blocks_.properties[row];
-    const double ahead = motion_bound(blocks_, row, plan_.time_step);
-    if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
-      status = needs_refresh;
-    }
     if (blocks_.is_deformable(row)) {
       counters_.fastest_turn =
           std::max(counters_.fastest_turn, plan_.time_step * std::abs(blocks_.velocity[row].r));
     }
-    if (ahead > most && num_blocks() > 1) {
-      keep_first(local_fault_, {Fault::Cause::too_fast, block.id, {}, ahead, most});
-    }
-  }
-  if (local_fault_) {
-    status = failed;
-  }
-  std::array<double, 2> agreed{status, stop_asked_ ? 1.0 : 0.0};
-  communicator_.max(agreed);
-  status = agreed[0];
-  stop_agreed_ = agreed[1] > 0.0;
-  stale_ = status >= needs_refresh;
-  if (status >= failed) {
-    agree_on_fault();
   }
 }
 

@@ -238,5 +238,50 @@ TEST(Communicator, ManyCommunicatorsAreFreed) {
   }
 }
 
+// Each rank sends its count to the next one, the last to the first; other messages pass meanwhile.
+TEST(MessageRound, RunsAgainAndAgain) {
+  const Communicator world = Communicator::world();
+  const int next = (world.rank() + 1) % world.size();
+  const int previous = (world.rank() + world.size() - 1) % world.size();
+  Bytes out(sizeof(int));
+  Bytes in(sizeof(int));
+  const std::vector<Communicator::Message> send{{next, out}};
+  const std::vector<Communicator::Message> receive{{previous, in}};
+  MessageRound round(world, send, receive);
+  MessageRound moved_to = std::move(round);
+  for (int count = 0; count < 50; ++count) {
+    const int told = 100 * world.rank() + count;
+    std::memcpy(out.data(), &told, sizeof(int));
+    moved_to.start();
+    const auto all = world.all_gather(std::vector<int>{count});
+    EXPECT_EQ(all[static_cast<std::size_t>(previous)][0], count);
+    moved_to.finish();
+    int heard = -1;
+    std::memcpy(&heard, in.data(), sizeof(int));
+    EXPECT_EQ(heard, 100 * previous + count);
+  }
+}
+
+TEST(MessageRound, WithoutMessagesDoesNothing) {
+  const Communicator world = Communicator::world();
+  MessageRound none;
+  MessageRound empty(world, {}, {});
+  for (MessageRound *round : {&none, &empty}) {
+    round->start();
+    round->finish();
+  }
+}
+
+TEST(PendingMax, IsTheLargestWhateverComesBetween) {
+  const Communicator world = Communicator::world();
+  for (int round = 0; round < 20; ++round) {
+    PendingMax pending = world.start_max((world.rank() + round) % world.size());
+    std::int64_t ranks = 1;
+    world.sum(std::span(&ranks, 1));
+    EXPECT_EQ(ranks, world.size());
+    EXPECT_EQ(pending.wait(), world.size() - 1);
+  }
+}
+
 } // namespace
 } // namespace gcpdda

@@ -4,6 +4,7 @@
 
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/parallel/ghosts.hpp"
+#include "gcpdda/simulation/balance.hpp"
 #include "random_blocks.hpp"
 
 #include <gtest/gtest.h>
@@ -100,11 +101,28 @@ public:
     note_owned();
     take(memory);
     if (step % 3 == 0) { // ghosts of the time between must not hinder the next move
-      ghosts_.rebuild(map_, mine_, reach_boxes(mine_, 0.4));
+      ghosts_.rebuild(mine_, reach_boxes(mine_, 0.4));
+    }
+  }
+
+  /// A new map for blocks whose work has changed.
+  void rebalance(int step) {
+    std::vector<Vec2> centroids;
+    std::vector<std::int64_t> weights;
+    for (std::size_t row = 0; row < mine_.num_owned; ++row) {
+      const std::int64_t id = mine_.properties[row].id.value;
+      centroids.push_back(mine_.centroid(row));
+      weights.push_back(1 + static_cast<std::int64_t>(100.0 * hashed(id / 10, step, 5)));
+    }
+    PartitionReport report;
+    if (auto map = Balance(world_).better_map(centroids, weights, report)) {
+      map_ = std::move(*map);
+      ++num_maps_;
     }
   }
 
   [[nodiscard]] std::int64_t num_moved() const { return num_moved_; }
+  [[nodiscard]] int num_maps() const { return num_maps_; }
 
 private:
   [[nodiscard]] bool touches_owned(const Pair &pair) const {
@@ -181,15 +199,22 @@ private:
   Memories all_;
   Memories held_;
   std::int64_t num_moved_ = 0;
+  int num_maps_ = 0;
 };
 
-void walk(const DomainMap &map, int num_steps) {
+enum class Maps { one, many };
+
+void walk(const DomainMap &map, int num_steps, Maps maps = Maps::one) {
   const Communicator world = Communicator::world();
   Walk walk(world, map);
   for (int step = 0; step < num_steps; ++step) {
     SCOPED_TRACE("step " + std::to_string(step));
+    if (maps == Maps::many && step % 5 == 4) {
+      walk.rebalance(step);
+    }
     walk.step(step);
   }
+  EXPECT_EQ(walk.num_maps() >= 10, maps == Maps::many && world.size() > 1);
   std::int64_t moved = walk.num_moved();
   world.sum(std::span(&moved, 1));
   EXPECT_EQ(moved >= 1000, world.size() > 1) << moved << " migrations";
@@ -210,6 +235,11 @@ TEST(Migration, LosesNothingBetweenStripsOneOfThemEmpty) {
                          return num_ranks > 2 && strip == 1 ? 2 : strip;
                        }),
        450);
+}
+
+TEST(Migration, LosesNothingWhileMapsChange) {
+  const CellGrid grid = CellGrid::over({{0.0, 0.0}, {region, region}}, 36);
+  walk(testing::map_of(grid, [&](int, int) { return 0; }), 300, Maps::many);
 }
 
 // A new map is all that rebalancing needs.

@@ -257,5 +257,36 @@ TEST(Partition, RefusesWhatItCannotCut) {
   EXPECT_THROW(partition_cells(grid, Weights{huge, huge, 1, 1}, 2), InternalError);
 }
 
+TEST(RanksOfParts, MostOfTheWorkStays) {
+  // METIS calls the part of rank 2 "0", and so on; a little has crossed the borders.
+  const std::vector<PartOnRank> held{{0, 2, 90}, {1, 0, 80}, {2, 1, 85}, {0, 0, 10}, {1, 1, 20}, {2, 2, 15}};
+  EXPECT_EQ(ranks_of_parts(held, 3), (std::vector<std::int32_t>{2, 0, 1}));
+  const std::vector<PartOnRank> turned(held.rbegin(), held.rend());
+  EXPECT_EQ(ranks_of_parts(turned, 3), ranks_of_parts(held, 3));
+}
+
+TEST(RanksOfParts, GivesEachRankOnePart) {
+  // All lies with rank 1, which keeps the largest part; part 3 is nobody's yet.
+  const std::vector<PartOnRank> held{{0, 1, 5}, {1, 1, 7}, {2, 1, 6}};
+  EXPECT_EQ(ranks_of_parts(held, 4), (std::vector<std::int32_t>{0, 1, 2, 3}));
+  EXPECT_EQ(ranks_of_parts({}, 3), (std::vector<std::int32_t>{0, 1, 2}));
+  DomainMap map{unit_grid(2, 2), {3, 0, 1, 2}};
+  give_parts_to_ranks(map, std::vector<std::int32_t>{2, 3, 0, 1});
+  EXPECT_EQ(map.owner, (std::vector<std::int32_t>{1, 2, 3, 0}));
+}
+
+TEST(BoxWithoutStrays, LeavesOutTheFarthest) {
+  std::vector<Vec2> points;
+  for (int i = 0; i < 3000; ++i) {
+    points.push_back({1.0 * i, -2.0 * i});
+  }
+  const Aabb box = box_without_strays(points);
+  EXPECT_EQ(box.low, (Vec2{4.0, -2.0 * 2995}));
+  EXPECT_EQ(box.high, (Vec2{2995.0, -8.0}));
+  points.resize(19);
+  EXPECT_EQ(box_without_strays(points).high, (Vec2{18.0, 0.0})) << "few points keep all";
+  EXPECT_TRUE(box_without_strays({}).empty());
+}
+
 } // namespace
 } // namespace gcpdda

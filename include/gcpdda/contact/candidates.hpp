@@ -53,7 +53,11 @@ struct Candidates {
   /// id.
   std::vector<std::uint32_t> contact_begin;
   std::vector<BlockContact> block_contacts;
-  std::vector<PlainPair> plain;              ///< those of like numbers of edges stand together
+  // In the order in which they are evaluated: first those without a ghost, whose number stands beside.
+  std::vector<PlainPair> plain; ///< those of like numbers of edges stand together
+  std::size_t num_interior_plain = 0;
+  std::vector<std::uint32_t> general; ///< numbers of all other pairs
+  std::size_t num_interior_general = 0;
   std::vector<std::uint32_t> chain_vertices; ///< entries of BlockSystem::vertex
 };
 

@@ -116,7 +116,15 @@ public:
 
   /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory,
   /// which moves on to this configuration.
-  ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history);
+  ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history) {
+    evaluate_interior(system, candidates, history);
+    return evaluate_border(system, candidates, history);
+  }
+  /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
+  void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history);
+  /// ... and then the rest.
+  ForceReport evaluate_border(const BlockSystem &system, const Candidates &candidates,
+                              ContactHistory &history);
 
   /// All touching regions, those of a pair together; region i is that of history.regions[i].
   [[nodiscard]] std::span<const RegionForce> regions() const { return forces_; }
@@ -133,9 +141,12 @@ private:
 
   void evaluate_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                      std::span<RegionMemory> old);
-  /// All plain pairs whose boxes meet; their number.
-  std::int64_t evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
-                                    const ContactHistory &history);
+  void find_increments(const BlockSystem &system, std::size_t first, std::size_t last);
+  void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
+                              ContactHistory &history, std::span<const std::uint32_t> pairs);
+  /// Entries [first, last) of Candidates::plain.
+  void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
+                            const ContactHistory &history, std::size_t first, std::size_t last);
   void recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
               std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const;
   /// Normal force, direction and size of a region; false if it carries nothing.
@@ -152,6 +163,7 @@ private:
   std::vector<std::uint32_t> meeting_; ///< entries of Candidates::plain whose boxes meet
   std::vector<RegionForce> forces_;
   std::vector<RegionRange> ranges_; ///< of forces_, one a pair
+  std::int64_t evaluations_ = 0;    ///< pairs whose boxes met so far
   ContactHistory next_;
   std::vector<TrialIncrement> increments_;
   std::vector<double> facing_; ///< of the pieces at hand, scratch

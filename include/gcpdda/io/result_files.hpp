@@ -144,6 +144,8 @@ struct RunSummary {
   std::int64_t contacts = 0;
   std::int64_t contact_steps = 0;
   std::vector<std::int64_t> evaluations_per_rank;
+  std::vector<std::int64_t> work_per_rank;   ///< evaluations and blocks, summed over steps
+  std::vector<std::int64_t> ghosts_per_rank; ///< at the end
   double wall_s = 0.0;
   double cpu_s = 0.0;
   double setup_wall_s = 0.0;

@@ -223,6 +223,9 @@ void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, cons
 /// Append a copy of another system's row. The ranges' counts are the caller's.
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row);
 
+/// Drop all rows from `count` on. The ranges' counts are the caller's.
+void keep_rows(BlockSystem &system, std::size_t count);
+
 /// World vertices, normals and boxes of rows [first, last) at their trial configuration.
 void pose(BlockSystem &system, std::size_t first, std::size_t last);
 

@@ -13,6 +13,9 @@ namespace gcpdda {
 
 using Bytes = std::vector<std::byte>;
 
+class MessageRound;
+class PendingMax;
+
 /// Owner of one MPI communicator; the only way to messages outside parallel HDF5. Every return code is
 /// checked: a failed call throws InternalError. Calls are collective unless said otherwise.
 class Communicator {
@@ -31,6 +34,9 @@ public:
   void max(std::span<double> values) const;
   void max(std::span<std::int64_t> values) const;
   void sum(std::span<std::int64_t> values) const;
+  /// The same as max(), begun here and completed by what is returned; other calls may come between, in the
+  /// same order on all ranks.
+  [[nodiscard]] PendingMax start_max(double value) const;
   /// Root's bytes to everybody.
   void broadcast(Bytes &bytes) const;
   void broadcast(std::string &text) const;
@@ -72,6 +78,8 @@ public:
   [[nodiscard]] const void *native() const;
 
 private:
+  friend class MessageRound;
+  friend class PendingMax;
   struct Handle;
   explicit Communicator(std::shared_ptr<Handle> handle);
 
@@ -94,6 +102,41 @@ private:
   std::shared_ptr<Handle> handle_;
   int rank_ = 0;
   int size_ = 1;
+};
+
+/// A round of messages between fixed peers, from and into fixed buffers: prepared once, run many times. The
+/// buffers must stay where they are as long as the round lives. No member is collective.
+class MessageRound {
+public:
+  MessageRound() noexcept; ///< without messages
+  MessageRound(const Communicator &communicator, std::span<const Communicator::Message> send,
+               std::span<const Communicator::Message> receive);
+  ~MessageRound();
+  MessageRound(MessageRound &&) noexcept;
+  MessageRound &operator=(MessageRound &&) noexcept;
+
+  /// Until finish() the buffers belong to the round.
+  void start();
+  void finish();
+
+private:
+  struct Requests;
+  std::unique_ptr<Requests> requests_;
+};
+
+/// A reduction under way. wait() exactly once.
+class PendingMax {
+public:
+  PendingMax(const Communicator &communicator, double value);
+  ~PendingMax();
+  PendingMax(const PendingMax &) = delete;
+  PendingMax &operator=(const PendingMax &) = delete;
+  /// Largest value of all ranks.
+  double wait();
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /// MPI_Init and MPI_Finalize as a scope. An exception must be caught inside: one that leaves the scope ends

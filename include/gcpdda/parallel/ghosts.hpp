@@ -4,11 +4,11 @@
 //
 // Requirement: if the reach boxes (box at the refresh, inflated by half the skin) of an owned block of rank p
 // and of an owned block of rank q meet, each rank holds a ghost of the other's block. Every rank therefore
-// publishes, per occupied background cell, the union of the reach boxes of the blocks whose centroid lies
-// there, and a block goes to every rank one of whose published boxes its own reach box meets. The union
-// contains the partner's box, so the requirement follows; testing a block's box against cells alone would
-// miss blocks that stick out of their cell, and one box per rank would let a single huge block inflate the
-// whole halo.
+// publishes, per occupied cell of a grid over its own blocks, the union of the reach boxes of the blocks
+// whose centroid lies there, and a block goes to every rank one of whose published boxes its own reach box
+// meets. The union contains the partner's box, so the requirement follows; testing a block's box against
+// cells alone would miss blocks that stick out of their cell, and one box per rank would let a single huge
+// block inflate the whole halo.
 
 #include "gcpdda/model/block_system.hpp"
 #include "gcpdda/parallel/communicator.hpp"
@@ -29,62 +29,66 @@ public:
   /// before.
   ///
   /// @param boxes  reach boxes of the owned rows
-  void rebuild(const DomainMap &map, BlockSystem &system, std::span<const Aabb> boxes);
+  void rebuild(BlockSystem &system, std::span<const Aabb> boxes);
 
-  /// Owners' trial configurations and velocities to their ghosts; ghosts are posed.
-  void update(BlockSystem &system);
+  /// Owners' trial configurations and velocities set out to their ghosts, by requests that were prepared at
+  /// the rebuild. Until finish() ghost rows keep the old ones, and owned rows may be read.
+  void begin(const BlockSystem &system);
+  /// They have arrived; ghosts are posed.
+  void finish(BlockSystem &system);
 
   /// Owners' accelerations to their ghosts.
   void copy_accelerations(BlockSystem &system);
 
   /// Owners' entries of any array with one entry a row to their ghosts.
   template <class T> void copy(std::vector<T> &per_row) {
-    pack([&](std::size_t row, std::byte *to) { std::memcpy(to, &per_row[row], sizeof(T)); }, sizeof(T));
-    transfer();
-    unpack([&](std::size_t row, const std::byte *from) { std::memcpy(&per_row[row], from, sizeof(T)); },
-           sizeof(T));
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::vector<Bytes> send;
+    for (const Neighbour &n : neighbours_) {
+      Bytes &message = send.emplace_back(n.send_rows.size() * sizeof(T));
+      for (std::size_t i = 0; i < n.send_rows.size(); ++i) {
+        std::memcpy(message.data() + i * sizeof(T), &per_row[n.send_rows[i]], sizeof(T));
+      }
+    }
+    const std::vector<Bytes> received = exchange(send, sizeof(T));
+    for (std::size_t k = 0; k < neighbours_.size(); ++k) {
+      const std::vector<std::uint32_t> &rows = neighbours_[k].receive_rows;
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        std::memcpy(&per_row[rows[i]], received[k].data() + i * sizeof(T), sizeof(T));
+      }
+    }
   }
 
-  [[nodiscard]] std::int64_t messages_sent() const { return messages_sent_; }
-  [[nodiscard]] std::int64_t bytes_sent() const { return bytes_sent_; }
+  /// What begin() sends from this rank.
+  [[nodiscard]] std::int64_t messages_per_update() const { return messages_; }
+  [[nodiscard]] std::int64_t bytes_per_update() const { return bytes_; }
 
 private:
   struct Neighbour {
     int rank = 0;
     std::vector<std::uint32_t> send_rows;
     std::vector<std::uint32_t> receive_rows;
-    Bytes send;
+    Bytes send; ///< buffers of motion_
     Bytes receive;
   };
 
-  template <class Write> void pack(Write &&write, std::size_t bytes_per_row) {
-    for (Neighbour &n : neighbours_) {
-      n.send.resize(n.send_rows.size() * bytes_per_row);
-      n.receive.resize(n.receive_rows.size() * bytes_per_row);
-      for (std::size_t i = 0; i < n.send_rows.size(); ++i) {
-        write(n.send_rows[i], n.send.data() + i * bytes_per_row);
-      }
-    }
-  }
-  template <class Read> void unpack(Read &&read, std::size_t bytes_per_row) {
-    for (const Neighbour &n : neighbours_) {
-      for (std::size_t i = 0; i < n.receive_rows.size(); ++i) {
-        read(n.receive_rows[i], n.receive.data() + i * bytes_per_row);
-      }
-    }
-  }
-  void transfer();
+  void prepare_motion(const BlockSystem &system);
+  /// One message to each neighbour, and one of so many bytes a ghost from each.
+  [[nodiscard]] std::vector<Bytes> exchange(std::vector<Bytes> &send, std::size_t bytes_per_row) const;
 
   Communicator communicator_;
   std::vector<Neighbour> neighbours_;
-  std::vector<Communicator::Message> outgoing_;
-  std::vector<Communicator::Message> incoming_;
-  std::int64_t messages_sent_ = 0;
-  std::int64_t bytes_sent_ = 0;
+  MessageRound motion_;
+  std::int64_t messages_ = 0;
+  std::int64_t bytes_ = 0;
 };
 
+/// The grid by whose cells this rank publishes its blocks: cells of about half a block, over strips that lie
+/// askew too.
+CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes);
+
 /// For each rank the owned rows it needs, ascending; nothing for the own rank. Collective.
-std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator, const DomainMap &map,
+std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator,
                                                     const BlockSystem &system, std::span<const Aabb> boxes);
 
 } // namespace gcpdda

@@ -11,8 +11,8 @@
 namespace gcpdda {
 
 /// Move every owned block to the rank whose cells hold its centroid at t_n; the memory of all its contacts
-/// goes with it (and stays here too, for partners that stay). Ghosts are dropped; owned rows come out sorted
-/// by id.
+/// goes with it (and stays here too, for partners that stay). Ghosts are dropped; owned rows, sorted by id
+/// before, are so again.
 ///
 /// A contact between blocks of two ranks has its memory on both, equal by construction, so wherever either
 /// block goes its new owner finds a copy: with the block, or already there.

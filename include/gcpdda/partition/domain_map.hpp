@@ -28,6 +28,10 @@ struct CellGrid {
   [[nodiscard]] std::int64_t cell_of(Vec2 point) const;
 };
 
+/// Box of the points but for the outermost few of each side (one in a thousand, none of less than twenty): a
+/// grid over it keeps its cells small when some blocks fly far away.
+Aabb box_without_strays(std::span<const Vec2> points);
+
 /// Who owns which cell: the only authority on where a block belongs.
 struct DomainMap {
   CellGrid grid;
@@ -55,5 +59,19 @@ struct PartitionReport {
 /// @param weights  (num_cells) counted work, >= 0, sum up to max_total_weight
 DomainMap partition_cells(const CellGrid &grid, std::span<const std::int64_t> weights, int num_parts,
                           PartitionReport *report = nullptr);
+
+/// Work of a part that lies with a rank before the parts are handed out.
+struct PartOnRank {
+  std::int32_t part = 0;
+  std::int32_t rank = 0;
+  std::int64_t work = 0;
+};
+
+/// Rank of each part, one each, so that most of the work stays where it is: the largest share first. The
+/// order of `held` does not matter.
+std::vector<std::int32_t> ranks_of_parts(std::span<const PartOnRank> held, int num_parts);
+
+/// Owners that are parts become ranks.
+void give_parts_to_ranks(DomainMap &map, std::span<const std::int32_t> rank_of_part);
 
 } // namespace gcpdda

@@ -10,6 +10,7 @@
 #include "gcpdda/parallel/communicator.hpp"
 #include "gcpdda/parallel/ghosts.hpp"
 #include "gcpdda/partition/domain_map.hpp"
+#include "gcpdda/simulation/balance.hpp"
 #include "gcpdda/simulation/time_plan.hpp"
 
 #include <cstdint>
@@ -35,6 +36,7 @@ private:
 /// Counts of this rank since the start.
 struct Counters {
   std::int64_t evaluations = 0;   ///< candidate pairs looked at closely
+  std::int64_t block_steps = 0;   ///< owned blocks summed over steps
   std::int64_t contact_steps = 0; ///< touching pairs summed over steps; each pair on one rank only
   /// Largest number of touching pairs with a ghost in one step, and how many were formed in the run; each
   /// pair on one rank.
@@ -43,6 +45,9 @@ struct Counters {
   std::int64_t normals_undefined = 0;
   std::int64_t migrations = 0;    ///< blocks that left this rank, the first distribution not counted
   std::int64_t refreshes = 0;     ///< of the neighbourhood after the first
+  std::int64_t rebalances = 0;    ///< new maps; each brings a refresh
+  std::int64_t messages = 0;      ///< sent to ghosts by steps; refreshes and outputs send more
+  std::int64_t bytes = 0;         ///< in these messages
   double max_overlap = 0.0;       ///< m
   double max_overlap_share = 0.0; ///< of the narrowest width
   double fastest_turn = 0.0;      ///< of a deformable block, rad per step
@@ -127,7 +132,8 @@ public:
     const std::vector<RigidDof> trial = blocks_.trial;
     const std::vector<RigidDof> previous = blocks_.trial_previous;
     const std::vector<Deformation> deformation = blocks_.deformation;
-    predict_next();
+    predict_own();
+    finish_ghosts();
     look(blocks_);
     blocks_.trial = trial;
     blocks_.trial_previous = previous;
@@ -141,10 +147,10 @@ private:
   void go_on();
   [[nodiscard]] std::vector<SceneBlock> load_slab();
   void resolve_stiffness(std::span<const SceneBlock> slab);
-  void lay_grid(std::span<const SceneBlock> slab);
+  void survey(std::span<const SceneBlock> slab);
   void warn_of_rounding(double size, double farthest);
   void warn_of_lively_impacts();
-  void take_blocks(std::span<const SceneBlock> slab);
+  void take_blocks(std::vector<SceneBlock> slab);
   void place_monitors(std::span<const SceneBlock> slab);
   [[nodiscard]] std::vector<std::int64_t> count_contact_work();
   void find_bound();
@@ -156,15 +162,20 @@ private:
   [[nodiscard]] RegionRecord record_of(std::size_t pair, const RegionMemory &region) const;
   [[nodiscard]] std::vector<RegionRecord> remembered_contacts() const;
   void refresh(std::vector<RegionRecord> memory);
-  void predict_next();
+  bool rebalance_if_uneven();
+  void predict_own();
+  void finish_ghosts();
   void prescribe_trials();
   void prescribe_motion();
   void evaluate_contacts();
+  void take(const ForceReport &report);
   void gather_forces();
   void gather_block(std::size_t row, Vec2 gravity_now);
   void gather_gradient(std::size_t row);
   void add_half_works(std::size_t row);
   void report();
+  [[nodiscard]] double own_status();
+  void count();
   void agree_on_fault();
 
   Communicator communicator_;
@@ -172,6 +183,7 @@ private:
   BlockSystem blocks_;
   DomainMap map_;
   PartitionReport partition_;
+  Balance balance_;
   Ghosts ghosts_;
   Candidates candidates_;
   ContactHistory history_;

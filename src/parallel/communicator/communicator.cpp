@@ -20,7 +20,8 @@ namespace gcpdda {
 namespace {
 
 constexpr int data_tag = 1;
-constexpr int round_tag = 2;
+constexpr int exchange_tag = 2;
+constexpr int round_tag = 3;
 
 void check(int code, const char *call) {
   if (code == MPI_SUCCESS) {
@@ -185,13 +186,13 @@ void Communicator::exchange(std::span<const Message> send, std::span<const Messa
   requests.assign(send.size() + receive.size(), MPI_REQUEST_NULL);
   std::size_t next = 0;
   for (const Message &message : receive) {
-    check(MPI_Irecv(message.bytes.data(), count_of(message.bytes.size()), MPI_BYTE, message.peer, round_tag,
-                    handle_->value, &requests[next++]),
+    check(MPI_Irecv(message.bytes.data(), count_of(message.bytes.size()), MPI_BYTE, message.peer,
+                    exchange_tag, handle_->value, &requests[next++]),
           "MPI_Irecv");
   }
   for (const Message &message : send) {
-    check(MPI_Isend(message.bytes.data(), count_of(message.bytes.size()), MPI_BYTE, message.peer, round_tag,
-                    handle_->value, &requests[next++]),
+    check(MPI_Isend(message.bytes.data(), count_of(message.bytes.size()), MPI_BYTE, message.peer,
+                    exchange_tag, handle_->value, &requests[next++]),
           "MPI_Isend");
   }
   wait_all(requests);
@@ -199,6 +200,95 @@ void Communicator::exchange(std::span<const Message> send, std::span<const Messa
 
 const void *Communicator::native() const {
   return &handle_->value;
+}
+
+PendingMax Communicator::start_max(double value) const {
+  return {*this, value};
+}
+
+struct MessageRound::Requests {
+  std::vector<MPI_Request> all;
+  bool running = false;
+
+  Requests() = default;
+  ~Requests() {
+    int finalized = 0;
+    MPI_Finalized(&finalized);
+    if (finalized != 0 || running) { // a round under way ends here only by an exception
+      return;
+    }
+    for (MPI_Request &request : all) {
+      MPI_Request_free(&request);
+    }
+  }
+  Requests(const Requests &) = delete;
+  Requests &operator=(const Requests &) = delete;
+};
+
+MessageRound::MessageRound() noexcept = default;
+MessageRound::~MessageRound() = default;
+MessageRound::MessageRound(MessageRound &&) noexcept = default;
+MessageRound &MessageRound::operator=(MessageRound &&) noexcept = default;
+
+MessageRound::MessageRound(const Communicator &communicator, std::span<const Communicator::Message> send,
+                           std::span<const Communicator::Message> receive)
+    : requests_(send.empty() && receive.empty() ? nullptr : std::make_unique<Requests>()) {
+  if (requests_ == nullptr) { // Open MPI takes no empty list of requests
+    return;
+  }
+  const MPI_Comm comm = communicator.handle_->value;
+  requests_->all.reserve(send.size() + receive.size());
+  for (const Communicator::Message &message : receive) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    check(MPI_Recv_init(message.bytes.data(), count_of(message.bytes.size()), MPI_BYTE, message.peer,
+                        round_tag, comm, &request),
+          "MPI_Recv_init");
+    requests_->all.push_back(request);
+  }
+  for (const Communicator::Message &message : send) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    check(MPI_Send_init(message.bytes.data(), count_of(message.bytes.size()), MPI_BYTE, message.peer,
+                        round_tag, comm, &request),
+          "MPI_Send_init");
+    requests_->all.push_back(request);
+  }
+}
+
+void MessageRound::start() {
+  if (requests_ == nullptr) {
+    return;
+  }
+  expect(!requests_->running, "a round is started once at a time");
+  requests_->running = true;
+  check(MPI_Startall(count_of(requests_->all.size()), requests_->all.data()), "MPI_Startall");
+}
+
+void MessageRound::finish() {
+  if (requests_ == nullptr) {
+    return;
+  }
+  expect(requests_->running, "only a started round is finished");
+  wait_all(requests_->all);
+  requests_->running = false;
+}
+
+struct PendingMax::State {
+  double value = 0.0;
+  MPI_Request request = MPI_REQUEST_NULL;
+};
+
+PendingMax::PendingMax(const Communicator &communicator, double value) : state_(std::make_unique<State>()) {
+  state_->value = value;
+  check(MPI_Iallreduce(MPI_IN_PLACE, &state_->value, 1, MPI_DOUBLE, MPI_MAX, communicator.handle_->value,
+                       &state_->request),
+        "MPI_Iallreduce");
+}
+
+PendingMax::~PendingMax() = default;
+
+double PendingMax::wait() {
+  check(MPI_Wait(&state_->request, MPI_STATUS_IGNORE), "MPI_Wait");
+  return state_->value;
 }
 
 MpiScope::MpiScope(int &argc, char **&argv) {

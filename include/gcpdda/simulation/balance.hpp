@@ -1,0 +1,66 @@
+#pragma once
+
+// Who computes what, and when that changes.
+//
+// Work is counted, never timed: a step costs a rank one for each of its blocks and one for each candidate
+// pair that it looks at closely; a pair across a border costs both ranks. The weight of a block is twice its
+// share of that: two for itself, one for each such pair of the last step. The last step says more about the
+// next ones than a sum over many: what falls has moved on.
+//
+// Hysteresis is twofold: a new map is made only when the work since the last look was more uneven than is
+// tolerated, and taken only when it is better by more than moving the blocks is worth. A map that was not
+// taken raises what is tolerated. A map that is taken brings a refresh of the neighbourhood, which may come
+// at any time.
+//
+// The grid is laid over the blocks as they lie then, few strays left out, so that a pile that has left its
+// place is still cut into small cells. No result depends on any of this.
+
+#include "gcpdda/contact/candidates.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+#include "gcpdda/partition/domain_map.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace gcpdda {
+
+/// Twice the share of each owned row in the work of a step whose trial configuration is the system's.
+std::vector<std::int64_t> work_of_blocks(const BlockSystem &system, const Candidates &candidates);
+
+/// Grid over the mobile blocks of all ranks, known by their centroids: about two cells a block, so that
+/// balance and borders are fine and most blocks stay in theirs, but never more than all ranks can hold.
+/// Collective.
+CellGrid lay_grid(const Communicator &communicator, std::span<const Vec2> centroids);
+
+/// Sum by cell of everybody's weighted points. Collective.
+std::vector<std::int64_t> weights_by_cell(const Communicator &communicator, const CellGrid &grid,
+                                          std::span<const Vec2> points,
+                                          std::span<const std::int64_t> weights);
+
+/// Watches the balance of a run.
+class Balance {
+public:
+  explicit Balance(const Communicator &communicator) : communicator_(communicator) {}
+
+  /// Whether the work since the last call was too uneven; the same on all ranks. Collective.
+  /// @param work  of this rank since the start of the run
+  bool is_lost(std::int64_t work);
+
+  /// A better map for blocks of these weights, each part with the rank that owns most of it; nothing where
+  /// none is better. Collective.
+  std::optional<DomainMap> better_map(std::span<const Vec2> centroids, std::span<const std::int64_t> weights,
+                                      PartitionReport &report);
+
+private:
+  Communicator communicator_;
+  std::int64_t work_before_ = 0;
+  double measured_ = 1.0;
+  double tolerated_ = least_tolerated;
+
+  static constexpr double least_tolerated = 1.01; ///< max/mean of the work
+  static constexpr double least_gain = 1.005;
+};
+
+} // namespace gcpdda
