@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace gcpdda {
 namespace {
@@ -54,17 +55,15 @@ struct TwoWays {
 
   TwoWays(const BlockSystem &system, const JointLaws &joints, double damping_ratio)
       : plain(system, joints, damping_ratio), general(system, joints, damping_ratio) {
-    for (CandidatePair &pair : general.candidates.pairs) {
-      pair.is_plain = false;
+    Candidates &all = general.candidates;
+    for (std::uint32_t k = 0; k < all.pairs.size(); ++k) {
+      all.pairs[k].is_plain = false;
+      all.general.push_back(k);
     }
-    general.candidates.plain.clear();
+    all.num_interior_general = all.pairs.size();
+    all.num_interior_plain = 0;
+    all.plain.clear();
   }
-};
-
-/// What a pair's numbers are compared against.
-struct Scales {
-  double force = 0.0;
-  double length = 1.0;
 };
 
 void expect_near(Vec2 a, Vec2 b, double tolerance, const char *what) {
@@ -148,6 +147,65 @@ TEST(PlainPairs, AgreeWithTheGeneralWay) {
   }
   EXPECT_GT(touching, 4 * count / 2);
   EXPECT_GT(sliding, 50);
+}
+
+/// Where a couple stands in the list of pairs; none for one that is left out.
+std::optional<std::size_t> find_pair(const ContactBench &bench, const CandidatePair &wanted) {
+  for (std::size_t k = 0; k < bench.candidates.pairs.size(); ++k) {
+    const CandidatePair &pair = bench.candidates.pairs[k];
+    if (pair.lower.value == wanted.lower.value && pair.higher.value == wanted.higher.value) {
+      return k;
+    }
+  }
+  return std::nullopt;
+}
+
+// A neighbourhood may be refreshed at any time: with all edges in the list or those that a skin leaves, in
+// other lanes, a contact is the same bit by bit.
+TEST(PlainPairs, EdgesThatAreLeftOutChangeNoBit) {
+  std::mt19937 engine(92);
+  constexpr int count = 200;
+  const BlockSystem system = couples(engine, count, most_plain_edges);
+  ContactBench whole(system, one_law(1e6, 0.3, 10.0), 0.1);
+  ContactBench cut(system, one_law(1e6, 0.3, 10.0), 0.1);
+  std::vector<std::pair<BlockIndex, BlockIndex>> couple_pairs;
+  for (std::uint32_t row = 0; row < system.num_owned; row += 2) {
+    couple_pairs.emplace_back(BlockIndex{row}, BlockIndex{row + 1});
+  }
+  const double skin = 0.02;
+  cut.candidates = make_candidates(system, couple_pairs, cut.forces.parameters(), {}, cut.history, skin);
+  EXPECT_LT(cut.candidates.pairs.size(), couple_pairs.size()) << "some are kept apart by a line";
+  EXPECT_LT(cut.candidates.chain_vertices.size(), 6 * cut.candidates.pairs.size() * 2);
+  int touching = 0;
+  for (int step = 0; step < 3; ++step) {
+    for (std::size_t row = 0; row < system.num_owned; ++row) {
+      const RigidDof motion{{uniform(engine, -1e-3, 1e-3), uniform(engine, -1e-3, 1e-3)},
+                            uniform(engine, -1e-3, 1e-3)};
+      for (ContactBench *bench : {&whole, &cut}) {
+        bench->system.trial[row] += motion;
+        bench->system.velocity[row] = 100.0 * motion;
+      }
+    }
+    whole.evaluate();
+    cut.evaluate();
+    for (std::size_t k = 0; k < whole.candidates.pairs.size(); ++k) {
+      const auto expected = whole.forces.of_pair(k);
+      const auto place = find_pair(cut, whole.candidates.pairs[k]);
+      const auto got = place ? cut.forces.of_pair(*place) : std::span<const RegionForce>();
+      ASSERT_EQ(got.size(), expected.size());
+      if (!expected.empty()) {
+        EXPECT_EQ(got.front().force, expected.front().force);
+        EXPECT_EQ(got.front().dyad, expected.front().dyad);
+        EXPECT_EQ(got.front().origin, expected.front().origin);
+        EXPECT_EQ(got.front().point, expected.front().point);
+        EXPECT_EQ(got.front().overlap, expected.front().overlap);
+        EXPECT_EQ(got.front().damping_dyad, expected.front().damping_dyad);
+        EXPECT_EQ(cut.history.of_pair(*place).front().shear, whole.history.of_pair(k).front().shear);
+        ++touching;
+      }
+    }
+  }
+  EXPECT_GT(touching, count);
 }
 
 } // namespace
