@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# study.sh verify|stability|accuracy|fidelity|scaling|all [--quick]: one of the studies, or all; tables and charts go to
-# run/results/studies. --quick: fewer points, never fewer problems.
+# study.sh verify|stability|accuracy|fidelity|speed|scaling|all [--quick]: one of the studies, or the first four; tables and
+# charts go to run/results/studies. --quick: fewer points, never fewer problems. speed and scaling want a quiet machine.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/set_up.sh"
@@ -8,7 +8,7 @@ source "$here/set_up.sh"
 studies=(verify stability accuracy fidelity)
 case "${1:-}" in
   all) ;;
-  verify | stability | accuracy | fidelity | scaling) studies=("$1") ;;
+  verify | stability | accuracy | fidelity | speed | scaling) studies=("$1") ;;
   *)
     sed -n '2,3s/^# //p' "${BASH_SOURCE[0]}" >&2
     exit 2
@@ -30,6 +30,8 @@ run_study() {
   elif [ "$study" = scaling ]; then
     "$here/study/scaling.py" "$build" "$results" $quick
     "$here/study/plot_scaling.py" "$results"
+  elif [ "$study" = speed ]; then
+    "$here/study/speed.py" "$build" "$results" $quick
   else
     "$build/gcpdda-study" "$study" "$results" $quick
     "$here/study/plot_$study.py" "$results"
@@ -53,8 +55,4 @@ if [ -n "$verification" ]; then
     exit 1
   }
   tail -n 2 "$results/verify.log"
-fi
-# Times of two ranks need both cores.
-if [ "${1:-}" = all ]; then
-  run_study scaling
 fi

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+"""speed.py BUILD FOLDER [--quick]: what a touching contact costs in a step; writes the table of the speed study to FOLDER.
+
+Pyramids of unit squares with friction settle under local damping, on one rank; CPU time of the step loop, all in. From
+10^5 squares on they start pressed together, since few steps are taken. Use a quiet machine; median and least of the
+repeats stand in the table.
+"""
+import csv
+import json
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+
+MAKE_BLOCKS = Path(__file__).resolve().parent.parent / "make_blocks.py"
+
+
+def scene(work, rows, steps, fidelity, overlap):
+    text = (f'[run]\nduration = {steps}\ntime_step = 1.0\nfidelity = "{fidelity}"\nlocal_damping = 0.8\n'
+            '[material.rock]\ndensity = 2600.0\nyoungs_modulus = 40e9\npoissons_ratio = 0.25\n[joint.default]\n'
+            f'allowed_overlap = {overlap}\nfriction_angle_deg = 31.0\n[output]\ncontacts = false\n')
+    if rows > 200:
+        file = work / f"pyramid_{rows}.h5"
+        if not file.exists():
+            subprocess.run([MAKE_BLOCKS, file, "--shape", "pyramid", "--rows", str(rows), "--overlap", str(0.5 * overlap)],
+                           check=True, stdout=subprocess.DEVNULL)
+        return text + f'[blocks]\nfile = "{file}"\n'
+    return (text + '[[block]]\nname = "floor"\nmaterial = "rock"\nfixed = true\n'
+            f'vertices = [[-2, -2], [{rows + 2}, -2], [{rows + 2}, 0], [-2, 0]]\n[[pyramid]]\nname = "pyramid"\n'
+            f'material = "rock"\norigin = [0.0, 0.0]\nrows = {rows}\nblock_size = [1.0, 1.0]\n')
+
+
+def default_step(program, work, text):
+    """The step the program chooses, s."""
+    path = work / "asked.toml"
+    path.write_text(text.replace("time_step = 1.0\n", ""))
+    said = subprocess.run([program, "inspect", path], check=True, capture_output=True, text=True).stdout
+    return float(re.search(r"^step +([-0-9.e]+) s", said, re.MULTILINE).group(1))
+
+
+def run(program, work, text, step, steps):
+    """Summary of a run, and its peak of memory in bytes."""
+    duration = steps * step
+    text = text.replace(f"duration = {steps}\ntime_step = 1.0", f"duration = {duration!r}\ntime_step = {step!r}")
+    text = text.replace("[output]\n", f"[output]\ninterval = {duration!r}\n")
+    (work / "scene.toml").write_text(text)
+    out = work / "out"
+    shutil.rmtree(out, ignore_errors=True)
+    process = subprocess.Popen([program, "run", work / "scene.toml", "--out", out], stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    if status != 0:
+        raise SystemExit(f"speed.py: the run failed, see {out}")
+    return json.loads((out / "summary.json").read_text()), 1024 * usage.ru_maxrss
+
+
+def main():
+    program, folder = Path(sys.argv[1]).resolve() / "gcpdda", Path(sys.argv[2])
+    quick = sys.argv[3:] == ["--quick"]
+    repeats = 1 if quick else 5
+    cases = [(20, 100, "rigid", 1e-3), (20, 100, "deformable", 1e-3)] if quick else [
+        (20, 4000, "rigid", 1e-3), (100, 400, "rigid", 1e-3), (100, 400, "deformable", 1e-3), (100, 400, "rigid", 2e-3),
+        (100, 400, "rigid", 2e-2), (447, 40, "rigid", 1e-3), (1413, 10, "rigid", 1e-3)]
+    rows = []
+    work = Path(tempfile.mkdtemp())
+    try:
+        for pyramid_rows, steps, fidelity, overlap in cases:
+            text = scene(work, pyramid_rows, steps, fidelity, overlap)
+            step = default_step(program, work, text)
+            nanoseconds = []
+            for _ in range(repeats):
+                summary, memory = run(program, work, text, step, steps)
+                nanoseconds.append(1e9 * summary["cpu_s"] / summary["contact_steps"])
+            blocks = summary["blocks"]
+            rows.append({
+                "blocks": blocks, "kind": fidelity, "allowed_overlap": overlap, "steps": summary["steps"],
+                "contacts_per_block": summary["contact_steps"] / summary["steps"] / blocks,
+                "evaluations_per_block": sum(summary["evaluations_per_rank"]) / summary["steps"] / blocks,
+                "ns_per_contact_and_step": statistics.median(nanoseconds), "least": min(nanoseconds), "repeats": repeats,
+                "simulated_s_per_cpu_s": summary["time"] / summary["cpu_s"], "largest_overlap_m": summary["max_overlap"],
+                "peak_memory_per_block_bytes": memory / blocks})
+            row = rows[-1]
+            print(f"{blocks} {fidelity} squares, allowed overlap {overlap:g}: {row['ns_per_contact_and_step']:.0f} ns a "
+                  f"contact and step (least {row['least']:.0f}), {row['contacts_per_block']:.2f} contacts a block, "
+                  f"{row['simulated_s_per_cpu_s']:.3g} simulated s per CPU s, {row['peak_memory_per_block_bytes']:.0f} "
+                  "bytes a block at the peak", flush=True)
+    finally:
+        shutil.rmtree(work)
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "speed.csv", "w", newline="") as file:
+        table = csv.DictWriter(file, rows[0])
+        table.writeheader()
+        table.writerows(rows)
+
+
+if __name__ == "__main__":
+    main()
