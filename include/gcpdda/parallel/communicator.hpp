@@ -135,8 +135,9 @@ public:
   double wait();
 
 private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct Request;
+  double value_;
+  std::unique_ptr<Request> request_;
 };
 
 /// MPI_Init and MPI_Finalize as a scope. An exception must be caught inside: one that leaves the scope ends
