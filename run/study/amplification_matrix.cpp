@@ -1,5 +1,9 @@
 #include "amplification_matrix.hpp"
 
+#include "support/eigenvalues.hpp"
+
+#include <Eigen/LU>
+
 #include <fmt/format.h>
 
 #include <stdexcept>
@@ -108,13 +112,9 @@ Eigen::MatrixXd amplification_matrix(const Member &member, const LinearSystem &s
   return left.partialPivLu().solve(right);
 }
 
-double spectral_radius(const Eigen::MatrixXd &matrix) {
-  return matrix.eigenvalues().cwiseAbs().maxCoeff();
-}
-
 double oscillator_growth(const Member &member, double w, double damping_ratio) {
   const auto number = [](double x) { return Eigen::MatrixXd::Constant(1, 1, x); };
-  return spectral_radius(
+  return testing::spectral_radius(
       amplification_matrix(member, {number(w * w), number(2.0 * damping_ratio * w), number(0.0)}));
 }
 

@@ -3,9 +3,9 @@
 // The study's own theory of time integration, from the published formulas: what measured runs are held
 // against.
 
-#include <Eigen/Dense>
-
 #include "gcpdda/model/scene.hpp"
+
+#include <Eigen/Core>
 
 #include <string>
 #include <vector>
@@ -38,8 +38,6 @@ struct LinearSystem {
 /// The map of (q, dt q', dt^2 q'') over one step.
 Eigen::MatrixXd amplification_matrix(const Member &member, const LinearSystem &system,
                                      Elastic elastic = Elastic::implicit);
-
-double spectral_radius(const Eigen::MatrixXd &matrix);
 
 /// Growth per step of one contact spring, W = omega dt, with a dashpot of ratio xi.
 double oscillator_growth(const Member &member, double w, double damping_ratio = 0.0);

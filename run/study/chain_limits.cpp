@@ -2,6 +2,7 @@
 
 #include "amplification_matrix.hpp"
 
+#include "support/eigenvalues.hpp"
 #include "support/setting.hpp"
 
 #include <fmt/format.h>

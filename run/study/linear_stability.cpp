@@ -4,8 +4,10 @@
 #include "chain_limits.hpp"
 #include "stability.hpp"
 
+#include "support/eigenvalues.hpp"
 #include "support/setting.hpp"
 
+#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 #include "support/jointed_bar.hpp"
 
+#include "support/eigenvalues.hpp"
 #include "support/setting.hpp"
-
-#include <Eigen/Dense>
 
 #include <cmath>
 
@@ -28,9 +27,7 @@ double jointed_bar_frequency(int num_blocks, double youngs_modulus, double joint
     }
     stiffness += joint_stiffness * closing * closing.transpose();
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, mass,
-                                                                         Eigen::EigenvaluesOnly);
-  return std::sqrt(solver.eigenvalues()(0));
+  return std::sqrt(squared_frequencies(stiffness, mass)(0));
 }
 
 } // namespace gcpdda::testing

@@ -131,9 +131,10 @@ std::string mixed_wall_toml(int rows, int columns, double duration) {
   std::mt19937 random(5);
   const auto speed = [&](double most) { return most * (static_cast<double>(random()) / 2147483648.0 - 1.0); };
   const auto add = [&](const std::string &name, const std::vector<Vec2> &vertices, bool deformable) {
-    toml += block_toml(name, vertices,
-                       fmt::format("velocity = [{:.6g}, {:.6g}, {:.6g}]\nfidelity = \"{}\"", 12.0 + speed(1.0),
-                                   1.0 + speed(1.0), speed(0.3), deformable ? "deformable" : "rigid"));
+    toml +=
+        block_toml(name, vertices,
+                   fmt::format("velocity = [{:.6g}, {:.6g}, {:.6g}]\nfidelity = \"{}\"", 12.0 + speed(1.0),
+                               1.0 + speed(1.0), speed(0.3), deformable ? "deformable" : "rigid"));
   };
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
