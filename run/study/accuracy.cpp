@@ -60,22 +60,26 @@ bool is_on_front(const Point &point, const std::vector<Point> &points, double fl
   });
 }
 
-/// CPU times as medians of five, for the default and whatever may be on the front or within a factor of three
-/// of it.
-void repeat_near_front(const Problem &problem, std::vector<Point> &points, int repeats) {
-  const std::vector<Point> once = points;
+/// CPU times as medians of `rounds`, for the default and whatever may be on the front or within a factor of
+/// three of it. Each round takes them all: a machine that is slower for a while is so for all of them.
+void repeat_near_front(const Problem &problem, std::vector<Point> &points, int rounds) {
+  std::vector<Point *> near;
   for (Point &point : points) {
     Point cheaper = point;
     cheaper.outcome.cost.cpu /= 3.0;
-    if (!std::isfinite(point.outcome.error) ||
-        (!is_on_front(cheaper, once, problem.floor) && point.choice.factor != "default")) {
-      continue;
+    if (std::isfinite(point.outcome.error) &&
+        (is_on_front(cheaper, points, problem.floor) || point.choice.factor == "default")) {
+      near.push_back(&point);
     }
-    std::vector<double> times{point.outcome.cost.cpu};
-    for (int k = 1; k < repeats; ++k) {
-      times.push_back(problem.compute(point.choice).cost.cpu);
+  }
+  std::vector<std::vector<double>> times(near.size());
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      times[i].push_back(problem.compute(near[i]->choice).cost.cpu);
     }
-    point.outcome.cost.cpu = median(times);
+  }
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    near[i]->outcome.cost.cpu = median(times[i]);
   }
 }
 
