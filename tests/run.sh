@@ -12,4 +12,4 @@ if [ $# -gt 0 ]; then
 fi
 ctest --test-dir "$build" --output-on-failure -j 2 -LE paraview # drawing needs a display server
 "$here/sanitizers/run.sh" unit
-"$here/fuzz/run.sh" 20
+"$here/fuzz/run.sh" 10
