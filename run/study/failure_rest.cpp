@@ -87,7 +87,7 @@ void mass_ratio(const Options &options, Boundaries &boundaries, bool heavy_above
                            "depths off by {:.1e} of the closed form, speed {:.1e} m/s after {:.1e}, {} steps",
                            late.depth, late.speed, early.speed, simulation.step_count());
                        const bool is_kept = std::abs(energy.residual) < 1e-3 * energy.kinetic;
-                       if (late.speed > 100.0 * early.speed && is_kept) {
+                       if (late.speed > 2.0 * early.speed && is_kept) {
                          return Outcome{Ending::physical,
                                         fmt::format("the light block is squeezed out, {}, energy residual "
                                                     "{:.1e} of the kinetic",

@@ -143,8 +143,8 @@ TEST_F(Inspect, TellsTheStepAndWhoLimitsIt) {
   const double limit = number(outcome_.out, "limit (\\S+) /");
   EXPECT_GT(limit, 1.5);
   EXPECT_LT(limit, 2.0);
-  const double bound = number(outcome_.out, "at most (\\S+) s = safety 0.5 x");
-  EXPECT_NEAR(bound, 0.5 * limit / expected, 5e-4 * bound);
+  const double bound = number(outcome_.out, "at most (\\S+) s = safety 0.55 x");
+  EXPECT_NEAR(bound, 0.55 * limit / expected, 5e-4 * bound);
   const double step = number(outcome_.out, "step +(\\S+) s \\(automatic\\)");
   EXPECT_LE(step, bound * (1.0 + six_digits));
   const double steps = number(outcome_.out, "\\(automatic\\), (\\d+) steps of 1 s in all");

@@ -241,8 +241,8 @@ TEST(SceneReference, HasARowForEveryKey) {
   EXPECT_EQ(rows, keys);
   for (const char *line :
        {"\n## [run]\n", "\n## [material.NAME]\n", "\n## [[block.load]]\n",
-        "\n| `safety` | number |  | `0.5` | above 0 and at most 1 | Fraction of the stability bound that "
-        "\"auto\" takes. | `safety = 0.5` |\n",
+        "\n| `safety` | number |  | `0.55` | above 0 and at most 1 | Fraction of the stability bound that "
+        "\"auto\" takes. | `safety = 0.55` |\n",
         "\n| `density` | number | kg/m3 | required | above 0 and at most 1e+12 | Density. | `density = "
         "2600.0` "
         "|\n",

@@ -75,7 +75,7 @@ Verdict judged(double friction_deg, double normal_stiffness) {
       Communicator::self(),
       shipped_scene("goodman_bray", {fmt::format("joint.default.friction_angle_deg={}", friction_deg),
                                      fmt::format("joint.default.normal_stiffness={}", normal_stiffness),
-                                     "run.duration=40.0"}));
+                                     "run.gravity_ramp=32.0", "run.duration=100.0"}));
   const BlockSystem &blocks = simulation.blocks();
   const double loaded = simulation.scene().run.gravity_ramp + 1.0;
   Verdict verdict;
@@ -105,7 +105,7 @@ Bracket bisected(double normal_stiffness) {
   EXPECT_FALSE(judged(bracket.falls, normal_stiffness).stands);
   bracket.standing = judged(bracket.stands, normal_stiffness);
   EXPECT_TRUE(bracket.standing.stands);
-  while (bracket.stands - bracket.falls > 0.1) {
+  while (bracket.stands - bracket.falls > 0.04) {
     const double middle = 0.5 * (bracket.falls + bracket.stands);
     Verdict verdict = judged(middle, normal_stiffness);
     if (verdict.stands) {
@@ -194,9 +194,11 @@ AllArms arms_of(const std::map<int, Support> &supports) {
 }
 
 // Limit equilibrium lets all forces act at corners. In the model (k_n = 1e9) the base pushes half a metre
-// inside its corner, which is worth +0.80 degrees, the sides push up to 2.4 m below the top of their joints,
-// -0.61 degrees, and the sides of the upper columns do not use all of their strength, +0.14 degrees. With the
-// arms measured, limit equilibrium gives the model's angle. Joints ten times as stiff fall at 38.29 degrees.
+// inside its corner, which is worth +0.84 degrees, and the sides push up to 2.4 m below the top of their
+// joints, -0.63 degrees. With the arms measured, limit equilibrium gives the model's angle within the
+// bisection (0.04 degrees), joints ten times as stiff included. The load has to grow slowly: in 3 s the
+// columns still move when it is whole, and fall at 38.45 degrees, with joints that hold by less than their
+// strength.
 TEST(TopplingSlope, LimitingFrictionAngle) {
   expect_value("C2 limiting friction angle by limit equilibrium, degrees", limit_equilibrium, limit_angle({}),
                1e-5);
@@ -204,11 +206,11 @@ TEST(TopplingSlope, LimitingFrictionAngle) {
     const Bracket bracket = bisected(stiffness);
     expect_value(fmt::format("C2 limiting friction angle, between {} and {}, k_n = {:g}: degrees",
                              bracket.falls, bracket.stands, stiffness),
-                 limit_equilibrium, 0.5 * (bracket.falls + bracket.stands), 0.01);
+                 limit_equilibrium, 0.5 * (bracket.falls + bracket.stands), 4e-3);
     expect_value(
         fmt::format("C2 the same against limit equilibrium with the model's arms, k_n = {:g}: degrees",
                     stiffness),
-        limit_angle(arms_of(bracket.standing.supports)), 0.5 * (bracket.falls + bracket.stands), 2e-3);
+        limit_angle(arms_of(bracket.standing.supports)), 0.5 * (bracket.falls + bracket.stands), 6e-4);
     if (stiffness == 1e9) {
       write_forces(bracket);
     }

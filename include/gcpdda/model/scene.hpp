@@ -32,7 +32,7 @@ struct RunSettings {
   Vec2 gravity{0.0, -9.81};
   double gravity_ramp = 0.0; ///< s, smooth rise of gravity from 0
   double time_step = 0.0;    ///< s; 0 means "auto"
-  double safety = 0.5;
+  double safety = 0.55;
   SchemeKind scheme = SchemeKind::generalized_alpha;
   double spectral_radius = 0.5;
   ContactTime contact_time = ContactTime::leapfrog;
