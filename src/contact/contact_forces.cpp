@@ -133,11 +133,6 @@ void add_force(RegionForce &force, Vec2 at, Vec2 f) {
   force.dyad += outer(at - force.origin, f);
 }
 
-void add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction) {
-  force.damping_force += f;
-  force.damping_dyad += outer(moment, direction);
-}
-
 /// u.n of a piece: how far it faces the other block along n_r.
 double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
   return is_lower ? -dot(normal, piece.normal) : dot(normal, piece.normal);
@@ -145,8 +140,8 @@ double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
 
 } // namespace
 
-ContactForces::ContactForces(ContactParameters parameters)
-    : parameters_(std::move(parameters)), batch_(std::make_unique<PlainBatch>()) {}
+ContactForces::ContactForces(ContactParameters parameters, Instructions instructions)
+    : parameters_(std::move(parameters)), batch_(make_plain_batch(instructions)) {}
 ContactForces::~ContactForces() = default;
 ContactForces::ContactForces(ContactForces &&) noexcept = default;
 ContactForces &ContactForces::operator=(ContactForces &&) noexcept = default;
@@ -193,6 +188,28 @@ void ContactForces::add_normal_dashpot(const CandidatePair &pair, const Relative
   add_damping(force, total * n, moment, n);
 }
 
+void ContactForces::add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction) {
+  force.damping_force += f;
+  damping_dyad_ += outer(moment, direction);
+}
+
+void ContactForces::finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force) {
+  for (const bool is_lower : {true, false}) {
+    const std::size_t row = (is_lower ? pair.lower : pair.higher).value;
+    const double sign = is_lower ? 1.0 : -1.0;
+    const std::size_t k = is_lower ? 0 : 1;
+    const Vec2 arm = force.origin - system.trial_centroid[row];
+    const auto torque = [&](const Mat2 &dyad, Vec2 f) { return sign * (dyad.xy - dyad.yx + cross(arm, f)); };
+    force.torque[k] = torque(force.dyad, force.force);
+    force.shear_torque[k] = sign * cross(force.point - system.trial_centroid[row], force.shear_force);
+    force.damping_torque[k] = torque(damping_dyad_, force.damping_force);
+    if (system.is_deformable(row)) {
+      damping_dyads_.resize(forces_.size());
+      damping_dyads_.back() = damping_dyad_;
+    }
+  }
+}
+
 BlockView view_of(const BlockSystem &system, std::size_t row) {
   BlockView view{system.of_row(system.vertex, row),      system.of_row(system.normal, row),
                  system.of_row(system.edge_length, row), system.box[row],
@@ -211,7 +228,7 @@ Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x) {
                                    : Rotation::of(-system.trial[row].r)(arm);
 }
 
-void ContactForces::add_shear(RegionForce &force, double elastic, double viscous) const {
+void ContactForces::add_shear(RegionForce &force, double elastic, double viscous) {
   const Vec2 tangent = perp(force.normal);
   force.shear = elastic + viscous;
   force.shear_force = -elastic * tangent;
@@ -220,14 +237,26 @@ void ContactForces::add_shear(RegionForce &force, double elastic, double viscous
   add_force(force, force.point, -force.shear * tangent);
 }
 
-void ContactForces::set_shear(std::size_t region, double shear) {
+void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm) {
   RegionForce &force = forces_[region];
   const Vec2 tangent = perp(force.normal);
-  const double viscous = force.shear + dot(force.shear_force, tangent);
-  add_force(force, force.point, (force.shear - shear) * tangent);
-  add_damping(force, viscous * tangent, force.point - force.origin, viscous * tangent);
+  const auto add_torques = [&](PairTorques &torque, Vec2 f) {
+    torque[0] += cross(lower_arm, f);
+    torque[1] -= cross(higher_arm, f);
+  };
+  const Vec2 change = (force.shear - shear) * tangent;
+  add_force(force, force.point, change);
+  add_torques(force.torque, change);
+  const Vec2 drag = (force.shear + dot(force.shear_force, tangent)) * tangent;
+  force.damping_force += drag;
+  add_torques(force.damping_torque, drag);
+  if (region < damping_dyads_.size()) {
+    damping_dyads_[region] += outer(force.point - force.origin, drag);
+  }
   force.shear = shear;
   force.shear_force = -shear * tangent;
+  force.shear_torque = {};
+  add_torques(force.shear_torque, force.shear_force);
 }
 
 bool ContactForces::measure(const CandidatePair &pair, const Region &region, RegionForce &force) const {
@@ -319,6 +348,7 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &c
       continue;
     }
     force.pair = number;
+    damping_dyad_ = {};
     RegionMemory &memory = next_.regions.emplace_back();
     if (pair.is_convex) {
       force.born = old.empty();
@@ -329,13 +359,15 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &c
     if (force.normal_undefined) {
       memory.shear = 0.0;
       memory.state = ContactState::slip;
-      continue;
+    } else {
+      const RelativeVelocity velocity(system, pair, force.origin);
+      add_friction(system, pair, velocity, memory, force);
+      if (pair.damping > 0.0) {
+        add_normal_dashpot(pair, velocity, region, force);
+      }
     }
-    const RelativeVelocity velocity(system, pair, force.origin);
-    add_friction(system, pair, velocity, memory, force);
-    if (pair.damping > 0.0) {
-      add_normal_dashpot(pair, velocity, region, force);
-    }
+    finish_region(system, pair, force);
+    note(system, pair, force);
   }
 }
 
@@ -369,15 +401,16 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     meeting_[num_meeting] = static_cast<std::uint32_t>(k);
     num_meeting += system.box[plain[k].lower.value].meets(system.box[plain[k].higher.value]) ? 1 : 0;
   }
-  evaluations_ += static_cast<std::int64_t>(num_meeting);
+  report_.evaluations += static_cast<std::int64_t>(num_meeting);
   const PlainScene scene{system, candidates, history, increments_, parameters_.damping_ratio};
   const auto alike = [&](std::size_t a, std::size_t b) {
     return plain[meeting_[a]].lower_edges == plain[meeting_[b]].lower_edges &&
            plain[meeting_[a]].higher_edges == plain[meeting_[b]].higher_edges;
   };
+  const std::size_t width = batch_->width();
   for (std::size_t begin = 0, end = 0; begin < num_meeting; begin = end) {
     end = begin + 1;
-    while (end < std::min(num_meeting, begin + num_lanes) && alike(begin, end)) {
+    while (end < std::min(num_meeting, begin + width) && alike(begin, end)) {
       ++end;
     }
     batch_->evaluate(scene, std::span(meeting_).subspan(begin, end - begin));
@@ -389,6 +422,7 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
         force.pair = pair;
         force.born = history.ranges[pair].count == 0;
         batch_->store(i - begin, force, next_.regions.emplace_back());
+        note(system, candidates.pairs[pair], force);
       }
     }
   }
@@ -399,7 +433,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
   for (const std::uint32_t k : pairs) {
     const CandidatePair &pair = candidates.pairs[k];
     if (system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
-      ++evaluations_;
+      ++report_.evaluations;
       const auto begin = static_cast<std::uint32_t>(forces_.size());
       evaluate_pair(system, candidates, k,
                     std::span(history.regions).subspan(history.ranges[k].begin, history.ranges[k].count));
@@ -413,9 +447,10 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   increments_.assign(system.num_rows(), {});
   find_increments(system, 0, system.num_owned);
   forces_.clear();
+  damping_dyads_.clear();
   next_.regions.clear();
   ranges_.assign(candidates.pairs.size(), {});
-  evaluations_ = 0;
+  report_ = {};
   evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).first(candidates.num_interior_general));
@@ -427,23 +462,19 @@ ForceReport ContactForces::evaluate_border(const BlockSystem &system, const Cand
   evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).subspan(candidates.num_interior_general));
-  ForceReport report;
-  report.evaluations = evaluations_;
   next_.ranges = ranges_;
   std::swap(history, next_);
+  return report_;
+}
 
-  for (const RegionForce &force : forces_) {
-    const CandidatePair &pair = candidates.pairs[force.pair];
-    report.normals_undefined += force.normal_undefined ? 1 : 0;
-    report.max_overlap = std::max(report.max_overlap, force.overlap);
-    report.max_overlap_share = std::max(report.max_overlap_share, 0.5 * force.overlap / pair.allowed_overlap);
-    if (force.overlap > pair.allowed_overlap) {
-      keep_first(report.fault,
-                 {Fault::Cause::too_deep, system.properties[pair.lower.value].id,
-                  system.properties[pair.higher.value].id, force.overlap, pair.allowed_overlap});
-    }
+void ContactForces::note(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force) {
+  report_.normals_undefined += force.normal_undefined ? 1 : 0;
+  report_.max_overlap = std::max(report_.max_overlap, force.overlap);
+  report_.max_overlap_share = std::max(report_.max_overlap_share, 0.5 * force.overlap / pair.allowed_overlap);
+  if (force.overlap > pair.allowed_overlap) {
+    keep_first(report_.fault, {Fault::Cause::too_deep, system.properties[pair.lower.value].id,
+                               system.properties[pair.higher.value].id, force.overlap, pair.allowed_overlap});
   }
-  return report;
 }
 
 double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force) {

@@ -25,19 +25,54 @@ void for_regions(const Candidates &candidates, const ContactForces &contacts, st
 
 } // namespace
 
-BlockContactSum sum_contacts(const BlockSystem &system, const Candidates &candidates,
-                             const ContactForces &contacts, std::size_t row) {
+BlockContactSum sum_contacts(const Candidates &candidates, const ContactForces &contacts, std::size_t row) {
   BlockContactSum sum;
-  const Vec2 centroid = system.trial_centroid[row];
   for_regions(candidates, contacts, row, [&](const RegionForce &f, bool is_lower) {
     const double sign = is_lower ? 1.0 : -1.0;
-    const Vec2 arm = f.origin - centroid;
-    const auto torque = [&](const Mat2 &dyad, Vec2 force) { return dyad.xy - dyad.yx + cross(arm, force); };
-    sum.force += sign * RigidDof{f.force, torque(f.dyad, f.force)};
-    sum.shear += sign * RigidDof{f.shear_force, cross(f.point - centroid, f.shear_force)};
-    sum.damping += sign * RigidDof{f.damping_force, torque(f.damping_dyad, f.damping_force)};
+    const std::size_t k = is_lower ? 0 : 1;
+    sum.force += RigidDof{sign * f.force, f.torque[k]};
+    sum.shear += RigidDof{sign * f.shear_force, f.shear_torque[k]};
+    sum.damping += RigidDof{sign * f.damping_force, f.damping_torque[k]};
   });
   return sum;
+}
+
+bool counts_here(const BlockSystem &system, const CandidatePair &pair) {
+  return pair.lower.value < system.num_owned || system.is_fixed(pair.lower.value);
+}
+
+// Pairs ascend by (lower, higher): a block meets its partners in the order of their ids here too.
+ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts, BlockSystem &system,
+                          std::span<RigidDof> forces) {
+  ContactCount count;
+  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
+    const std::span<const RegionForce> regions = contacts.of_pair(k);
+    if (regions.empty()) {
+      continue;
+    }
+    const CandidatePair &pair = candidates.pairs[k];
+    const std::size_t lower = pair.lower.value;
+    const std::size_t higher = pair.higher.value;
+    if (counts_here(system, pair)) {
+      const bool crosses = higher >= system.num_owned && !system.is_fixed(higher);
+      ++count.touching;
+      count.crossing += crosses ? 1 : 0;
+      count.crossing_formed += crosses && regions.front().born ? 1 : 0;
+    }
+    for (const RegionForce &f : regions) {
+      if (lower < system.num_owned) {
+        forces[lower] += {f.force, f.torque[0]};
+        system.ledger[lower].shear_force += {f.shear_force, f.shear_torque[0]};
+        system.ledger[lower].damping_force += {f.damping_force, f.damping_torque[0]};
+      }
+      if (higher < system.num_owned) {
+        forces[higher] += {-f.force, f.torque[1]};
+        system.ledger[higher].shear_force += {-f.shear_force, f.shear_torque[1]};
+        system.ledger[higher].damping_force += {-f.damping_force, f.damping_torque[1]};
+      }
+    }
+  }
+  return count;
 }
 
 BlockGradientSum sum_gradient_forces(const BlockSystem &system, const Candidates &candidates,
@@ -49,7 +84,7 @@ BlockGradientSum sum_gradient_forces(const BlockSystem &system, const Candidates
     const Vec2 arm = f.origin - centroid;
     dyads.force += sign * (f.dyad + outer(arm, f.force));
     dyads.shear += sign * outer(f.point - centroid, f.shear_force);
-    dyads.damping += sign * (f.damping_dyad + outer(arm, f.damping_force));
+    dyads.damping += sign * (contacts.damping_dyad(f) + outer(arm, f.damping_force));
   });
   // int t X^T with X = F^-1 (x - x_c).
   const Mat2 &to_reference = system.trial_inverse[system.deformation_begin[row]];

@@ -86,7 +86,7 @@ double InitialStick::corrected(const Region &region, double change) const {
 
 void InitialStick::set_shear(const Region &region, double shear) {
   history_.regions[region.number].shear = shear;
-  forces_.set_shear(region.number, shear);
+  forces_.set_shear(region.number, shear, region.arm_lower, region.arm_higher);
 }
 
 double InitialStick::residual(const BlockSystem &system) const {

@@ -1,19 +1,18 @@
 #pragma once
 
-// Several doubles at once, one for each of as many contacts: as wide as the registers the build may use. What
-// a lane holds never depends on its neighbours.
+// Several doubles at once, one for each of as many contacts. What a lane holds never depends on its
+// neighbours.
+//
+// This and all that is made of it is compiled once for each set of instructions (plain_batch_*.cpp), in a
+// namespace of that set's name: GCPDDA_INSTRUCTIONS, with GCPDDA_NUM_LANES doubles in a register.
 
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 
-namespace gcpdda {
+namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-#if defined(__AVX__)
-constexpr std::size_t num_lanes = 4;
-#else
-constexpr std::size_t num_lanes = 2;
-#endif
+constexpr std::size_t num_lanes = GCPDDA_NUM_LANES;
 
 using LaneValues = double __attribute__((vector_size(num_lanes * sizeof(double))));
 using LaneMask = decltype(LaneValues{} < LaneValues{});
@@ -26,13 +25,21 @@ struct Mask {
   [[gnu::always_inline]] friend Mask operator|(const Mask &a, const Mask &b) { return {a.bits | b.bits}; }
   [[gnu::always_inline]] friend Mask operator!(const Mask &a) { return {~a.bits}; }
   [[nodiscard, gnu::always_inline]] bool any() const {
+#if defined(__x86_64__) && GCPDDA_NUM_LANES == 4
+    return __builtin_ia32_movmskpd256(reinterpret_cast<LaneValues>(bits)) != 0; // the signs
+#elif defined(__x86_64__)
+    return __builtin_ia32_movmskpd(reinterpret_cast<LaneValues>(bits)) != 0;
+#else
     auto all = bits[0];
     for (std::size_t i = 1; i < num_lanes; ++i) {
       all |= bits[i];
     }
     return all != 0;
+#endif
   }
-  [[nodiscard, gnu::always_inline]] bool operator[](std::size_t lane) const { return bits[lane] != 0; }
+  [[nodiscard, gnu::always_inline]] bool operator[](std::size_t lane) const {
+    return bits[lane] != 0;
+  }
 };
 
 class Lanes {
@@ -108,24 +115,54 @@ struct LaneVec {
   Lanes x;
   Lanes y;
 
+  /// Lane i holds *get(i).
+  template <class Get> [[gnu::always_inline]] static LaneVec of(Get &&get) {
+    using Point = double __attribute__((vector_size(2 * sizeof(double))));
+    const auto load = [&](std::size_t i) __attribute__((always_inline)) {
+      Point point;
+      std::memcpy(&point, get(i), sizeof(point));
+      return point;
+    };
+#if GCPDDA_NUM_LANES == 4
+    const LaneValues even = __builtin_shufflevector(load(0), load(2), 0, 1, 2, 3);
+    const LaneValues odd = __builtin_shufflevector(load(1), load(3), 0, 1, 2, 3);
+    return {Lanes(__builtin_shufflevector(even, odd, 0, 4, 2, 6)),
+            Lanes(__builtin_shufflevector(even, odd, 1, 5, 3, 7))};
+#else
+    const LaneValues first = load(0);
+    const LaneValues second = load(1);
+    return {Lanes(__builtin_shufflevector(first, second, 0, 2)),
+            Lanes(__builtin_shufflevector(first, second, 1, 3))};
+#endif
+  }
+
   [[gnu::always_inline]] friend LaneVec operator+(const LaneVec &a, const LaneVec &b) {
     return {a.x + b.x, a.y + b.y};
   }
   [[gnu::always_inline]] friend LaneVec operator-(const LaneVec &a, const LaneVec &b) {
     return {a.x - b.x, a.y - b.y};
   }
-  [[gnu::always_inline]] friend LaneVec operator-(const LaneVec &a) { return {-a.x, -a.y}; }
+  [[gnu::always_inline]] friend LaneVec operator-(const LaneVec &a) {
+    return {-a.x, -a.y};
+  }
   [[gnu::always_inline]] friend LaneVec operator*(const Lanes &s, const LaneVec &a) {
     return {s * a.x, s * a.y};
   }
-  [[gnu::always_inline]] LaneVec &operator+=(const LaneVec &b) { return x += b.x, y += b.y, *this; }
+  [[gnu::always_inline]] LaneVec &operator+=(const LaneVec &b) {
+    return x += b.x, y += b.y, *this;
+  }
   [[gnu::always_inline]] friend Lanes dot(const LaneVec &a, const LaneVec &b) {
     return a.x * b.x + a.y * b.y;
   }
-  [[gnu::always_inline]] friend LaneVec perp(const LaneVec &a) { return {-a.y, a.x}; }
+  [[gnu::always_inline]] friend Lanes cross(const LaneVec &a, const LaneVec &b) {
+    return a.x * b.y - a.y * b.x;
+  }
+  [[gnu::always_inline]] friend LaneVec perp(const LaneVec &a) {
+    return {-a.y, a.x};
+  }
   [[gnu::always_inline]] friend LaneVec select(const Mask &mask, const LaneVec &a, const LaneVec &b) {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
   }
 };
 
-} // namespace gcpdda
+} // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -3,12 +3,11 @@
 // Contact forces of plain pairs (candidates.hpp), several at a time. The laws are those of
 // contact_forces.hpp, for rigid blocks and one region a pair.
 
-#include "lane_stretch.hpp"
-
 #include "gcpdda/contact/contact_forces.hpp"
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace gcpdda {
@@ -22,50 +21,23 @@ struct PlainScene {
   double damping_ratio = 0.0;
 };
 
+/// Evaluates as many pairs at once as the registers of its instructions hold. All instructions give the same
+/// bits: each operation is rounded by itself.
 class PlainBatch {
 public:
-  /// Evaluate up to `num_lanes` entries of Candidates::plain with like numbers of edges.
-  void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries);
-  [[nodiscard]] bool touches(std::size_t lane) const { return touches_[lane]; }
+  virtual ~PlainBatch() = default;
+  /// Most pairs at a time.
+  [[nodiscard]] virtual std::size_t width() const = 0;
+  /// Evaluate up to width() entries of Candidates::plain with like numbers of edges.
+  virtual void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries) = 0;
+  [[nodiscard]] virtual bool touches(std::size_t lane) const = 0;
   /// Write the result of a lane that touches: all of the force but its pair and its birth, and what of the
   /// memory two convex blocks have.
-  void store(std::size_t lane, RegionForce &force, RegionMemory &memory) const;
-
-private:
-  struct Constants;
-  struct Motion;
-
-  void integrate();
-  void measure();
-  void add_friction(const Constants &constants, const Motion &motion);
-  void add_dashpot(const Constants &constants, const Motion &motion);
-
-  LaneSide lower_;
-  LaneSide higher_;
-  LaneStretches on_lower_;
-  LaneStretches on_higher_;
-
-  // RegionForce and RegionMemory, one in each lane.
-  Mask touches_;
-  Mask undefined_;
-  LaneVec origin_;
-  LaneVec force_;
-  std::array<Lanes, 4> dyad_;
-  Lanes pressure_;
-  LaneVec point_;
-  LaneVec normal_;
-  Lanes normal_force_;
-  Lanes overlap_;
-  Lanes extent_begin_;
-  Lanes extent_end_;
-  Lanes longest_;
-  Lanes elastic_;
-  Lanes shear_;
-  Lanes slip_;
-  Lanes cap_;
-  Mask slips_;
-  LaneVec damping_force_;
-  std::array<Lanes, 4> damping_dyad_;
+  virtual void store(std::size_t lane, RegionForce &force, RegionMemory &memory) const = 0;
 };
+
+std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions);
+/// Null where the compiler or the machine lacks AVX2, or where the whole build uses it.
+std::unique_ptr<PlainBatch> make_avx2_batch();
 
 } // namespace gcpdda

@@ -29,30 +29,25 @@ Mat2 damp_gradient(const Deformation &d, const Mat2 &force, double share) {
 // the anchors' a block that hangs at rest would count its whole weight as out of balance, and be held
 // wherever it is like by friction. The elastic force of x* instead would be far off in a block too stiff for
 // the step, and damping it would drive it.
-void apply_local_damping(BlockSystem &system, BlockForces &forces, double share) {
-  if (share == 0.0) {
+void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double share) {
+  if (share == 0.0 || system.properties[row].keeps_its_velocity()) {
     return;
   }
-  for (std::size_t i = 0; i < system.num_owned; ++i) {
-    if (system.properties[i].keeps_its_velocity()) {
-      continue;
-    }
-    BlockLedger &ledger = system.ledger[i];
-    RigidDof &force = forces.rigid[i];
-    const RigidDof f = force + ledger.anchor_force;
-    const RigidDof &v = system.velocity[i];
-    RigidDof taken = share * RigidDof{{against(f.u.x, v.u.x), against(f.u.y, v.u.y)}, against(f.r, v.r)};
-    if (system.is_deformable(i)) {
-      taken.r = 0.0;
-      Deformation &d = system.deformation_of(i);
-      Mat2 &gradient = forces.gradient[system.deformation_begin[i]];
-      const Mat2 taken_gradient = damp_gradient(d, gradient, share);
-      gradient += taken_gradient;
-      d.damping_force += taken_gradient;
-    }
-    force += taken;
-    ledger.damping_force += taken;
+  BlockLedger &ledger = system.ledger[row];
+  RigidDof &force = forces.rigid[row];
+  const RigidDof f = force + ledger.anchor_force;
+  const RigidDof &v = system.velocity[row];
+  RigidDof taken = share * RigidDof{{against(f.u.x, v.u.x), against(f.u.y, v.u.y)}, against(f.r, v.r)};
+  if (system.is_deformable(row)) {
+    taken.r = 0.0;
+    Deformation &d = system.deformation_of(row);
+    Mat2 &gradient = forces.gradient[system.deformation_begin[row]];
+    const Mat2 taken_gradient = damp_gradient(d, gradient, share);
+    gradient += taken_gradient;
+    d.damping_force += taken_gradient;
   }
+  force += taken;
+  ledger.damping_force += taken;
 }
 
 } // namespace gcpdda

@@ -96,7 +96,7 @@ FrameData collect_rows(const Simulation &simulation, const std::function<bool(st
     row.stress = blocks.is_deformable(index)
                      ? mean_cauchy_stress(blocks.deformation_of(index), blocks.properties[index].area)
                      : mean_stress(blocks, simulation.candidates(), contacts, index);
-    const RigidDof force = sum_contacts(blocks, simulation.candidates(), contacts, index).force;
+    const RigidDof force = sum_contacts(simulation.candidates(), contacts, index).force;
     row.contact_force = {force.u.x, force.u.y, force.r};
     append(row, index);
   }

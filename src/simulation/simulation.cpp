@@ -51,7 +51,7 @@ void Simulation::step() {
 }
 
 bool Simulation::counts_here(const CandidatePair &pair) const {
-  return pair.lower.value < blocks_.num_owned || blocks_.is_fixed(pair.lower.value);
+  return gcpdda::counts_here(blocks_, pair);
 }
 
 Vec2 Simulation::gravity() const {
@@ -201,16 +201,19 @@ void Simulation::gather_forces() {
   const Vec2 gravity_now = gravity();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     add_half_works(row);
-    blocks_.ledger[row].load_work += anchor_half_work(blocks_, row);
+    BlockLedger &ledger = blocks_.ledger[row];
+    ledger.load_work += anchor_half_work(blocks_, row);
+    ledger.shear_force = {};
+    ledger.damping_force = {};
+    forces_.rigid[row] = {};
+  }
+  contact_count_ = add_contacts(candidates_, contacts_, blocks_, forces_.rigid);
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     gather_block(row, gravity_now);
     if (blocks_.is_deformable(row)) {
       gather_gradient(row);
     }
-  }
-  if (scene_.run.local_damping > 0.0) {
-    apply_local_damping(blocks_, forces_, scene_.run.local_damping);
-  }
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    apply_local_damping(blocks_, row, forces_, scene_.run.local_damping);
     add_half_works(row);
   }
 }
@@ -218,11 +221,8 @@ void Simulation::gather_forces() {
 void Simulation::gather_block(std::size_t row, Vec2 gravity_now) {
   const BlockProperties &block = blocks_.properties[row];
   BlockLedger &ledger = blocks_.ledger[row];
-  const BlockContactSum sum = sum_contacts(blocks_, candidates_, contacts_, row);
-  ledger.shear_force = sum.shear;
-  ledger.damping_force = sum.damping;
   if (block.keeps_its_velocity()) {
-    ledger.load_force = -1.0 * sum.force;
+    ledger.load_force = -1.0 * forces_.rigid[row];
     forces_.rigid[row] = {};
     return;
   }
@@ -232,7 +232,7 @@ void Simulation::gather_block(std::size_t row, Vec2 gravity_now) {
     const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
     ledger.load_force += {load.force, cross(arm, load.force)};
   }
-  forces_.rigid[row] = sum.force + ledger.load_force;
+  forces_.rigid[row] += ledger.load_force;
   forces_.rigid[row].u += ledger.gravity_force;
 }
 
@@ -302,23 +302,15 @@ void Simulation::count() {
   counters_.bytes += ghosts_.bytes_per_update();
   counters_.max_overlap = std::max(counters_.max_overlap, force_report_.max_overlap);
   counters_.max_overlap_share = std::max(counters_.max_overlap_share, force_report_.max_overlap_share);
-  std::int64_t crossing = 0;
-  for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    const CandidatePair &pair = candidates_.pairs[k];
-    const auto regions = contacts_.of_pair(k);
-    if (!regions.empty() && counts_here(pair)) {
-      ++counters_.contact_steps;
-      const bool higher_is_ghost =
-          pair.higher.value >= blocks_.num_owned && !blocks_.is_fixed(pair.higher.value);
-      crossing += higher_is_ghost ? 1 : 0;
-      counters_.cross_rank_contacts_formed += higher_is_ghost && regions.front().born ? 1 : 0;
-    }
-  }
-  counters_.cross_rank_contacts = std::max(counters_.cross_rank_contacts, crossing);
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    if (blocks_.is_deformable(row)) {
-      counters_.fastest_turn =
-          std::max(counters_.fastest_turn, plan_.time_step * std::abs(blocks_.velocity[row].r));
+  counters_.contact_steps += contact_count_.touching;
+  counters_.cross_rank_contacts = std::max(counters_.cross_rank_contacts, contact_count_.crossing);
+  counters_.cross_rank_contacts_formed += contact_count_.crossing_formed;
+  if (!blocks_.deformation.empty()) {
+    for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+      if (blocks_.is_deformable(row)) {
+        counters_.fastest_turn =
+            std::max(counters_.fastest_turn, plan_.time_step * std::abs(blocks_.velocity[row].r));
+      }
     }
   }
 }

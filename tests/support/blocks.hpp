@@ -54,8 +54,10 @@ struct ContactBench {
   ContactHistory history;
   Candidates candidates;
 
-  ContactBench(BlockSystem blocks, JointLaws joints, double damping_ratio = 0.0)
-      : system(std::move(blocks)), forces({std::move(joints), damping_ratio, PotentialKind::exact}) {
+  ContactBench(BlockSystem blocks, JointLaws joints, double damping_ratio = 0.0,
+               Instructions instructions = Instructions::widest)
+      : system(std::move(blocks)),
+        forces({std::move(joints), damping_ratio, PotentialKind::exact}, instructions) {
     std::vector<std::pair<BlockIndex, BlockIndex>> pairs;
     for (std::uint32_t i = 0; i < system.num_rows(); ++i) {
       for (std::uint32_t j = i + 1; j < system.num_rows(); ++j) {

@@ -254,7 +254,7 @@ TEST(StaticStretch, IsHookes) {
         predict(system, usual_scheme(), time_step);
         BlockForces forces = no_forces(system);
         forces.gradient[0] = area * Mat2{sx, sxy, sxy, sy};
-        apply_local_damping(system, forces, 0.5);
+        apply_local_damping(system, 0, forces, 0.5);
         ASSERT_FALSE(solve_and_update(system, forces, usual_scheme(), time_step, elasticity));
       }
       const double e = plane_strain ? modulus / (1.0 - ratio * ratio) : modulus;
@@ -282,7 +282,7 @@ TEST(LocalDamping, ShareOfZeroChangesNoBit) {
   forces.rigid[0] = {{1.0, 2.0}, 3.0};
   forces.gradient[0] = random_gradient(engine, 1.0);
   const BlockForces before = forces;
-  apply_local_damping(system, forces, 0.0);
+  apply_local_damping(system, 0, forces, 0.0);
   EXPECT_EQ(forces.rigid, before.rigid);
   EXPECT_EQ(forces.gradient, before.gradient);
   EXPECT_EQ(system.ledger[0].damping_force, RigidDof{});
@@ -303,7 +303,7 @@ TEST(LocalDamping, TakesAShareOfEachComponent) {
     forces.gradient[0] = 1e8 * random_gradient(engine, 1.0);
     const BlockForces before = forces;
     constexpr double share = 0.7;
-    apply_local_damping(system, forces, share);
+    apply_local_damping(system, 0, forces, share);
     const double fx = before.rigid[0].u.x;
     EXPECT_DOUBLE_EQ(forces.rigid[0].u.x,
                      fx - share * std::abs(fx) * std::copysign(1.0, system.velocity[0].u.x));

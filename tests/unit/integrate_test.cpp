@@ -64,7 +64,7 @@ TEST(SolveAndUpdate, DrivenBlockKeepsItsVelocity) {
   system.num_owned = 1;
   const BlockForces forces{{{{1e300, -1e300}, 1e300}}, {}};
   BlockForces damped = forces;
-  apply_local_damping(system, damped, 0.8);
+  apply_local_damping(system, 0, damped, 0.8);
   EXPECT_EQ(damped.rigid, forces.rigid);
   accelerate(system, forces);
   EXPECT_EQ(system.acceleration[0], RigidDof{});
@@ -134,7 +134,7 @@ TEST(LocalDamping, OfARigidBlock) {
   BlockSystem system = two_blocks();
   system.velocity[0] = {{-1.0, 1.0}, 0.0};
   BlockForces forces{{{{4.0, -8.0}, 2.0}, {}}, {}};
-  apply_local_damping(system, forces, 0.5);
+  apply_local_damping(system, 0, forces, 0.5);
   EXPECT_EQ(forces.rigid[0], (RigidDof{{6.0, -12.0}, 2.0}));
   EXPECT_EQ(system.ledger[0].damping_force, (RigidDof{{2.0, -4.0}, 0.0}));
   EXPECT_EQ(forces.rigid[1], RigidDof{});

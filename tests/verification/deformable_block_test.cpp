@@ -416,7 +416,7 @@ TEST(Anchors, TwoHoldABlockUnderGravity) {
     for (int k = 0; k < 20000; ++k) {
       predict(run.system, run.scheme, run.time_step);
       BlockForces forces = weight(run.system);
-      apply_local_damping(run.system, forces, 0.5);
+      apply_local_damping(run.system, 0, forces, 0.5);
       ASSERT_FALSE(solve_and_update(run.system, forces, run.scheme, run.time_step, run.elasticity));
     }
     const double load = run.system.properties[0].mass * gravity;

@@ -31,6 +31,7 @@
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/overlap.hpp"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -39,18 +40,23 @@
 
 namespace gcpdda {
 
+/// Torques of a region on the lower and the higher block of its pair, about their trial centroids, N.
+using PairTorques = std::array<double, 2>;
+
 /// One touching region: force on the lower block of its pair and what is known about it; the higher block
 /// gets the opposite at the same points.
 struct RegionForce {
   std::uint32_t pair = 0;        ///< number of the candidate
   bool born = false;             ///< not there at the evaluation before
   bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
-  Vec2 origin;                   ///< what dyads are about
   Vec2 force;                    ///< normal, friction and dashpot, N/m
-  Mat2 dyad;                     ///< int (x - origin) df^T, N
-  Vec2 shear_force;              ///< elastic part of friction in `force`; acts at `point`
-  Vec2 damping_force;            ///< dashpots in `force`
-  Mat2 damping_dyad;
+  PairTorques torque{};
+  Vec2 shear_force; ///< elastic part of friction in `force`; acts at `point`
+  PairTorques shear_torque{};
+  Vec2 damping_force; ///< dashpots in `force`
+  PairTorques damping_torque{};
+  Vec2 origin;               ///< what dyads are about
+  Mat2 dyad;                 ///< int (x - origin) df^T, N
   Vec2 point;                ///< x_r
   Vec2 normal;               ///< n_r
   double normal_force = 0.0; ///< |N|
@@ -101,13 +107,17 @@ struct ForceReport {
 
 class PlainBatch;
 
+/// What plain pairs are computed with: the widest registers this machine has, or those every machine has. The
+/// results are the same.
+enum class Instructions { widest, portable };
+
 /// Evaluates pairs; buffers live as long as it does.
 class ContactForces {
 public:
   /// Normals of a region cancel when the resultant falls below this share of the total pressure.
   static constexpr double least_resultant = 0.1;
 
-  explicit ContactForces(ContactParameters parameters);
+  explicit ContactForces(ContactParameters parameters, Instructions instructions = Instructions::widest);
   ~ContactForces();
   ContactForces(ContactForces &&) noexcept;
   ContactForces &operator=(ContactForces &&) noexcept;
@@ -133,8 +143,15 @@ public:
     return {forces_.data() + ranges_[pair].begin, ranges_[pair].count};
   }
 
-  /// Replace the shear of a region, friction alone; for the initial state.
-  void set_shear(std::size_t region, double shear);
+  /// Dyad of `damping_force`; only pairs with a deformable block have one that is not 0.
+  [[nodiscard]] Mat2 damping_dyad(const RegionForce &force) const {
+    const auto region = static_cast<std::size_t>(&force - forces_.data());
+    return region < damping_dyads_.size() ? damping_dyads_[region] : Mat2{};
+  }
+
+  /// Replace the shear of a region, friction alone; for the initial state. Arms of x_r from the trial
+  /// centroids.
+  void set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm);
 
 private:
   struct RelativeVelocity;
@@ -155,7 +172,11 @@ private:
                     RegionMemory &memory, RegionForce &force);
   void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity, const Region &region,
                           RegionForce &force);
-  void add_shear(RegionForce &force, double elastic, double viscous) const;
+  void add_shear(RegionForce &force, double elastic, double viscous);
+  void add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction);
+  void note(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force);
+  /// Torques of the region at hand, from its dyads, which are whole.
+  void finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force);
 
   ContactParameters parameters_;
   Overlap overlap_;
@@ -163,10 +184,12 @@ private:
   std::vector<std::uint32_t> meeting_; ///< entries of Candidates::plain whose boxes meet
   std::vector<RegionForce> forces_;
   std::vector<RegionRange> ranges_; ///< of forces_, one a pair
-  std::int64_t evaluations_ = 0;    ///< pairs whose boxes met so far
+  ForceReport report_;              ///< of what has been evaluated so far
   ContactHistory next_;
   std::vector<TrialIncrement> increments_;
-  std::vector<double> facing_; ///< of the pieces at hand, scratch
+  std::vector<Mat2> damping_dyads_; ///< by region, up to the last of a pair with a deformable block
+  Mat2 damping_dyad_;               ///< of the region at hand
+  std::vector<double> facing_;      ///< of the pieces at hand, scratch
 };
 
 /// Sums of one block's contacts, in the order of the other blocks' ids.
@@ -175,8 +198,22 @@ struct BlockContactSum {
   RigidDof shear;   ///< elastic friction in it
   RigidDof damping; ///< dashpots in it
 };
-BlockContactSum sum_contacts(const BlockSystem &system, const Candidates &candidates,
-                             const ContactForces &contacts, std::size_t row);
+BlockContactSum sum_contacts(const Candidates &candidates, const ContactForces &contacts, std::size_t row);
+
+/// One rank counts what is known of a pair.
+bool counts_here(const BlockSystem &system, const CandidatePair &pair);
+
+/// Pairs that touch and count on this rank.
+struct ContactCount {
+  std::int64_t touching = 0;
+  std::int64_t crossing = 0;        ///< the other block is a ghost
+  std::int64_t crossing_formed = 0; ///< and they did not touch at the evaluation before
+};
+
+/// The same sums of all owned rows, bit by bit, added to `forces` by row and to shear and damping in the
+/// ledger of each block.
+ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts, BlockSystem &system,
+                          std::span<RigidDof> forces);
 
 /// What the same contacts do to F of a deformable row: int t X^T, N.
 struct BlockGradientSum {

@@ -56,11 +56,11 @@ double motion_bound(const BlockSystem &system, std::size_t row, double time_step
 /// Largest distance (m) a point of the block has moved since the last refresh of the neighbourhood.
 double moved_since_refresh(const BlockSystem &system, std::size_t row);
 
-/// Non-viscous damping, for static problems: every generalised force loses `share` of its size against the
-/// velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force and that of
-/// anchors of the last step count in f. What is taken is added to the ledger's damping forces. Driven blocks
-/// are left alone.
-void apply_local_damping(BlockSystem &system, BlockForces &forces, double share);
+/// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its
+/// size against the velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force
+/// and that of anchors of the last step count in f. What is taken is added to the ledger's damping forces.
+/// Driven blocks are left alone.
+void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double share);
 
 /// Advance rows [0, num_owned) from t_n to t_{n+1} under their total forces: one system each, diagonal for a
 /// rigid block without fixed points, else by its own factorised matrix. A block whose new state is not finite

@@ -206,6 +206,7 @@ private:
   SceneIdentity identity_;
   std::optional<Restored> restored_;
   ForceReport force_report_;
+  ContactCount contact_count_; ///< at the last evaluation
   std::optional<Fault> local_fault_;
   std::optional<Fault> fault_;
   Counters counters_;
