@@ -222,12 +222,12 @@ TEST(Times, AGivenStepAboveTheBoundIsUsedWithAWarning) {
   const WorkFolder folder;
   folder.write("scene.toml", testing::small_scene());
   const Outcome outcome =
-      run_gcpdda(0, {"run", "scene.toml", "--out", "out", "--set", "run.time_step=4e-3"}, folder);
+      run_gcpdda(0, {"run", "scene.toml", "--out", "out", "--set", "run.time_step=3.125e-3"}, folder);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_EQ(count_of(outcome.err, "warning: the time step 0.004 s is above the recommended "), 1)
+  EXPECT_EQ(count_of(outcome.err, "warning: the time step 0.003125 s is above the recommended "), 1)
       << outcome.err;
-  EXPECT_EQ(summary_number(folder / "out", "time_step"), 4e-3);
-  EXPECT_EQ(summary_number(folder / "out", "steps"), 25);
+  EXPECT_EQ(summary_number(folder / "out", "time_step"), 3.125e-3);
+  EXPECT_EQ(summary_number(folder / "out", "steps"), 32);
 }
 
 TEST(Contacts, AreLeftOutOnRequest) {
