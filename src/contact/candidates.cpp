@@ -326,6 +326,9 @@ Candidates make_candidates(const BlockSystem &system,
                            ContactHistory &history, double skin) {
   Candidates candidates;
   candidates.pairs.reserve(pairs.size());
+  candidates.plain.reserve(pairs.size());
+  candidates.chain_vertices.reserve(6 * pairs.size()); // about three ends of edges for each of two blocks
+  history.ranges.reserve(pairs.size());
   // Several regions of a pair keep their order: both sides of a border wrote them in the same one.
   const auto record_key = [](const RegionRecord &r) { return std::pair(r.lower, r.higher); };
   std::stable_sort(memory.begin(), memory.end(), [&](const RegionRecord &a, const RegionRecord &b) {

@@ -450,6 +450,9 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   damping_dyads_.clear();
   next_.regions.clear();
   ranges_.assign(candidates.pairs.size(), {});
+  // Most candidates touch: to grow by doubling would take more memory than to have room for all.
+  forces_.reserve(candidates.pairs.size());
+  next_.regions.reserve(candidates.pairs.size());
   report_ = {};
   evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);
   evaluate_general_pairs(system, candidates, history,

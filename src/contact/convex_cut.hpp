@@ -4,6 +4,8 @@
 
 #include "gcpdda/geometry/vec2.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -11,13 +13,35 @@ namespace gcpdda {
 
 using Polygon = std::vector<Vec2>;
 
+/// A polygon of few vertices, without allocation; used as a Polygon is.
+class SmallPolygon {
+public:
+  static constexpr std::size_t capacity = 32;
+
+  SmallPolygon() = default;
+  template <class Iterator> SmallPolygon(Iterator first, Iterator last) {
+    size_ = static_cast<std::size_t>(std::copy(first, last, vertices_.begin()) - vertices_.begin());
+  }
+  void push_back(Vec2 x) { vertices_[size_++] = x; }
+  void clear() { size_ = 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  const Vec2 &operator[](std::size_t i) const { return vertices_[i]; }
+  [[nodiscard]] const Vec2 *begin() const { return vertices_.data(); }
+  [[nodiscard]] const Vec2 *end() const { return vertices_.data() + size_; }
+
+private:
+  std::array<Vec2, capacity> vertices_;
+  std::size_t size_ = 0;
+};
+
 /// The part of a convex polygon where distance(x) >= 0 for a linear function given by its values at the
 /// vertices.
-template <class Distance> Polygon keep_positive(const Polygon &polygon, const Distance &distance) {
-  Polygon kept;
+template <class Outline, class Distance>
+Outline keep_positive(const Outline &polygon, const Distance &distance) {
+  Outline kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec2 a = polygon[i];
-    const Vec2 b = polygon[(i + 1) % polygon.size()];
+    const Vec2 b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
     const double da = distance(a);
     const double db = distance(b);
     if (da >= 0.0) {
@@ -31,7 +55,8 @@ template <class Distance> Polygon keep_positive(const Polygon &polygon, const Di
 }
 
 /// int d dA of a linear function over a convex polygon: each triangle of the fan by the mean of its corners.
-template <class Distance> double integrate_linear(const Polygon &polygon, const Distance &distance) {
+template <class Outline, class Distance>
+double integrate_linear(const Outline &polygon, const Distance &distance) {
   double sum = 0.0;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
     const double area = 0.5 * cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);

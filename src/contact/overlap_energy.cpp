@@ -4,6 +4,7 @@
 #include "field_energy.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,7 +14,8 @@ namespace {
 
 /// int over the region of the distance to the boundary of a convex polygon: cut the region into the cells in
 /// which one edge line is nearest.
-double integrate_distance(const Polygon &region, std::span<const Vec2> vertex, std::span<const Vec2> normal) {
+template <class Outline>
+double integrate_distance(const Outline &region, std::span<const Vec2> vertex, std::span<const Vec2> normal) {
   double sum = 0.0;
   double largest = 0.0;
   for (const Vec2 x : vertex) {
@@ -22,12 +24,35 @@ double integrate_distance(const Polygon &region, std::span<const Vec2> vertex, s
   // Collinear edges share a line up to the rounding of their vertices: the first of them takes the whole
   // cell.
   const double same_line = 64.0 * std::numeric_limits<double>::epsilon() * largest;
+  const auto depth = [&](std::size_t line, Vec2 x) { return dot(normal[line], vertex[line] - x); };
+  // A line that is farther than another one everywhere in the region has no cell and cuts none off.
+  const auto is_nearer = [&](std::size_t i, std::size_t j) {
+    return std::all_of(region.begin(), region.end(),
+                       [&](Vec2 x) { return depth(j, x) - depth(i, x) > same_line; });
+  };
+  std::vector<std::size_t> lines_of_many;
+  std::array<std::size_t, SmallPolygon::capacity> lines_of_few;
+  std::span<std::size_t> lines = lines_of_few;
+  if (vertex.size() > lines.size()) {
+    lines_of_many.resize(vertex.size());
+    lines = lines_of_many;
+  }
+  std::size_t count = 0;
   for (std::size_t i = 0; i < vertex.size(); ++i) {
-    const auto depth = [&](std::size_t line, Vec2 x) { return dot(normal[line], vertex[line] - x); };
-    Polygon cell = region;
-    for (std::size_t j = 0; j < vertex.size() && cell.size() >= 3; ++j) {
+    const auto kept = lines.first(count);
+    if (std::any_of(kept.begin(), kept.end(), [&](std::size_t j) { return is_nearer(j, i); })) {
+      continue;
+    }
+    count = static_cast<std::size_t>(
+        std::remove_if(kept.begin(), kept.end(), [&](std::size_t j) { return is_nearer(i, j); }) -
+        kept.begin());
+    lines[count++] = i;
+  }
+  for (const std::size_t i : lines.first(count)) {
+    Outline cell = region;
+    for (const std::size_t j : lines.first(count)) {
       const auto margin = [&](Vec2 x) { return depth(j, x) - depth(i, x); };
-      if (j == i) {
+      if (j == i || cell.size() < 3) {
         continue;
       }
       if (std::all_of(cell.begin(), cell.end(), [&](Vec2 x) { return std::abs(margin(x)) <= same_line; })) {
@@ -59,7 +84,8 @@ bool is_convex_and_rigid(const BlockView &block) {
 }
 
 /// The part of `region` inside a convex polygon.
-Polygon common_part(Polygon region, std::span<const Vec2> vertex, std::span<const Vec2> normal) {
+template <class Outline>
+Outline common_part(Outline region, std::span<const Vec2> vertex, std::span<const Vec2> normal) {
   for (std::size_t j = 0; j < vertex.size() && region.size() >= 3; ++j) {
     region = keep_positive(region, [&](Vec2 x) { return dot(normal[j], vertex[j] - x); });
   }
@@ -102,6 +128,17 @@ double field_energy(const BlockView &block, const BlockView &other) {
   return sum;
 }
 
+/// Of two convex rigid blocks.
+template <class Outline> double rigid_energy(const BlockView &first, const BlockView &second) {
+  const Outline region =
+      common_part(Outline(first.vertex.begin(), first.vertex.end()), second.vertex, second.normal);
+  if (region.size() < 3) {
+    return 0.0;
+  }
+  return integrate_distance(region, first.vertex, first.normal) +
+         integrate_distance(region, second.vertex, second.normal);
+}
+
 } // namespace
 
 double overlap_energy(const BlockView &first, const BlockView &second) {
@@ -111,13 +148,11 @@ double overlap_energy(const BlockView &first, const BlockView &second) {
   if (!is_convex_and_rigid(first) || !is_convex_and_rigid(second)) {
     return field_energy(first, second) + field_energy(second, first);
   }
-  const Polygon region =
-      common_part(Polygon(first.vertex.begin(), first.vertex.end()), second.vertex, second.normal);
-  if (region.size() < 3) {
-    return 0.0;
-  }
-  return integrate_distance(region, first.vertex, first.normal) +
-         integrate_distance(region, second.vertex, second.normal);
+  // Each of the cuts, first by the other block's lines and then between the lines of one, adds a vertex at
+  // most.
+  return 2 * (first.vertex.size() + second.vertex.size()) <= SmallPolygon::capacity
+             ? rigid_energy<SmallPolygon>(first, second)
+             : rigid_energy<Polygon>(first, second);
 }
 
 } // namespace gcpdda
