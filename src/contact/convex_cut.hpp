@@ -18,10 +18,12 @@ class SmallPolygon {
 public:
   static constexpr std::size_t capacity = 32;
 
-  SmallPolygon() = default;
-  template <class Iterator> SmallPolygon(Iterator first, Iterator last) {
-    size_ = static_cast<std::size_t>(std::copy(first, last, vertices_.begin()) - vertices_.begin());
-  }
+  SmallPolygon() {
+  } // NOLINT(modernize-use-equals-default): it leaves the vertices as they are, most are never used
+  template <class Iterator> SmallPolygon(Iterator first, Iterator last) { assign(first, last); }
+  SmallPolygon(const SmallPolygon &other) { assign(other.begin(), other.end()); }
+  SmallPolygon &operator=(const SmallPolygon &other) { return assign(other.begin(), other.end()), *this; }
+
   void push_back(Vec2 x) { vertices_[size_++] = x; }
   void clear() { size_ = 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -30,7 +32,13 @@ public:
   [[nodiscard]] const Vec2 *end() const { return vertices_.data() + size_; }
 
 private:
-  std::array<Vec2, capacity> vertices_;
+  template <class Iterator> void assign(Iterator first, Iterator last) {
+    size_ = static_cast<std::size_t>(std::copy(first, last, vertices_.begin()) - vertices_.begin());
+  }
+
+  union {
+    std::array<Vec2, capacity> vertices_;
+  };
   std::size_t size_ = 0;
 };
 

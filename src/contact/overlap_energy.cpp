@@ -25,11 +25,7 @@ double integrate_distance(const Outline &region, std::span<const Vec2> vertex, s
   // cell.
   const double same_line = 64.0 * std::numeric_limits<double>::epsilon() * largest;
   const auto depth = [&](std::size_t line, Vec2 x) { return dot(normal[line], vertex[line] - x); };
-  // A line that is farther than another one everywhere in the region has no cell and cuts none off.
-  const auto is_nearer = [&](std::size_t i, std::size_t j) {
-    return std::all_of(region.begin(), region.end(),
-                       [&](Vec2 x) { return depth(j, x) - depth(i, x) > same_line; });
-  };
+  // A line that nowhere in the region comes as near as another one always is has no cell and cuts none off.
   std::vector<std::size_t> lines_of_many;
   std::array<std::size_t, SmallPolygon::capacity> lines_of_few;
   std::span<std::size_t> lines = lines_of_few;
@@ -37,16 +33,20 @@ double integrate_distance(const Outline &region, std::span<const Vec2> vertex, s
     lines_of_many.resize(vertex.size());
     lines = lines_of_many;
   }
+  double enough = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < vertex.size(); ++i) {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const Vec2 x : region) {
+      farthest = std::max(farthest, depth(i, x));
+    }
+    enough = std::min(enough, farthest);
+  }
   std::size_t count = 0;
   for (std::size_t i = 0; i < vertex.size(); ++i) {
-    const auto kept = lines.first(count);
-    if (std::any_of(kept.begin(), kept.end(), [&](std::size_t j) { return is_nearer(j, i); })) {
-      continue;
+    if (std::any_of(region.begin(), region.end(),
+                    [&](Vec2 x) { return depth(i, x) <= enough + same_line; })) {
+      lines[count++] = i;
     }
-    count = static_cast<std::size_t>(
-        std::remove_if(kept.begin(), kept.end(), [&](std::size_t j) { return is_nearer(i, j); }) -
-        kept.begin());
-    lines[count++] = i;
   }
   for (const std::size_t i : lines.first(count)) {
     Outline cell = region;
