@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy
 
 COLOURS = {"wall": "tab:blue", "pyramid": "tab:orange", "pile": "tab:green", "slope": "tab:red"}
-STYLES = ((1e4, "o", "-"), (5e5, "s", "--"), (float("inf"), "^", ":"))
+STYLES = ((1e4, "o", "-"), (5e4, "D", "-."), (5e5, "s", "--"), (float("inf"), "^", ":"))
 
 
 def read(path):
@@ -48,8 +48,10 @@ def main():
     ):
         curves(axes, counts, quantity, shift)
         axes.set_title(title, fontsize=10)
-        if quantity != "messages_per_rank_and_step":
-            axes.set_yscale("symlog", linthresh=1e-3 if shift else 1.0)
+        if quantity.startswith(("ghosts", "bytes")):
+            axes.set_yscale("log")
+        else:
+            axes.set_ylim(bottom=0.0)
     grid[0][0].legend(fontsize=7)
     axes = grid[1][2]
     place = numpy.arange(len(times))
