@@ -12,11 +12,39 @@ namespace gcpdda {
 
 namespace {
 
+/// Depth of a point below an edge line.
+double depth_below(std::span<const Vec2> vertex, std::span<const Vec2> normal, std::size_t line, Vec2 x) {
+  return dot(normal[line], vertex[line] - x);
+}
+
+/// The edge lines that can be the nearest somewhere in a region, ascending, at the begin of `lines`. One that
+/// nowhere comes as near as another one always is has no cell and cuts none off.
+template <class Outline>
+std::span<const std::size_t> nearest_lines(const Outline &region, std::span<const Vec2> vertex,
+                                           std::span<const Vec2> normal, double same_line,
+                                           std::span<std::size_t> lines) {
+  double enough = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < vertex.size(); ++i) {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const Vec2 x : region) {
+      farthest = std::max(farthest, depth_below(vertex, normal, i, x));
+    }
+    enough = std::min(enough, farthest);
+  }
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < vertex.size(); ++i) {
+    if (std::any_of(region.begin(), region.end(),
+                    [&](Vec2 x) { return depth_below(vertex, normal, i, x) <= enough + same_line; })) {
+      lines[count++] = i;
+    }
+  }
+  return lines.first(count);
+}
+
 /// int over the region of the distance to the boundary of a convex polygon: cut the region into the cells in
 /// which one edge line is nearest.
 template <class Outline>
 double integrate_distance(const Outline &region, std::span<const Vec2> vertex, std::span<const Vec2> normal) {
-  double sum = 0.0;
   double largest = 0.0;
   for (const Vec2 x : vertex) {
     largest = std::max({largest, std::abs(x.x), std::abs(x.y)});
@@ -24,33 +52,15 @@ double integrate_distance(const Outline &region, std::span<const Vec2> vertex, s
   // Collinear edges share a line up to the rounding of their vertices: the first of them takes the whole
   // cell.
   const double same_line = 64.0 * std::numeric_limits<double>::epsilon() * largest;
-  const auto depth = [&](std::size_t line, Vec2 x) { return dot(normal[line], vertex[line] - x); };
-  // A line that nowhere in the region comes as near as another one always is has no cell and cuts none off.
-  std::vector<std::size_t> lines_of_many;
-  std::array<std::size_t, SmallPolygon::capacity> lines_of_few;
-  std::span<std::size_t> lines = lines_of_few;
-  if (vertex.size() > lines.size()) {
-    lines_of_many.resize(vertex.size());
-    lines = lines_of_many;
-  }
-  double enough = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < vertex.size(); ++i) {
-    double farthest = -std::numeric_limits<double>::infinity();
-    for (const Vec2 x : region) {
-      farthest = std::max(farthest, depth(i, x));
-    }
-    enough = std::min(enough, farthest);
-  }
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < vertex.size(); ++i) {
-    if (std::any_of(region.begin(), region.end(),
-                    [&](Vec2 x) { return depth(i, x) <= enough + same_line; })) {
-      lines[count++] = i;
-    }
-  }
-  for (const std::size_t i : lines.first(count)) {
+  std::array<std::size_t, SmallPolygon::capacity> few;
+  std::vector<std::size_t> many(vertex.size() > few.size() ? vertex.size() : 0);
+  const auto lines = nearest_lines(region, vertex, normal, same_line,
+                                   many.empty() ? std::span<std::size_t>(few) : std::span<std::size_t>(many));
+  const auto depth = [&](std::size_t line, Vec2 x) { return depth_below(vertex, normal, line, x); };
+  double sum = 0.0;
+  for (const std::size_t i : lines) {
     Outline cell = region;
-    for (const std::size_t j : lines.first(count)) {
+    for (const std::size_t j : lines) {
       const auto margin = [&](Vec2 x) { return depth(j, x) - depth(i, x); };
       if (j == i || cell.size() < 3) {
         continue;
