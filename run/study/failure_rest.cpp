@@ -66,7 +66,7 @@ void mass_ratio(const Options &options, Boundaries &boundaries, bool heavy_above
   const double k = stiffness(2.0, 1.0);
   constexpr double ramp = 1.0;
   const auto trial = [&](double ratio) {
-    const std::string toml = head({.duration = 1.6,
+    const std::string toml = head({.duration = 3.0,
                                    .normal_stiffness = k,
                                    .friction_deg = friction_deg,
                                    .run_keys = "gravity_ramp = 1.0"}) +
@@ -81,13 +81,18 @@ void mass_ratio(const Options &options, Boundaries &boundaries, bool heavy_above
                        const EnergyLedger ledger(simulation);
                        advance(simulation, ramp);
                        const Unrest early = largest_unrest(simulation, 1.3, lower, upper);
-                       const Unrest late = largest_unrest(simulation, 1.6, lower, upper);
+                       Unrest late = largest_unrest(simulation, 1.6, lower, upper);
+                       // What is about to move is given the time to show how.
+                       while (!simulation.finished() && late.speed > 2.0 * early.speed &&
+                              late.speed <= 100.0 * early.speed) {
+                         late = largest_unrest(simulation, simulation.time() + 0.1, lower, upper);
+                       }
                        const EnergyRow energy = ledger.row(simulation);
                        const std::string text = fmt::format(
                            "depths off by {:.1e} of the closed form, speed {:.1e} m/s after {:.1e}, {} steps",
                            late.depth, late.speed, early.speed, simulation.step_count());
                        const bool is_kept = std::abs(energy.residual) < 1e-3 * energy.kinetic;
-                       if (late.speed > 2.0 * early.speed && is_kept) {
+                       if (late.speed > 100.0 * early.speed && is_kept) {
                          return Outcome{Ending::physical,
                                         fmt::format("the light block is squeezed out, {}, energy residual "
                                                     "{:.1e} of the kinetic",

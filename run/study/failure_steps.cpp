@@ -63,8 +63,8 @@ void large_steps(const Options &options, Boundaries &boundaries) {
   const Search factors = search(options, 1.0, 64.0, 10, 7);
   boundaries.add("wall of 20 bricks at rest", "step over the recommended one", "1", factors,
                  find_boundary(factors, [&](double factor) { return stays(factor, recommended); }),
-                 fmt::format("recommended {:.4g} s = 0.25 of the bound; every factor above 1 is warned of",
-                             recommended));
+                 fmt::format("recommended {:.4g} s = {:g} of the bound; every factor above 1 is warned of",
+                             recommended, RunSettings{}.safety));
 }
 
 /// 16 deformable squares that fly about in a closed box.

@@ -1,4 +1,4 @@
-// Arrays of a model in large pages: a step runs through megabytes of them, and with pages of 4 kB a tenth of
+// Arrays of a model in large pages: a step runs through megabytes of them, and with pages of 4 kB some of
 // its time goes into looking up where they are. Linux gives large pages to whoever asks for them (the usual
 // setting, "madvise"); where it has none, or on other systems, nothing changes.
 
