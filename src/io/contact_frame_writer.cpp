@@ -13,31 +13,43 @@ namespace {
 
 /// Rows of this rank's slab of lower ids, in the order of the file.
 std::vector<ContactRow> route_to_slabs(const Communicator &communicator, std::int64_t num_blocks,
-                                       const std::vector<ContactRow> &rows) {
+                                       std::vector<ContactRow> rows) {
   const bool sound = std::all_of(rows.begin(), rows.end(), [num_blocks](const ContactRow &row) {
     return 0 <= row.lower && row.lower < row.higher && row.higher < num_blocks;
   });
   expect_on_all_ranks(communicator, sound, "contact rows with valid ids, the lower first");
-  std::vector<std::vector<ContactRow>> send(static_cast<std::size_t>(communicator.size()));
-  for (const ContactRow &row : rows) {
-    send[static_cast<std::size_t>(slab_owner(num_blocks, communicator.size(), row.lower))].push_back(row);
+  std::vector<std::vector<ContactRow>> parts(static_cast<std::size_t>(communicator.size()));
+  if (parts.size() == 1) {
+    parts[0] = std::move(rows);
+  } else {
+    for (const ContactRow &row : rows) {
+      parts[static_cast<std::size_t>(slab_owner(num_blocks, communicator.size(), row.lower))].push_back(row);
+    }
+    rows = {};
   }
-  std::vector<ContactRow> slab;
-  for (const std::vector<ContactRow> &received : communicator.all_to_all(send)) {
-    slab.insert(slab.end(), received.begin(), received.end());
+  parts = communicator.all_to_all(std::move(parts));
+  std::vector<ContactRow> slab = std::move(parts.front());
+  for (std::size_t rank = 1; rank < parts.size(); ++rank) {
+    slab.insert(slab.end(), parts[rank].begin(), parts[rank].end());
+    parts[rank] = {};
   }
-  std::sort(slab.begin(), slab.end(), [](const ContactRow &a, const ContactRow &b) {
+  const auto in_file = [](const ContactRow &a, const ContactRow &b) {
     return std::tie(a.lower, a.higher, a.position) < std::tie(b.lower, b.higher, b.position);
-  });
+  };
+  if (!std::is_sorted(slab.begin(), slab.end(), in_file)) {
+    std::sort(slab.begin(), slab.end(), in_file);
+  }
   return slab;
 }
 
 } // namespace
 
-void FrameWriter::write_contacts(int index, double time, const std::vector<ContactRow> &rows) {
-  const std::vector<ContactRow> slab = route_to_slabs(communicator_, num_blocks_, rows);
+void FrameWriter::write_contacts(int index, double time, std::vector<ContactRow> rows) {
+  const std::vector<ContactRow> slab = route_to_slabs(communicator_, num_blocks_, std::move(rows));
   std::vector<Vec2> ends;
   std::vector<std::int64_t> blocks;
+  ends.reserve(2 * slab.size());
+  blocks.reserve(2 * slab.size());
   for (const ContactRow &row : slab) {
     ends.insert(ends.end(), {row.begin, row.end});
     blocks.insert(blocks.end(), {row.lower, row.higher});

@@ -31,58 +31,14 @@ std::string topology_name(int index) {
   return fmt::format("topology_{:06}.h5", index);
 }
 
-// A FrameData as one message.
-Bytes pack(const FrameData &data) {
-  const std::size_t num_rows = data.rows.size();
-  const std::size_t row_bytes = num_rows * sizeof(FrameRow);
-  const std::size_t vertex_bytes = data.vertices.size() * sizeof(Vec2);
-  Bytes bytes(sizeof(num_rows) + row_bytes + vertex_bytes);
-  std::memcpy(bytes.data(), &num_rows, sizeof(num_rows));
-  if (num_rows > 0) {
-    std::memcpy(bytes.data() + sizeof(num_rows), data.rows.data(), row_bytes);
-    std::memcpy(bytes.data() + sizeof(num_rows) + row_bytes, data.vertices.data(), vertex_bytes);
-  }
-  return bytes;
-}
-
-void unpack_behind(FrameData &data, const Bytes &bytes) {
-  std::size_t num_rows = 0;
-  std::memcpy(&num_rows, bytes.data(), sizeof(num_rows));
-  if (num_rows == 0) {
-    return;
-  }
-  const std::size_t row_bytes = num_rows * sizeof(FrameRow);
-  const std::size_t vertex_bytes = bytes.size() - sizeof(num_rows) - row_bytes;
-  const std::size_t old_rows = data.rows.size();
-  const std::size_t old_vertices = data.vertices.size();
-  data.rows.resize(old_rows + num_rows);
-  data.vertices.resize(old_vertices + vertex_bytes / sizeof(Vec2));
-  std::memcpy(data.rows.data() + old_rows, bytes.data() + sizeof(num_rows), row_bytes);
-  std::memcpy(data.vertices.data() + old_vertices, bytes.data() + sizeof(num_rows) + row_bytes, vertex_bytes);
-}
-
 // Calls act(row, first vertex, last vertex) for each row.
-template <class Act> void for_each_row(const FrameData &data, Act act) {
-  auto vertex = data.vertices.begin();
-  for (const FrameRow &row : data.rows) {
+template <class Act>
+void for_each_row(const std::vector<FrameRow> &rows, const std::vector<Vec2> &vertices, Act act) {
+  auto vertex = vertices.begin();
+  for (const FrameRow &row : rows) {
     act(row, vertex, vertex + row.num_vertices);
     vertex += row.num_vertices;
   }
-}
-
-FrameData sorted_by_block(const FrameData &data) {
-  std::vector<std::pair<const FrameRow *, const Vec2 *>> order;
-  order.reserve(data.rows.size());
-  for_each_row(data, [&](const FrameRow &row, auto first, auto) { order.emplace_back(&row, &*first); });
-  std::sort(order.begin(), order.end(), [](auto a, auto b) { return a.first->block < b.first->block; });
-  FrameData sorted;
-  sorted.rows.reserve(data.rows.size());
-  sorted.vertices.reserve(data.vertices.size());
-  for (const auto &[row, first] : order) {
-    sorted.rows.push_back(*row);
-    sorted.vertices.insert(sorted.vertices.end(), first, first + row->num_vertices);
-  }
-  return sorted;
 }
 
 bool is_sound(const FrameData &data, std::int64_t num_blocks) {
@@ -96,32 +52,56 @@ bool is_sound(const FrameData &data, std::int64_t num_blocks) {
   return num_vertices == std::ssize(data.vertices);
 }
 
-/// Rows and vertices of this rank's slab, in BlockId order.
-FrameData route_to_slabs(const Communicator &communicator, std::int64_t num_blocks, const FrameData &data) {
+using PlacedRow = std::pair<const FrameRow *, const Vec2 *>; ///< with its first vertex
+
+/// Rows and vertices of this rank's slab, in BlockId order. A frame of all blocks is the largest thing that
+/// passes through a rank: what has been handed on is freed at once.
+FrameData route_to_slabs(const Communicator &communicator, std::int64_t num_blocks, FrameData data) {
   expect_on_all_ranks(communicator, is_sound(data, num_blocks), "frame rows with valid ids and vertices");
-  std::vector<FrameData> parts(static_cast<std::size_t>(communicator.size()));
-  for_each_row(data, [&](const FrameRow &row, auto first, auto last) {
-    const int owner = slab_owner(num_blocks, communicator.size(), row.block);
-    FrameData &part = parts[static_cast<std::size_t>(owner)];
-    part.rows.push_back(row);
-    part.vertices.insert(part.vertices.end(), first, last);
-  });
-  std::vector<Bytes> send;
-  send.reserve(parts.size());
-  std::transform(parts.begin(), parts.end(), std::back_inserter(send), pack);
-
-  FrameData received;
-  for (const Bytes &bytes : communicator.all_to_all(send)) {
-    unpack_behind(received, bytes);
+  const auto num_ranks = static_cast<std::size_t>(communicator.size());
+  const auto owner_of = [&](const FrameRow &row) {
+    return static_cast<std::size_t>(slab_owner(num_blocks, communicator.size(), row.block));
+  };
+  std::vector<std::vector<FrameRow>> rows(num_ranks);
+  std::vector<std::vector<Vec2>> vertices(num_ranks);
+  if (num_ranks == 1) {
+    rows[0] = std::move(data.rows);
+    vertices[0] = std::move(data.vertices);
+  } else {
+    for_each_row(data.rows, data.vertices, [&](const FrameRow &row, auto first, auto last) {
+      rows[owner_of(row)].push_back(row);
+      vertices[owner_of(row)].insert(vertices[owner_of(row)].end(), first, last);
+    });
+    data = {};
   }
-  FrameData slab = sorted_by_block(received);
+  rows = communicator.all_to_all(std::move(rows));
+  vertices = communicator.all_to_all(std::move(vertices));
 
+  std::vector<PlacedRow> order;
+  for (std::size_t rank = 0; rank < num_ranks; ++rank) {
+    for_each_row(rows[rank], vertices[rank],
+                 [&](const FrameRow &row, auto first, auto) { order.emplace_back(&row, &*first); });
+  }
+  const auto by_block = [](const PlacedRow &a, const PlacedRow &b) {
+    return a.first->block < b.first->block;
+  };
+  const bool is_sorted = std::is_sorted(order.begin(), order.end(), by_block);
+  std::sort(order.begin(), order.begin() + (is_sorted ? 0 : std::ssize(order)), by_block);
   std::int64_t next = slab_begin(num_blocks, communicator.size(), communicator.rank());
-  const bool in_order = std::all_of(slab.rows.begin(), slab.rows.end(),
-                                    [&next](const FrameRow &row) { return row.block == next++; });
+  const bool in_order = std::all_of(order.begin(), order.end(),
+                                    [&next](const PlacedRow &row) { return row.first->block == next++; });
   expect_on_all_ranks(
       communicator, in_order && next == slab_begin(num_blocks, communicator.size(), communicator.rank() + 1),
       "each block on exactly one rank's frame data");
+  if (num_ranks == 1 && is_sorted) {
+    return {std::move(rows[0]), std::move(vertices[0])};
+  }
+  FrameData slab;
+  slab.rows.reserve(order.size());
+  for (const auto &[row, first] : order) {
+    slab.rows.push_back(*row);
+    slab.vertices.insert(slab.vertices.end(), first, first + row->num_vertices);
+  }
   return slab;
 }
 
@@ -241,9 +221,9 @@ FrameWriter::FrameWriter(const Communicator &communicator, std::filesystem::path
   on_root(communicator_, [this] { make_directory(directory_ / "frames"); });
 }
 
-void FrameWriter::write(int index, double time, const FrameData &data) {
+void FrameWriter::write(int index, double time, FrameData data) {
   expect(frames_.empty() || index > frames_.back().first, "frames in the order of their numbers");
-  const FrameData slab = route_to_slabs(communicator_, num_blocks_, data);
+  const FrameData slab = route_to_slabs(communicator_, num_blocks_, std::move(data));
   const RowRange cells = rows_in_rank_order(communicator_, std::ssize(slab.rows));
   const RowRange points = rows_in_rank_order(communicator_, std::ssize(slab.vertices));
 

@@ -168,19 +168,23 @@ void pose(BlockSystem &system, std::size_t first, std::size_t last) {
   }
 }
 
-std::vector<Vec2> current_vertices(const BlockSystem &system, std::size_t row) {
-  std::vector<Vec2> vertices;
+void append_current_vertices(const BlockSystem &system, std::size_t row, std::vector<Vec2> &vertices) {
   if (system.is_deformable(row)) {
     const Mat2 &gradient = system.deformation_of(row).gradient;
     for (const Vec2 x : system.of_row(system.reference_vertex, row)) {
       vertices.push_back(system.centroid(row) + gradient(x));
     }
-    return vertices;
+    return;
   }
   const Rotation turn = Rotation::of(system.displacement[row].r);
   for (const Vec2 x : system.of_row(system.reference_vertex, row)) {
     vertices.push_back(system.centroid(row) + turn(x));
   }
+}
+
+std::vector<Vec2> current_vertices(const BlockSystem &system, std::size_t row) {
+  std::vector<Vec2> vertices;
+  append_current_vertices(system, row, vertices);
   return vertices;
 }
 

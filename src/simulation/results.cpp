@@ -79,85 +79,107 @@ BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 sta
   return row;
 }
 
-FrameData collect_rows(const Simulation &simulation, const std::function<bool(std::int64_t)> &wanted) {
+FrameRow mobile_row(const Simulation &simulation, std::size_t index) {
   const BlockSystem &blocks = simulation.blocks();
   const ContactForces &contacts = simulation.contacts();
-  FrameData data;
-  const auto append = [&](const FrameRow &row, std::size_t index) {
-    data.rows.push_back(row);
-    const std::vector<Vec2> vertices = current_vertices(blocks, index);
-    data.vertices.insert(data.vertices.end(), vertices.begin(), vertices.end());
-  };
-  for (std::size_t index = 0; index < blocks.num_owned; ++index) {
-    if (!wanted(blocks.properties[index].id.value)) {
-      continue;
-    }
-    FrameRow row = row_of(blocks, index);
-    row.stress = blocks.is_deformable(index)
-                     ? mean_cauchy_stress(blocks.deformation_of(index), blocks.properties[index].area)
-                     : mean_stress(blocks, simulation.candidates(), contacts, index);
-    const RigidDof force = sum_contacts(simulation.candidates(), contacts, index).force;
-    row.contact_force = {force.u.x, force.u.y, force.r};
-    append(row, index);
+  FrameRow row = row_of(blocks, index);
+  row.stress = blocks.is_deformable(index)
+                   ? mean_cauchy_stress(blocks.deformation_of(index), blocks.properties[index].area)
+                   : mean_stress(blocks, simulation.candidates(), contacts, index);
+  const RigidDof force = sum_contacts(simulation.candidates(), contacts, index).force;
+  row.contact_force = {force.u.x, force.u.y, force.r};
+  return row;
+}
+
+/// Of the fixed block whose reactions come next in `reaction`, which moves on behind them.
+FrameRow fixed_row(const BlockSystem &blocks, std::size_t index,
+                   std::vector<Reaction>::const_iterator &reaction,
+                   std::vector<Reaction>::const_iterator end) {
+  const BlockProperties &block = blocks.properties[index];
+  Vec2 force;
+  Mat2 dyad;
+  for (; reaction != end && reaction->fixed == block.id.value; ++reaction) {
+    force += reaction->part.force;
+    dyad += reaction->part.dyad;
   }
+  FrameRow row = row_of(blocks, index);
+  row.stress = {dyad.xx / block.area, dyad.yy / block.area, 0.5 * (dyad.xy + dyad.yx) / block.area};
+  row.contact_force = {force.x, force.y, dyad.xy - dyad.yx};
+  return row;
+}
+
+/// Ascending by BlockId.
+FrameData collect_rows(const Simulation &simulation, const std::function<bool(std::int64_t)> &wanted,
+                       std::size_t expected) {
+  const BlockSystem &blocks = simulation.blocks();
+  FrameData data;
+  data.rows.reserve(expected);
+  data.vertices.reserve(4 * expected);
+  const auto append = [&](const FrameRow &row, std::size_t index) {
+    if (wanted(row.block)) {
+      data.rows.push_back(row);
+      append_current_vertices(blocks, index, data.vertices);
+    }
+  };
   const std::vector<Reaction> reactions = collect_reactions(simulation);
   auto reaction = reactions.begin();
-  for (std::size_t index = blocks.first_fixed(); index < blocks.num_rows(); ++index) {
-    const BlockProperties &block = blocks.properties[index];
-    if (slab_owner(simulation.num_blocks(), simulation.communicator().size(), block.id.value) !=
-        simulation.communicator().rank()) {
-      continue;
+  std::size_t fixed = blocks.first_fixed();
+  const auto append_fixed_below = [&](std::int64_t id) {
+    for (; fixed < blocks.num_rows() && blocks.properties[fixed].id.value < id; ++fixed) {
+      if (slab_owner(simulation.num_blocks(), simulation.communicator().size(),
+                     blocks.properties[fixed].id.value) == simulation.communicator().rank()) {
+        append(fixed_row(blocks, fixed, reaction, reactions.end()), fixed);
+      }
     }
-    Vec2 force;
-    Mat2 dyad;
-    for (; reaction != reactions.end() && reaction->fixed == block.id.value; ++reaction) {
-      force += reaction->part.force;
-      dyad += reaction->part.dyad;
+  };
+  for (std::size_t index = 0; index < blocks.num_owned; ++index) {
+    const std::int64_t id = blocks.properties[index].id.value;
+    append_fixed_below(id);
+    if (wanted(id)) {
+      append(mobile_row(simulation, index), index);
     }
-    if (!wanted(block.id.value)) {
-      continue;
-    }
-    FrameRow row = row_of(blocks, index);
-    row.stress = {dyad.xx / block.area, dyad.yy / block.area, 0.5 * (dyad.xy + dyad.yx) / block.area};
-    row.contact_force = {force.x, force.y, dyad.xy - dyad.yx};
-    append(row, index);
   }
+  append_fixed_below(simulation.num_blocks());
   return data;
 }
 
 } // namespace
 
 FrameData collect_frame(const Simulation &simulation) {
-  return collect_rows(simulation, [](std::int64_t) { return true; });
+  return collect_rows(
+      simulation, [](std::int64_t) { return true; }, simulation.blocks().num_owned + 1);
 }
 
 std::vector<ContactRow> collect_contacts(const Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
+  const ContactForces &contacts = simulation.contacts();
+  const Candidates &candidates = simulation.candidates();
   std::vector<ContactRow> rows;
-  const auto regions = simulation.contacts().regions();
-  std::uint32_t first_of_pair = 0;
-  for (std::uint32_t k = 0; k < regions.size(); ++k) {
-    const RegionForce &force = regions[k];
-    const CandidatePair &pair = simulation.candidates().pairs[force.pair];
-    first_of_pair = k > 0 && regions[k - 1].pair == force.pair ? first_of_pair : k;
+  rows.reserve(contacts.regions().size());
+  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) { // in the order of the file
+    const CandidatePair &pair = candidates.pairs[k];
     if (!simulation.counts_here(pair)) {
       continue;
     }
-    const RegionMemory &memory = simulation.history().regions[k];
-    const Vec2 tangent = perp(force.normal);
-    ContactRow row;
-    row.lower = blocks.properties[pair.lower.value].id.value;
-    row.higher = blocks.properties[pair.higher.value].id.value;
-    row.position = static_cast<std::int32_t>(k - first_of_pair);
-    row.joint = pair.law;
-    row.state = static_cast<std::uint8_t>(memory.state);
-    row.begin = force.point + force.extent_begin * tangent;
-    row.end = force.point + force.extent_end * tangent;
-    row.normal_force = force.normal_force;
-    row.shear_force = force.shear;
-    row.overlap = force.overlap;
-    row.slip = memory.slip;
-    rows.push_back(row);
+    std::int32_t position = 0;
+    for (const RegionForce &force : contacts.of_pair(k)) {
+      const auto region = static_cast<std::size_t>(&force - contacts.regions().data());
+      const RegionMemory &memory = simulation.history().regions[region];
+      const Vec2 tangent = perp(force.normal);
+      ContactRow row;
+      row.lower = blocks.properties[pair.lower.value].id.value;
+      row.higher = blocks.properties[pair.higher.value].id.value;
+      row.position = position++;
+      row.joint = pair.law;
+      row.state = static_cast<std::uint8_t>(memory.state);
+      row.begin = force.point + force.extent_begin * tangent;
+      row.end = force.point + force.extent_end * tangent;
+      row.normal_force = force.normal_force;
+      row.shear_force = force.shear;
+      row.overlap = force.overlap;
+      row.slip = memory.slip;
+      rows.push_back(row);
+    }
   }
   return rows;
 }
@@ -177,8 +199,8 @@ std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
     monitor_of.emplace(monitors[m].block, m);
   }
   std::vector<Found> mine;
-  const FrameData data =
-      collect_rows(simulation, [&](std::int64_t block) { return monitor_of.contains(block); });
+  const FrameData data = collect_rows(
+      simulation, [&](std::int64_t block) { return monitor_of.contains(block); }, monitors.size());
   for (const FrameRow &row : data.rows) {
     const auto [first, last] = monitor_of.equal_range(row.block);
     std::for_each(first, last, [&](const auto &entry) {

@@ -83,6 +83,7 @@ void Simulation::refresh(std::vector<RegionRecord> memory) {
   skin_ = std::max(base_skin_, steps_in_skin * reach);
 
   ghosts_.rebuild(blocks_, reach_boxes(blocks_, skin_));
+  candidates_ = {}; // the old and the new list together would be the largest thing in memory
   candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, skin_)),
                                 contacts_.parameters(), std::move(memory), history_, skin_);
   pose(blocks_, 0, blocks_.num_rows());

@@ -27,7 +27,7 @@ struct FrameRow {
   std::array<double, 3> contact_force{}; ///< N/m, N/m, N
 };
 
-/// Rows of this rank in any order; vertices are current positions, concatenated in the order of `rows`.
+/// Rows of this rank in any order, ascending ids cost least; vertices are current positions, concatenated in the order of `rows`.
 struct FrameData {
   std::vector<FrameRow> rows;
   std::vector<Vec2> vertices;
@@ -65,9 +65,9 @@ public:
   void continue_behind(const std::vector<double> &times);
 
   /// Frame number `index` (0, 1, ...); every block is in exactly one rank's data.
-  void write(int index, double time, const FrameData &data);
+  void write(int index, double time, FrameData data);
   /// The same for frames/contacts_<index>.hdf; every region is on exactly one rank.
-  void write_contacts(int index, double time, const std::vector<ContactRow> &rows);
+  void write_contacts(int index, double time, std::vector<ContactRow> rows);
   /// False once HDF5 has broken a collective write into independent ones: slow, and worth a test.
   [[nodiscard]] bool all_writes_collective() const { return all_writes_collective_; }
   /// Of all frames, s; frame k is the k-th.

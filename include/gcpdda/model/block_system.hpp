@@ -231,5 +231,7 @@ void pose(BlockSystem &system, std::size_t first, std::size_t last);
 
 /// World vertices of one row at t_n.
 std::vector<Vec2> current_vertices(const BlockSystem &system, std::size_t row);
+/// The same behind others.
+void append_current_vertices(const BlockSystem &system, std::size_t row, std::vector<Vec2> &vertices);
 
 } // namespace gcpdda

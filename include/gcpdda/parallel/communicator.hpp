@@ -46,17 +46,24 @@ public:
   /// Everybody's bytes, by rank, on every rank.
   [[nodiscard]] std::vector<Bytes> all_gather(const Bytes &mine) const;
 
+  /// What a rank sends to itself is handed over as it stands.
   template <class T>
-  [[nodiscard]] std::vector<std::vector<T>> all_to_all(const std::vector<std::vector<T>> &send) const {
+  [[nodiscard]] std::vector<std::vector<T>> all_to_all(std::vector<std::vector<T>> send) const {
     std::vector<Bytes> raw(send.size());
     for (std::size_t r = 0; r < send.size(); ++r) {
-      raw[r] = to_bytes(send[r]);
+      if (r != static_cast<std::size_t>(rank_)) {
+        raw[r] = to_bytes(send[r]);
+        send[r] = {};
+      }
     }
-    std::vector<std::vector<T>> received;
-    for (const Bytes &bytes : all_to_all(raw)) {
-      received.push_back(from_bytes<T>(bytes));
+    raw = all_to_all(raw);
+    for (std::size_t r = 0; r < send.size(); ++r) {
+      if (r != static_cast<std::size_t>(rank_)) {
+        send[r] = from_bytes<T>(raw[r]);
+        raw[r] = {};
+      }
     }
-    return received;
+    return send;
   }
   template <class T> [[nodiscard]] std::vector<std::vector<T>> all_gather(const std::vector<T> &mine) const {
     std::vector<std::vector<T>> received;

@@ -125,19 +125,19 @@ std::vector<Bytes> Communicator::all_to_all(const std::vector<Bytes> &send) cons
   expect(send.size() == num_ranks, "all_to_all: one message for each rank");
   std::vector<int> send_sizes(num_ranks);
   std::vector<int> receive_sizes(num_ranks);
+  const auto own = static_cast<std::size_t>(rank_);
   for (std::size_t r = 0; r < num_ranks; ++r) {
-    send_sizes[r] = count_of(send[r].size());
+    send_sizes[r] = r == own ? 0 : count_of(send[r].size());
   }
   check(MPI_Alltoall(send_sizes.data(), 1, MPI_INT, receive_sizes.data(), 1, MPI_INT, handle_->value),
         "MPI_Alltoall");
 
   // Only non-empty messages travel: migration has few partners, Alltoallv would visit them all.
-  const auto own = static_cast<std::size_t>(rank_);
   std::vector<Bytes> received(num_ranks);
   std::vector<MPI_Request> requests;
   requests.reserve(2 * num_ranks);
   for (std::size_t r = 0; r < num_ranks; ++r) {
-    if (r != own && receive_sizes[r] > 0) {
+    if (receive_sizes[r] > 0) {
       received[r].resize(static_cast<std::size_t>(receive_sizes[r]));
       check(MPI_Irecv(received[r].data(), receive_sizes[r], MPI_BYTE, static_cast<int>(r), data_tag,
                       handle_->value, &requests.emplace_back(MPI_REQUEST_NULL)),
@@ -145,7 +145,7 @@ std::vector<Bytes> Communicator::all_to_all(const std::vector<Bytes> &send) cons
     }
   }
   for (std::size_t r = 0; r < num_ranks; ++r) {
-    if (r != own && send_sizes[r] > 0) {
+    if (send_sizes[r] > 0) {
       check(MPI_Isend(send[r].data(), send_sizes[r], MPI_BYTE, static_cast<int>(r), data_tag, handle_->value,
                       &requests.emplace_back(MPI_REQUEST_NULL)),
             "MPI_Isend");
