@@ -1,0 +1,124 @@
+// frame_writes FOLDER [BLOCKS]: frames of quadrilaterals against one dataset of as many bytes written by
+// parallel HDF5 alone, both synced to the disk, by turns. Run by mpirun; prints medians of 7 and their ratio.
+
+#include "gcpdda/io/result_files.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fcntl.h>
+#include <iostream>
+#include <unistd.h>
+
+namespace gcpdda {
+namespace {
+
+constexpr int repeats = 7;
+
+/// Of blocks that lie on this rank in patches, as a partition leaves them.
+FrameData patches_of(const Communicator &world, std::int64_t num_blocks) {
+  constexpr std::int64_t patch = 512;
+  FrameData data;
+  for (std::int64_t id = 0; id < num_blocks; ++id) {
+    if (id / patch % world.size() != world.rank()) {
+      continue;
+    }
+    FrameRow row;
+    row.block = id;
+    row.num_vertices = 4;
+    row.rotation = 1e-3 * static_cast<double>(id);
+    data.rows.push_back(row);
+    const Vec2 corner{static_cast<double>(id % 1000), static_cast<double>(id / 1000)};
+    for (const Vec2 offset : {Vec2{0.0, 0.0}, Vec2{1.0, 0.0}, Vec2{1.0, 1.0}, Vec2{0.0, 1.0}}) {
+      data.vertices.push_back(corner + offset);
+    }
+  }
+  return data;
+}
+
+void write_plain(const Communicator &world, const std::filesystem::path &path,
+                 const std::vector<double> &mine) {
+  const MPI_Comm native = *static_cast<const MPI_Comm *>(world.native());
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fapl_mpio(access, native, MPI_INFO_NULL);
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  const hsize_t count = mine.size();
+  const hsize_t total = count * static_cast<hsize_t>(world.size());
+  const hsize_t first = count * static_cast<hsize_t>(world.rank());
+  const hid_t file_space = H5Screate_simple(1, &total, nullptr);
+  const hid_t memory_space = H5Screate_simple(1, &count, nullptr);
+  H5Sselect_hyperslab(file_space, H5S_SELECT_SET, &first, nullptr, &count, nullptr);
+  const hid_t dataset =
+      H5Dcreate2(file, "values", H5T_NATIVE_DOUBLE, file_space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t transfer = H5Pcreate(H5P_DATASET_XFER);
+  H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
+  const bool written =
+      H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory_space, file_space, transfer, mine.data()) >= 0;
+  for (const hid_t space : {file_space, memory_space}) {
+    H5Sclose(space);
+  }
+  H5Pclose(transfer);
+  H5Pclose(access);
+  H5Dclose(dataset);
+  H5Fclose(file);
+  if (!written) {
+    throw std::runtime_error("cannot write " + path.string());
+  }
+  if (world.is_root()) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    ::fsync(descriptor);
+    ::close(descriptor);
+  }
+  world.barrier();
+}
+
+template <class Act> double seconds_of(const Communicator &world, Act &&act) {
+  world.barrier();
+  const auto start = std::chrono::steady_clock::now();
+  act();
+  double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  world.max(std::span(&seconds, 1));
+  return seconds;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+int compare(const Communicator &world, const std::filesystem::path &folder, std::int64_t num_blocks) {
+  const FrameData data = patches_of(world, num_blocks);
+  FrameWriter writer(world, folder, num_blocks);
+  writer.write(0, 0.0, data); // the topology is written once in a run
+  const std::filesystem::path frame = folder / "frames" / "frame_000000.hdf";
+  const std::uintmax_t bytes = std::filesystem::file_size(frame);
+  const std::vector<double> mine(bytes / sizeof(double) / static_cast<std::size_t>(world.size()), 1.5);
+  std::vector<double> frames;
+  std::vector<double> plain;
+  for (int k = 1; k <= repeats; ++k) {
+    frames.push_back(seconds_of(world, [&] { writer.write(k, k, data); }));
+    plain.push_back(seconds_of(world, [&] { write_plain(world, folder / fmt::format("plain_{}.h5", k), mine); }));
+  }
+  if (world.is_root()) {
+    std::cout << fmt::format(
+        "{} blocks, {} ranks, {} bytes a frame: frame {:.4f} s, plain {:.4f} s, share of its "
+        "rate {:.3f}\n",
+        num_blocks, world.size(), bytes, median(frames), median(plain), median(plain) / median(frames));
+  }
+  return 0;
+}
+
+} // namespace
+} // namespace gcpdda
+
+int main(int argc, char **argv) {
+  const gcpdda::MpiScope mpi(argc, argv);
+  if (argc < 2 || argc > 3) {
+    std::cerr << "frame_writes FOLDER [BLOCKS]\n";
+    return 2;
+  }
+  return gcpdda::compare(gcpdda::Communicator::world(), argv[1], argc > 2 ? std::stoll(argv[2]) : 100000);
+}
