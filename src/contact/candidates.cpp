@@ -109,28 +109,32 @@ struct EdgeChain {
   std::size_t count = 0;
 };
 
-/// Which edges of two convex rigid blocks can take part in their contact while neither moves by more than
-/// half the skin.
+/// Which edges of two convex blocks can take part in their contact while no point of either moves by more
+/// than half the skin.
 ///
 /// Whatever touches lies in both boxes, and in the axes of either block it has moved by half the skin at most
 /// since the refresh: so it lies, as seen then, in the common part of both boxes inflated by half the skin,
 /// inflated by as much again: call it C. An edge that does not meet C cannot touch. Over C the line of edge j
 /// lies between low_j and high_j; where low_j is above the smallest high_k, line k is nearer all over C. An
 /// edge that neither touches nor is nearest is out. Where the smallest high_k is negative no point of C is
-/// inside: the blocks cannot touch.
+/// inside: the blocks cannot touch. The distances of a deformable block are those in its reference polygon,
+/// which do not change with time, at the material point that was in C.
 class ChainFinder {
 public:
   ChainFinder(const BlockSystem &system, double skin) : system_(system), half_skin_(0.5 * skin) {
     vertex_.reserve(system.reference_vertex.size());
-    normal_.reserve(system.reference_vertex.size());
+    slope_.reserve(system.reference_vertex.size());
     box_.reserve(system.num_rows());
     for (std::size_t row = 0; row < system.num_rows(); ++row) {
       const Rotation turn = Rotation::of(system.refreshed[row].r);
+      const Mat2 gradient = system.is_deformable(row) ? system.deformation_of(row).refreshed
+                                                      : Mat2{turn.c, -turn.s, turn.s, turn.c};
+      const Mat2 of_slopes = transposed(inverse(gradient));
       const Vec2 centre = system.properties[row].centroid + system.refreshed[row].u;
       Aabb box;
       for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
-        vertex_.push_back(centre + turn(system.reference_vertex[k]));
-        normal_.push_back(turn(system.reference_normal[k]));
+        vertex_.push_back(centre + gradient(system.reference_vertex[k]));
+        slope_.push_back(of_slopes(system.reference_normal[k]));
         box.include(vertex_.back());
       }
       box_.push_back(box);
@@ -160,16 +164,19 @@ public:
     return true;
   }
 
+  [[nodiscard]] bool is_deformable(std::size_t lower, std::size_t higher) const {
+    return system_.is_deformable(lower) || system_.is_deformable(higher);
+  }
+
 private:
   [[nodiscard]] bool has_few_edges(std::size_t row) const {
-    return system_.properties[row].is_convex && !system_.is_deformable(row) &&
-           system_.num_vertices(row) <= most_plain_edges;
+    return system_.properties[row].is_convex && system_.num_vertices(row) <= most_plain_edges;
   }
 
   /// Mark the edges of a block that can take part; false if none can.
   bool mark_edges(std::size_t row, const Aabb &region, double rounding) {
     const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
-    const std::span<const Vec2> normal = system_.of_row(normal_, row);
+    const std::span<const Vec2> slope = system_.of_row(slope_, row);
     takes_part_.fill(true);
     if (!std::isfinite(half_skin_)) {
       return true;
@@ -178,8 +185,8 @@ private:
     const Vec2 half = 0.5 * region.extent();
     double smallest_high = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < vertex.size(); ++j) {
-      const double middle = dot(normal[j], vertex[j] - centre);
-      const double spread = std::abs(normal[j].x) * half.x + std::abs(normal[j].y) * half.y;
+      const double middle = dot(slope[j], vertex[j] - centre);
+      const double spread = std::abs(slope[j].x) * half.x + std::abs(slope[j].y) * half.y;
       smallest_high = std::min(smallest_high, middle + spread);
       low_[j] = middle - spread;
     }
@@ -210,13 +217,13 @@ private:
   [[nodiscard]] std::size_t farthest_outside(std::size_t row, std::size_t other) const {
     const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
     const std::span<const Vec2> line = system_.of_row(vertex_, other);
-    const std::span<const Vec2> normal = system_.of_row(normal_, other);
+    const std::span<const Vec2> slope = system_.of_row(slope_, other);
     std::size_t farthest = 0;
     double most = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < vertex.size(); ++k) {
       double outside = -std::numeric_limits<double>::infinity();
       for (std::size_t j = 0; j < line.size(); ++j) {
-        outside = std::max(outside, dot(normal[j], vertex[k] - line[j]));
+        outside = std::max(outside, dot(slope[j], vertex[k] - line[j]));
       }
       if (outside > most) {
         most = outside;
@@ -229,7 +236,7 @@ private:
   const BlockSystem &system_;
   double half_skin_;
   std::vector<Vec2> vertex_; ///< at the refresh
-  std::vector<Vec2> normal_;
+  std::vector<Vec2> slope_;  ///< minus the gradient of each edge's distance, that of the reference polygon
   std::vector<Aabb> box_;
   // Of the block at hand.
   std::array<double, most_plain_edges> low_{};
@@ -246,7 +253,7 @@ void order_evaluation(const BlockSystem &system, Candidates &candidates) {
     return is_ghost(pair.lower) || is_ghost(pair.higher);
   };
   const auto order = [&](const PlainPair &plain) {
-    return std::tuple(has_ghost(plain.pair), plain.lower_edges, plain.higher_edges);
+    return std::tuple(has_ghost(plain.pair), plain.is_deformable, plain.lower_edges, plain.higher_edges);
   };
   std::stable_sort(candidates.plain.begin(), candidates.plain.end(),
                    [&](const PlainPair &a, const PlainPair &b) { return order(a) < order(b); });
@@ -376,7 +383,8 @@ Candidates make_candidates(const BlockSystem &system,
       candidates.plain.push_back({static_cast<std::uint32_t>(candidates.pairs.size() - 1), lower, higher,
                                   static_cast<std::uint32_t>(candidates.chain_vertices.size()),
                                   static_cast<std::uint8_t>(lower_chain.count),
-                                  static_cast<std::uint8_t>(higher_chain.count)});
+                                  static_cast<std::uint8_t>(higher_chain.count),
+                                  finder.is_deformable(lower.value, higher.value)});
       append_chain(system, lower.value, lower_chain, candidates.chain_vertices);
       append_chain(system, higher.value, higher_chain, candidates.chain_vertices);
     }

@@ -210,24 +210,6 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
   }
 }
 
-BlockView view_of(const BlockSystem &system, std::size_t row) {
-  BlockView view{system.of_row(system.vertex, row),      system.of_row(system.normal, row),
-                 system.of_row(system.edge_length, row), system.box[row],
-                 system.properties[row].is_convex,       {}};
-  if (system.is_deformable(row)) {
-    view.frame = {system.trial_centroid[row], system.deformation_of(row).trial,
-                  system.trial_inverse[system.deformation_begin[row]],
-                  system.of_row(system.reference_vertex, row), system.of_row(system.reference_normal, row)};
-  }
-  return view;
-}
-
-Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x) {
-  const Vec2 arm = x - system.trial_centroid[row];
-  return system.is_deformable(row) ? system.trial_inverse[system.deformation_begin[row]](arm)
-                                   : Rotation::of(-system.trial[row].r)(arm);
-}
-
 void ContactForces::add_shear(RegionForce &force, double elastic, double viscous) {
   const Vec2 tangent = perp(force.normal);
   force.shear = elastic + viscous;
@@ -389,6 +371,12 @@ void ContactForces::recall(const BlockSystem &system, const CandidatePair &pair,
 void ContactForces::find_increments(const BlockSystem &system, std::size_t first, std::size_t last) {
   for (std::size_t row = first; row < last; ++row) {
     increments_[row] = trial_increment(system, row);
+    if (system.is_deformable(row)) {
+      const std::size_t k = system.deformation_begin[row];
+      const Mat2 &to_reference = system.trial_inverse[k];
+      deforming_[k] = {determinant(to_reference) * transposed(to_reference),
+                       system.deformation[k].rate * to_reference};
+    }
   }
 }
 
@@ -402,10 +390,9 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     num_meeting += system.box[plain[k].lower.value].meets(system.box[plain[k].higher.value]) ? 1 : 0;
   }
   report_.evaluations += static_cast<std::int64_t>(num_meeting);
-  const PlainScene scene{system, candidates, history, increments_, parameters_.damping_ratio};
+  const PlainScene scene{system, candidates, history, increments_, deforming_, parameters_.damping_ratio};
   const auto alike = [&](std::size_t a, std::size_t b) {
-    return plain[meeting_[a]].lower_edges == plain[meeting_[b]].lower_edges &&
-           plain[meeting_[a]].higher_edges == plain[meeting_[b]].higher_edges;
+    return plain[meeting_[a]].is_like(plain[meeting_[b]]);
   };
   const std::size_t width = batch_->width();
   for (std::size_t begin = 0, end = 0; begin < num_meeting; begin = end) {
@@ -422,6 +409,10 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
         force.pair = pair;
         force.born = history.ranges[pair].count == 0;
         batch_->store(i - begin, force, next_.regions.emplace_back());
+        if (plain[meeting_[i]].is_deformable) {
+          damping_dyads_.resize(forces_.size());
+          damping_dyads_.back() = batch_->damping_dyad(i - begin);
+        }
         note(system, candidates.pairs[pair], force);
       }
     }
@@ -445,6 +436,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
 void ContactForces::evaluate_interior(const BlockSystem &system, const Candidates &candidates,
                                       ContactHistory &history) {
   increments_.assign(system.num_rows(), {});
+  deforming_.resize(system.deformation.size());
   find_increments(system, 0, system.num_owned);
   forces_.clear();
   damping_dyads_.clear();

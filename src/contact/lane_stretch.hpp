@@ -1,6 +1,6 @@
 #pragma once
 
-// Edges of convex rigid blocks inside one another, several contacts at a time: what overlap.hpp derives, one
+// Edges of convex blocks inside one another, several contacts at a time: what overlap.hpp derives, one
 // contact in each lane. Every step is taken by all lanes and counts where it applies, so the bits of a
 // contact do not depend on which others are computed with it.
 
@@ -21,6 +21,9 @@ struct LaneSide {
   std::size_t edges = 0;
   std::array<LaneVec, most_plain_edges + 1> vertex; ///< ends of the edges, in order
   std::array<LaneVec, most_plain_edges> normal;
+  /// Minus the gradient of the depth below each edge: the normals, but for deformable blocks F^-T N / J, N
+  /// the reference normal.
+  std::array<LaneVec, most_plain_edges> slope;
   std::array<Lanes, most_plain_edges> length;
   LaneVec low; ///< corners of the block's box
   LaneVec high;
@@ -72,7 +75,7 @@ template <std::size_t lines>
                                                PerLine<lines> &depth) {
   each<lines>([&](auto j) {
     const std::size_t k = edge_of<lines>(side, j);
-    depth[j] = dot(side.normal[k], side.vertex[k] - x);
+    depth[j] = dot(side.slope[k], side.vertex[k] - x);
   });
 }
 
@@ -148,7 +151,7 @@ void cut_edge(const LaneSide &own, std::size_t edge, const LaneSide &other, cons
   Lanes begin = 0.0;
   Lanes end = edge_length;
   each<lines>([&](auto j) {
-    slope[j] = -dot(other.normal[edge_of<lines>(other, j)], tangent);
+    slope[j] = -dot(other.slope[edge_of<lines>(other, j)], tangent);
     root[j] = -at_begin[j] / slope[j];
     const Mask enters = at_begin[j] < 0.0;
     begin = max(begin, select(enters, root[j], 0.0));
@@ -172,7 +175,7 @@ void cut_edge(const LaneSide &own, std::size_t edge, const LaneSide &other, cons
     Lanes near_end = dot(own.vertex[edge + 1] - a, tangent);
     each<lines>([&](auto j) {
       const std::size_t k = edge_of<lines>(other, j);
-      depth[j] = select(entered, dot(other.normal[k], other.vertex[k] - a), depth[j]);
+      depth[j] = select(entered, dot(other.slope[k], other.vertex[k] - a), depth[j]);
       // Of lines that let it in at the same place the one of smallest slope.
       const Mask is_entry = (at_begin[j] < 0.0) & (root[j] == begin) & (slope[j] < entry_slope);
       entry_depth = select(is_entry, depth[j], entry_depth);

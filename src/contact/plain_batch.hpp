@@ -1,7 +1,7 @@
 #pragma once
 
 // Contact forces of plain pairs (candidates.hpp), several at a time. The laws are those of
-// contact_forces.hpp, for rigid blocks and one region a pair.
+// contact_forces.hpp, for convex blocks: one region a pair.
 
 #include "gcpdda/contact/contact_forces.hpp"
 
@@ -18,6 +18,7 @@ struct PlainScene {
   const Candidates &candidates;
   const ContactHistory &history;
   std::span<const TrialIncrement> increments;
+  std::span<const DeformingBlock> deforming; ///< by entry of BlockSystem::deformation
   double damping_ratio = 0.0;
 };
 
@@ -28,12 +29,14 @@ public:
   virtual ~PlainBatch() = default;
   /// Most pairs at a time.
   [[nodiscard]] virtual std::size_t width() const = 0;
-  /// Evaluate up to width() entries of Candidates::plain with like numbers of edges.
+  /// Evaluate up to width() entries of Candidates::plain with like numbers of edges, all rigid or none.
   virtual void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries) = 0;
   [[nodiscard]] virtual bool touches(std::size_t lane) const = 0;
   /// Write the result of a lane that touches: all of the force but its pair and its birth, and what of the
   /// memory two convex blocks have.
   virtual void store(std::size_t lane, RegionForce &force, RegionMemory &memory) const = 0;
+  /// Of a lane that touches where a block is deformable.
+  [[nodiscard]] virtual Mat2 damping_dyad(std::size_t lane) const = 0;
 };
 
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions);

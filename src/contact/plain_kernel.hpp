@@ -2,6 +2,7 @@
 
 // What plain_batch.hpp promises, with one contact in each lane.
 
+#include "lane_motion.hpp"
 #include "lane_stretch.hpp"
 #include "plain_batch.hpp"
 
@@ -10,12 +11,11 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-using Rows = std::array<std::size_t, num_lanes>;
 
 /// a b^T added by entries xx, xy, yx, yy.
 [[gnu::always_inline]] inline void add_outer(std::array<Lanes, 4> &dyad, const LaneVec &a, const LaneVec &b) {
@@ -23,21 +23,6 @@ using Rows = std::array<std::size_t, num_lanes>;
   dyad[1] += a.x * b.y;
   dyad[2] += a.y * b.x;
   dyad[3] += a.y * b.y;
-}
-
-inline void load_side(const BlockSystem &system, const Rows &rows,
-                      const std::array<const std::uint32_t *, num_lanes> &chain, std::size_t edges,
-                      LaneSide &side) {
-  side.edges = edges;
-  for (std::size_t k = 0; k <= edges; ++k) {
-    side.vertex[k] = LaneVec::of([&](std::size_t i) { return &system.vertex[chain[i][k]]; });
-  }
-  for (std::size_t k = 0; k < edges; ++k) {
-    side.normal[k] = LaneVec::of([&](std::size_t i) { return &system.normal[chain[i][k]]; });
-    side.length[k] = Lanes::of([&](std::size_t i) { return system.edge_length[chain[i][k]]; });
-  }
-  side.low = LaneVec::of([&](std::size_t i) { return &system.box[rows[i]].low; });
-  side.high = LaneVec::of([&](std::size_t i) { return &system.box[rows[i]].high; });
 }
 
 /// int q ds and int q s ds of a linear q.
@@ -83,16 +68,18 @@ public:
   void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries) override;
   [[nodiscard]] bool touches(std::size_t lane) const override { return touches_[lane]; }
   void store(std::size_t lane, RegionForce &force, RegionMemory &memory) const override;
+  [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const override;
 
 private:
   struct Constants;
-  struct Motion;
   using Torques = std::array<Lanes, 2>; ///< on the lower and the higher block
 
   void integrate();
   void measure();
-  void add_friction(const Constants &constants, const Motion &motion);
-  void add_dashpot(const Constants &constants, const Motion &motion);
+  template <class AnyMotion> void add_friction(const Constants &constants, const AnyMotion &motion);
+  template <class AnyMotion> void add_dashpot(const Constants &constants, const AnyMotion &motion);
+  template <class AnyMotion>
+  void add_friction_and_dashpots(const Constants &constants, const AnyMotion &motion);
 
   LaneSide lower_;
   LaneSide higher_;
@@ -119,6 +106,7 @@ private:
   Lanes cap_;
   Mask slips_;
   LaneVec damping_force_;
+  std::array<Lanes, 4> damping_dyad_; ///< of pairs with a deformable block
   Torques torque_;
   Torques shear_torque_;
   Torques damping_torque_;
@@ -136,49 +124,6 @@ struct LaneBatch::Constants {
   Lanes shear;
   Lanes longest;
   Lanes slip;
-};
-
-/// Velocities and increments of both blocks.
-struct LaneBatch::Motion {
-  LaneVec lower_centroid;
-  LaneVec higher_centroid;
-  LaneVec lower_velocity;
-  LaneVec higher_velocity;
-  Lanes lower_spin;
-  Lanes higher_spin;
-  LaneVec lower_step;
-  LaneVec higher_step;
-  Lanes lower_sine;
-  Lanes higher_sine;
-  Lanes lower_versine;
-  Lanes higher_versine;
-
-  Motion(const BlockSystem &system, std::span<const TrialIncrement> increments, const Rows &a,
-         const Rows &b) {
-    lower_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[a[i]]; });
-    higher_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[b[i]]; });
-    lower_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[a[i]].u; });
-    higher_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[b[i]].u; });
-    lower_spin = Lanes::of([&](std::size_t i) { return system.velocity[a[i]].r; });
-    higher_spin = Lanes::of([&](std::size_t i) { return system.velocity[b[i]].r; });
-    lower_step = LaneVec::of([&](std::size_t i) { return &increments[a[i]].u; });
-    higher_step = LaneVec::of([&](std::size_t i) { return &increments[b[i]].u; });
-    lower_sine = Lanes::of([&](std::size_t i) { return increments[a[i]].turn.yx; });
-    higher_sine = Lanes::of([&](std::size_t i) { return increments[b[i]].turn.yx; });
-    lower_versine = Lanes::of([&](std::size_t i) { return increments[a[i]].turn.xx; });
-    higher_versine = Lanes::of([&](std::size_t i) { return increments[b[i]].turn.xx; });
-  }
-  /// Of the lower block's material point against the higher one's.
-  [[nodiscard, gnu::always_inline]] LaneVec velocity_at(const LaneVec &x) const {
-    return (lower_velocity + lower_spin * perp(x - lower_centroid)) -
-           (higher_velocity + higher_spin * perp(x - higher_centroid));
-  }
-  [[nodiscard, gnu::always_inline]] LaneVec slide_at(const LaneVec &x) const {
-    const LaneVec r = x - lower_centroid;
-    const LaneVec q = x - higher_centroid;
-    return (lower_step + (lower_versine * r + lower_sine * perp(r))) -
-           (higher_step + (higher_versine * q + higher_sine * perp(q)));
-  }
 };
 
 inline void LaneBatch::integrate() {
@@ -253,7 +198,7 @@ inline void LaneBatch::measure() {
   extent_end_ = high_t;
 }
 
-inline void LaneBatch::add_friction(const Constants &constants, const Motion &motion) {
+template <class AnyMotion> void LaneBatch::add_friction(const Constants &constants, const AnyMotion &motion) {
   const LaneVec tangent = perp(normal_);
   const Lanes extent = extent_end_ - extent_begin_;
   const Mask defined = touches_ & !undefined_;
@@ -287,9 +232,13 @@ inline void LaneBatch::add_friction(const Constants &constants, const Motion &mo
   shear_torque_ = {-elastic_ * lower_lever, elastic_ * higher_lever};
   damping_torque_ = {-viscous * lower_lever, viscous * higher_lever};
   damping_force_ = -viscous * tangent;
+  damping_dyad_.fill(0.0);
+  if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
+    add_outer(damping_dyad_, point_ - origin_, damping_force_);
+  }
 }
 
-inline void LaneBatch::add_dashpot(const Constants &constants, const Motion &motion) {
+template <class AnyMotion> void LaneBatch::add_dashpot(const Constants &constants, const AnyMotion &motion) {
   Lanes facing_pressure = 0.0;
   std::array<Lanes, 2 * most_plain_edges> facing;
   const auto each = [&](auto &&visit) {
@@ -307,7 +256,6 @@ inline void LaneBatch::add_dashpot(const Constants &constants, const Motion &mot
   const Lanes kept = min(1.0, normal_force_ / constants.half_stiffness /
                                   select(facing_pressure > 0.0, facing_pressure, 1.0));
   const LaneVec velocity = motion.velocity_at(origin_);
-  const Lanes spin = motion.lower_spin - motion.higher_spin;
   Lanes total = 0.0;
   LaneVec moment{0.0, 0.0};
   each([&](const LaneStretch &stretch, const LaneVec &normal, const Lanes &share, double) {
@@ -316,9 +264,8 @@ inline void LaneBatch::add_dashpot(const Constants &constants, const Motion &mot
     }
     const LaneVec begin = stretch.begin - origin_;
     const Lanes rate = constants.damping * share;
-    // The velocity field turns: v(s) = v(0) + s spin perp(t), and perp(t) = -normal.
-    const Lanes closing = -rate * dot(velocity + spin * perp(begin), normal_);
-    const Lanes slope = rate * spin * dot(normal, normal_);
+    const Lanes closing = -rate * dot(velocity + motion.velocity_change(begin), normal_);
+    const Lanes slope = -rate * dot(motion.velocity_change(perp(normal)), normal_);
     const Lanes closing_end = closing + slope * stretch.length;
     LaneTraction q;
     q.add_linear(0.0, closing, stretch.length, closing_end);
@@ -345,17 +292,31 @@ inline void LaneBatch::add_dashpot(const Constants &constants, const Motion &mot
   force_ += push;
   add_outer(dyad_, moment, normal_);
   damping_force_ += push;
+  if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
+    add_outer(damping_dyad_, moment, normal_);
+  }
   const Lanes about_origin = cross(moment, normal_);
   damping_torque_[0] += about_origin + cross(origin_ - motion.lower_centroid, push);
   damping_torque_[1] += -about_origin - cross(origin_ - motion.higher_centroid, push);
+}
+
+template <class AnyMotion>
+void LaneBatch::add_friction_and_dashpots(const Constants &constants, const AnyMotion &motion) {
+  add_friction(constants, motion);
+  if (constants.damping_ratio > 0.0) {
+    add_dashpot(constants, motion);
+  }
+  const Lanes about_origin = dyad_[1] - dyad_[2];
+  torque_[0] = about_origin + cross(origin_ - motion.lower_centroid, force_);
+  torque_[1] = -about_origin - cross(origin_ - motion.higher_centroid, force_);
 }
 
 inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries) {
   const BlockSystem &system = scene.system;
   Rows a;
   Rows b;
-  std::array<const std::uint32_t *, num_lanes> lower_chain;
-  std::array<const std::uint32_t *, num_lanes> higher_chain;
+  Chains lower_chain;
+  Chains higher_chain;
   std::array<const CandidatePair *, num_lanes> candidate;
   static constexpr RegionMemory no_memory;
   std::array<const RegionMemory *, num_lanes> memory;
@@ -374,6 +335,10 @@ inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::ui
   const PlainPair &first = scene.candidates.plain[entries[0]];
   load_side(system, a, lower_chain, first.lower_edges, lower_);
   load_side(system, b, higher_chain, first.higher_edges, higher_);
+  if (first.is_deformable) {
+    load_deformed_slopes(scene, a, lower_chain, lower_);
+    load_deformed_slopes(scene, b, higher_chain, higher_);
+  }
   cut_edges(lower_, higher_, on_lower_);
   cut_edges(higher_, lower_, on_higher_);
   origin_ = lower_.vertex[0];
@@ -401,14 +366,11 @@ inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::ui
   }
   normal_force_ = constants.half_stiffness * normal_force_;
   measure();
-  const Motion motion(system, scene.increments, a, b);
-  add_friction(constants, motion);
-  if (constants.damping_ratio > 0.0) {
-    add_dashpot(constants, motion);
+  if (first.is_deformable) {
+    add_friction_and_dashpots(constants, DeformingMotion(scene, a, b));
+  } else {
+    add_friction_and_dashpots(constants, RigidMotion(scene, a, b));
   }
-  const Lanes about_origin = dyad_[1] - dyad_[2];
-  torque_[0] = about_origin + cross(origin_ - motion.lower_centroid, force_);
-  torque_[1] = -about_origin - cross(origin_ - motion.higher_centroid, force_);
 }
 
 inline void LaneBatch::store(std::size_t lane, RegionForce &force, RegionMemory &memory) const {
@@ -439,6 +401,10 @@ inline void LaneBatch::store(std::size_t lane, RegionForce &force, RegionMemory 
   memory.longest = longest_[lane];
   memory.slip = slip_[lane];
   memory.state = slips_[lane] ? ContactState::slip : ContactState::stick;
+}
+
+inline Mat2 LaneBatch::damping_dyad(std::size_t lane) const {
+  return {damping_dyad_[0][lane], damping_dyad_[1][lane], damping_dyad_[2][lane], damping_dyad_[3][lane]};
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -95,6 +95,9 @@ TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double 
 }
 
 std::int64_t step_to_go_on_from(const TimePlan &plan, double time, double time_step, Diagnostics &notes) {
+  if (!(plan.time_step > 0.0)) {
+    return 0; // a plan with faults of its own
+  }
   const double count = time / plan.time_step;
   if (!is_whole(count)) {
     notes.push_back(

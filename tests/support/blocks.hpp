@@ -13,17 +13,22 @@
 namespace gcpdda::testing {
 
 /// Mobile blocks and then fixed ones as rows of one rank, ids in this order, posed at rest.
-inline BlockSystem system_of(const std::vector<std::vector<Vec2>> &mobile,
-                             const std::vector<std::vector<Vec2>> &fixed, double density = 1000.0) {
+inline BlockSystem system_of(
+    const std::vector<std::vector<Vec2>> &mobile, const std::vector<std::vector<Vec2>> &fixed,
+    double density = 1000.0, bool (*is_deformable)(std::size_t) = [](std::size_t) { return false; }) {
   BlockSystem system;
   Material material;
   material.density = density;
+  material.youngs_modulus = 1e9;
   for (const auto *blocks : {&mobile, &fixed}) {
     for (const std::vector<Vec2> &vertices : *blocks) {
       SceneBlock block;
       block.vertices = vertices;
       block.fixed = blocks == &fixed;
-      append_block(system, BlockId{static_cast<std::int64_t>(system.num_rows())}, block, material);
+      append_block(system, BlockId{static_cast<std::int64_t>(system.num_rows())}, block, material,
+                   block.fixed                        ? BlockKind::fixed
+                   : is_deformable(system.num_rows()) ? BlockKind::deformable
+                                                      : BlockKind::rigid);
     }
   }
   system.num_owned = mobile.size();
@@ -80,6 +85,9 @@ struct ContactBench {
     report = forces.evaluate(system, candidates, history);
     for (std::size_t row = 0; row < system.num_owned; ++row) {
       system.trial_previous[row] = system.trial[row];
+      if (system.is_deformable(row)) {
+        system.deformation_of(row).trial_previous = system.deformation_of(row).trial;
+      }
     }
     seen = {};
     if (!forces.regions().empty()) {

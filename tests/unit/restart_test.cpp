@@ -174,6 +174,10 @@ TEST(StepToGoOnFrom, IsThatOfTheTime) {
   step_to_go_on_from(plan, 0.25, 0.05, notes);
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_EQ(notes[1].severity, Severity::error) << "0.25 s are 7.5 steps";
+  // Where the times themselves have no common step there is nothing to say about the checkpoint's.
+  notes.clear();
+  EXPECT_EQ(step_to_go_on_from(TimePlan{}, 0.2, 0.05, notes), 0);
+  EXPECT_TRUE(notes.empty());
 }
 
 class CutResults : public ::testing::Test {

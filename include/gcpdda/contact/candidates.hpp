@@ -27,9 +27,9 @@ struct CandidatePair {
   bool is_plain = false;        ///< listed in Candidates::plain
 };
 
-/// A pair of convex rigid blocks with few edges, and those neighbouring ones of each that can take part in
-/// the contact before the next refresh. Whether a pair is plain depends on its shapes alone, so that no bit
-/// of a run depends on when the neighbourhood is refreshed.
+/// A pair of convex blocks with few edges, and those neighbouring ones of each that can take part in the
+/// contact before the next refresh. Whether a pair is plain depends on its shapes alone, so that no bit of a
+/// run depends on when the neighbourhood is refreshed.
 struct PlainPair {
   std::uint32_t pair = 0;
   BlockIndex lower;
@@ -38,6 +38,13 @@ struct PlainPair {
                            ///< one more than edges, then those of the higher one's
   std::uint8_t lower_edges = 0;
   std::uint8_t higher_edges = 0;
+  bool is_deformable = false; ///< at least one block is
+
+  /// May share an evaluation.
+  [[nodiscard]] bool is_like(const PlainPair &other) const {
+    return lower_edges == other.lower_edges && higher_edges == other.higher_edges &&
+           is_deformable == other.is_deformable;
+  }
 };
 
 /// A candidate pair as one of its blocks sees it.

@@ -74,6 +74,12 @@ struct TrialIncrement {
   Mat2 turn;
 };
 
+/// What contacts of a deformable block have in common.
+struct DeformingBlock {
+  Mat2 slopes; ///< F*^-T/J: of a reference normal minus the gradient of the depth below that edge
+  Mat2 rate;   ///< velocity gradient, 1/s
+};
+
 /// Something a step cannot go on with.
 struct Fault {
   enum class Cause : std::int32_t { not_finite = 0, too_deep = 1, too_fast = 2 };
@@ -187,9 +193,10 @@ private:
   ForceReport report_;              ///< of what has been evaluated so far
   ContactHistory next_;
   std::vector<TrialIncrement> increments_;
-  std::vector<Mat2> damping_dyads_; ///< by region, up to the last of a pair with a deformable block
-  Mat2 damping_dyad_;               ///< of the region at hand
-  std::vector<double> facing_;      ///< of the pieces at hand, scratch
+  std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation
+  std::vector<Mat2> damping_dyads_;       ///< by region, up to the last of a pair with a deformable block
+  Mat2 damping_dyad_;                     ///< of the region at hand
+  std::vector<double> facing_;            ///< of the pieces at hand, scratch
 };
 
 /// Sums of one block's contacts, in the order of the other blocks' ids.

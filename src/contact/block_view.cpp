@@ -1,0 +1,25 @@
+// Rows of the system as the contact integrals see them.
+
+#include "gcpdda/contact/contact_forces.hpp"
+
+namespace gcpdda {
+
+BlockView view_of(const BlockSystem &system, std::size_t row) {
+  BlockView view{system.of_row(system.vertex, row),      system.of_row(system.normal, row),
+                 system.of_row(system.edge_length, row), system.box[row],
+                 system.properties[row].is_convex,       {}};
+  if (system.is_deformable(row)) {
+    view.frame = {system.trial_centroid[row], system.deformation_of(row).trial,
+                  system.trial_inverse[system.deformation_begin[row]],
+                  system.of_row(system.reference_vertex, row), system.of_row(system.reference_normal, row)};
+  }
+  return view;
+}
+
+Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x) {
+  const Vec2 arm = x - system.trial_centroid[row];
+  return system.is_deformable(row) ? system.trial_inverse[system.deformation_begin[row]](arm)
+                                   : Rotation::of(-system.trial[row].r)(arm);
+}
+
+} // namespace gcpdda
