@@ -65,6 +65,8 @@ struct SceneBlock {
   std::string name;
   std::int32_t material = 0; ///< index into Scene::materials
   std::vector<Vec2> vertices;
+  std::vector<std::int32_t>
+      edge_joint; ///< law of each edge, index into JointLaws::laws, -1: by the materials; empty: all
   std::array<double, 3> velocity{}; ///< vx, vy (m/s), omega (rad/s)
   bool fixed = false;
   bool driven = false; ///< keeps `velocity`, or follows its table, whatever acts on it
