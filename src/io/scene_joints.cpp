@@ -75,7 +75,7 @@ private:
     read_values(law, laws_.laws.back());
     if (const toml::node *materials = law.sound("materials")) {
       assign(law, *materials->as_array(), index);
-    } else if (law.given("materials") == nullptr && law.is_table()) {
+    } else if (law.given("materials") == nullptr && law.is_table() && !source_.root.contains("region")) {
       fault(law.source(), law.subject("materials") + " is missing",
             "a law other than default is for one pair", "for example materials = [\"granite\", \"clay\"]");
     }

@@ -293,6 +293,7 @@ TEST_F(BlockFiles, MustAgreeWithTheNamesOfTheScene) {
   scene_.blocks.resize(2);
   scene_.blocks[0] = {.name = "b11",
                       .vertices = {},
+                      .edge_joint = {},
                       .velocity_table = {},
                       .fixed_points = {},
                       .loads = {},
