@@ -42,6 +42,39 @@ Aabb moved(const Aabb &box, Vec2 by) {
   return {box.low + by, box.high + by};
 }
 
+/// Whether a segment has a point in the box: the stretch that lies between its sides in x does so in y.
+bool passes(Vec2 from, Vec2 to, const Aabb &box) {
+  double first = 0.0;
+  double last = 1.0;
+  const auto keep = [&](double at, double along, double low, double high) {
+    if (along == 0.0) {
+      return low <= at && at <= high;
+    }
+    const auto [enters, leaves] = std::minmax({(low - at) / along, (high - at) / along});
+    first = std::max(first, enters);
+    last = std::min(last, leaves);
+    return first <= last;
+  };
+  return keep(from.x, to.x - from.x, box.low.x, box.high.x) &&
+         keep(from.y, to.y - from.y, box.low.y, box.high.y);
+}
+
+/// Whether a face has a point in the box. What lies around all that is known of a tile is one face with a
+/// hole, in which the tile lies: its box says nothing.
+bool meets(const PlaneFace &shape, const Aabb &box) {
+  const auto ring_passes = [&](const Ring &ring) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      if (passes(ring[k], ring[(k + 1) % ring.size()], box)) {
+        return true;
+      }
+    }
+    return false;
+  };
+  const auto surrounds = [&](const Ring &ring) { return is_inside(ring, box.low); };
+  return ring_passes(shape.outer) || std::any_of(shape.holes.begin(), shape.holes.end(), ring_passes) ||
+         (surrounds(shape.outer) && std::none_of(shape.holes.begin(), shape.holes.end(), surrounds));
+}
+
 double area_of(const PlaneFace &shape) {
   double area = signed_area(shape.outer);
   for (const Ring &hole : shape.holes) {
@@ -165,7 +198,7 @@ TileCutter::Surroundings TileCutter::look_around(const Tile &tile, CutReport &re
     std::int64_t slivers = 0;
     for (RockFace &face : about.faces) {
       face.is_certain = sees_all || holds(about.seen, face.box);
-      is_enough = is_enough && (face.is_certain || !face.box.meets(tile.box));
+      is_enough = is_enough && (face.is_certain || !face.box.meets(tile.box) || !meets(face.shape, tile.box));
       slivers += face.is_sliver && owns(tile.box, face.corner()) ? 1 : 0;
     }
     if (is_enough && region_->slivers == SliverRule::merge) {
