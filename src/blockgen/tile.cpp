@@ -184,6 +184,8 @@ std::vector<SceneBlock> TileCutter::cut(const Tile &tile, CutReport &report) {
       blocks.push_back(block_of(*face, part.outer, joints));
     }
   }
+  // A sliver that stays may be no wider than rounding.
+  std::erase_if(blocks, [](const SceneBlock &block) { return block.vertices.size() < 3; });
   return blocks;
 }
 

@@ -103,22 +103,7 @@ public:
       }
       return;
     }
-    const auto spacing = [&](std::int64_t k) {
-      return sample_length(set.spacing, {set.seed, number, k, 0, spacing_of});
-    };
-    // Line k + 1 lies spacing(k) beyond line k.
-    double offset = 0.0;
-    for (std::int64_t k = 0; offset <= lines.high; offset += spacing(k++)) {
-      if (offset >= lines.low) {
-        add_traces_of_line(set, number, k, set.origin + offset * across);
-      }
-    }
-    offset = -spacing(-1);
-    for (std::int64_t k = -1; offset >= lines.low; offset -= spacing(--k)) {
-      if (offset <= lines.high) {
-        add_traces_of_line(set, number, k, set.origin + offset * across);
-      }
-    }
+    add_scattered_lines(set, number, lines, across);
   }
 
   std::vector<Trace> take() { return std::move(traces_); }
@@ -140,6 +125,32 @@ private:
     }
     for (const Trace &part : parts_within(trace, set.within)) {
       add(part);
+    }
+  }
+
+  // Line k + 1 lies spacing(k) beyond line k, and line 0 goes through the origin. Where the origin is far
+  // outside, nobody would see that: the lines are counted from a place near the region then.
+  void add_scattered_lines(const JointSet &set, std::uint64_t number, const Extent &lines, Vec2 across) {
+    const auto spacing = [&](std::int64_t k) {
+      return sample_length(set.spacing, {set.seed, number, k, 0, spacing_of});
+    };
+    constexpr double far = 1000.0; // mean spacings
+    const double outside = std::max(lines.low, 0.0) + std::min(lines.high, 0.0);
+    const double skipped =
+        std::abs(outside) > far * set.spacing.mean ? std::floor(outside / set.spacing.mean) : 0.0;
+    const auto first = static_cast<std::int64_t>(skipped);
+    const double begin = skipped * set.spacing.mean;
+    double offset = begin;
+    for (std::int64_t k = first; offset <= lines.high; offset += spacing(k++)) {
+      if (offset >= lines.low) {
+        add_traces_of_line(set, number, k, set.origin + offset * across);
+      }
+    }
+    offset = begin - spacing(first - 1);
+    for (std::int64_t k = first - 1; offset >= lines.low; offset -= spacing(--k)) {
+      if (offset <= lines.high) {
+        add_traces_of_line(set, number, k, set.origin + offset * across);
+      }
     }
   }
 
