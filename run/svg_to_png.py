@@ -49,7 +49,7 @@ def main(svg, png):
                       color=colour(element.get("fill", "black")), zorder=5)
     axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors="#555555", linewidths=strokes))
     axes.add_collection(LineCollection(lines, colors=colours, linewidths=0.9))
-    figure.savefig(png)
+    figure.savefig(png, dpi=70)
 
 
 if __name__ == "__main__":
