@@ -1,5 +1,8 @@
 // The command line: sub-commands, the MPI scope, exceptions to exit codes.
 
+#include "blocks.hpp"
+#include "root_file.hpp"
+
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/io/scene_reader.hpp"
 #include "gcpdda/io/scene_reference.hpp"
@@ -14,10 +17,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <span>
-#include <sstream>
 
 namespace {
 
@@ -30,6 +31,7 @@ struct Arguments {
   std::string directory;
   std::vector<std::string> sets;
   std::string svg;
+  std::string json;
   int ranks = 0;
   bool overwrite = false;
 };
@@ -56,37 +58,16 @@ int announced_ranks() {
   return 1;
 }
 
-std::string read_on_root(const Communicator &world, const std::string &path) {
-  std::string text;
-  std::string trouble;
-  if (world.is_root()) {
-    std::error_code ignored;
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path, ignored)) {
-      trouble = path + ": error: cannot open the scene, no such file or no right to read it, check the path";
-    } else {
-      std::ostringstream content;
-      content << file.rdbuf();
-      text = content.str();
-    }
-  }
-  world.broadcast(trouble);
-  if (!trouble.empty()) {
-    throw FileError(trouble);
-  }
-  world.broadcast(text);
-  return text;
-}
-
 /// The scene of the arguments goes to `work`; every fault of it becomes text and exit code 3.
 template <class Work> int with_scene(const Communicator &world, const Arguments &arguments, Work &&work) {
-  const SceneReading reading =
-      read_scene(read_on_root(world, arguments.scene), arguments.scene, arguments.sets);
+  SceneReading reading =
+      read_scene(read_on_root(world, arguments.scene, "the scene"), arguments.scene, arguments.sets);
   print(world, reading.diagnostics);
   if (has_errors(reading.diagnostics)) {
     return bad_scene;
   }
   try {
+    prepare_region(world, reading.scene);
     return work(reading.scene);
   } catch (const SceneError &error) {
     Diagnostics diagnostics = error.diagnostics();
@@ -115,7 +96,8 @@ int restart(const Communicator &world, Arguments arguments) {
   arguments.scene = scene.string();
   Arguments unchanged = arguments;
   unchanged.sets.clear();
-  const SceneReading before = read_scene(read_on_root(world, arguments.scene), arguments.scene, {});
+  const SceneReading before =
+      read_scene(read_on_root(world, arguments.scene, "the scene"), arguments.scene, {});
   return with_scene(world, has_errors(before.diagnostics) ? unchanged : arguments, [&](const Scene &after) {
     return restart_scene(world, before.scene, after, arguments.directory);
   });
@@ -128,6 +110,12 @@ int inspect(const Communicator &world, const Arguments &arguments) {
       std::cout << report << std::flush;
     }
     return static_cast<int>(done);
+  });
+}
+
+int blocks(const Communicator &world, const Arguments &arguments) {
+  return with_scene(world, arguments, [&](const Scene &scene) {
+    return cut_blocks(world, scene, {arguments.svg, arguments.json});
   });
 }
 
@@ -157,6 +145,11 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   inspect_command->add_option("--ranks", arguments.ranks, "number of subdomains; default: ranks of this call")
       ->check(CLI::Range(1, most_subdomains));
   inspect_command->add_option("--svg", arguments.svg, "draw blocks and subdomains into this file");
+  CLI::App *blocks_command = app.add_subcommand(
+      "blocks", "cut the region of a scene into blocks, check and draw them without a run");
+  takes_scene(blocks_command);
+  blocks_command->add_option("--svg", arguments.svg, "draw the blocks into this file");
+  blocks_command->add_option("--json", arguments.json, "write the report for programs into this file");
   const CLI::App *reference_command =
       app.add_subcommand("reference", "print all scene keys as a Markdown page");
   try {
@@ -174,6 +167,9 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   }
   if (restart_command->parsed()) {
     return restart(world, arguments);
+  }
+  if (blocks_command->parsed()) {
+    return blocks(world, arguments);
   }
   return inspect_command->parsed() ? inspect(world, arguments) : run(world, arguments);
 }

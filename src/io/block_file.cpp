@@ -314,7 +314,7 @@ void check_against_scene(const Scene &scene, Diagnostics &faults) {
     }
   }
   for (const Monitor &monitor : scene.monitors) {
-    if (!monitor.is_point && monitor.block >= total) {
+    if (!monitor.is_point && monitor.block >= total && !scene.region.present()) {
       faults.push_back({Severity::error, monitor.where, fmt::format("no block is named '{}'", monitor.name),
                         fmt::format("those of {} are b{} to b{}", scene.block_file.path, before, total - 1),
                         "name one of these"});

@@ -99,7 +99,7 @@ private:
     const std::string who = subject(key.str(), label);
     switch (row.kind) {
     case Kind::table:
-      return check_single_table(row, key, node, who);
+      return check_single_table(row, key, node, label);
     case Kind::named_tables:
       return check_named_tables(row, node, who);
     case Kind::table_list:
@@ -112,6 +112,8 @@ private:
       return node.is_boolean() || wrong_type(row, node, who, "true or false");
     case Kind::choice:
       return check_choice(row, node, who);
+    case Kind::words:
+      return check_words(row, node, who);
     case Kind::name:
       return check_name(row, node, who);
     case Kind::text:
@@ -135,7 +137,8 @@ private:
   }
 
   bool check_single_table(const Key &row, const toml::key &key, const toml::node &node,
-                          const std::string &who) {
+                          const std::string &label) {
+    const std::string who = subject(key.str(), label);
     if (name_of(row) == "*" && !is_name(key.str())) {
       faults_->add(key.source(), fmt::format("{} is no name", who),
                    "a name holds 1 to 100 letters, digits, _ . and -", "choose another name");
@@ -146,7 +149,9 @@ private:
     const std::string parent(parent_of(row));
     const std::string path =
         parent.empty() ? std::string(key.str()) : fmt::format("{}.{}", parent, shown(key.str()));
-    check_table(*node.as_table(), row.path, fmt::format("[{}]", path));
+    check_table(*node.as_table(), row.path,
+                parent.ends_with("[]") ? fmt::format("{} of {}", key.str(), label)
+                                       : fmt::format("[{}]", path));
     return true;
   }
 
@@ -236,6 +241,18 @@ private:
                  near.empty() ? example_of(row) : fmt::format("did you mean '{}'?", near));
   }
 
+  bool check_words(const Key &row, const toml::node &node, const std::string &who) {
+    const toml::array *list = node.as_array();
+    if (list == nullptr) {
+      return wrong_type(row, node, who, "a list of words");
+    }
+    bool sound = true;
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      sound &= check_choice(row, (*list)[i], fmt::format("entry {} of {}", i, who));
+    }
+    return sound;
+  }
+
   bool check_name(const Key &row, const toml::node &node, const std::string &who) {
     if (!node.is_string()) {
       return wrong_type(row, node, who, "a string");
@@ -316,11 +333,13 @@ private:
     }
     if (points->size() < (is_polygon ? 3 : 1)) {
       return fault(node, fmt::format("{} has {} points", who, points->size()),
-                   is_polygon ? "a block has at least 3" : "at least one is needed", example_of(row));
+                   is_polygon ? fmt::format("{} has at least 3", polygon_of(row))
+                              : std::string("at least one is needed"),
+                   example_of(row));
     }
     if (points->size() > most_vertices) {
       return fault(node, fmt::format("{} has {} points", who, points->size()),
-                   fmt::format("a block has at most {}", most_vertices),
+                   fmt::format("{} has at most {}", polygon_of(row), most_vertices),
                    is_polygon ? "simplify the outline" : "leave some of them out");
     }
     bool sound = true;
@@ -329,6 +348,10 @@ private:
       sound &= check_point(row, (*points)[i], point_name);
     }
     return sound;
+  }
+
+  static std::string_view polygon_of(const Key &row) {
+    return row.path.starts_with("block[]") ? "a block" : "a line or polygon";
   }
 
   bool check_point(const Key &row, const toml::node &node, const std::string &who) {

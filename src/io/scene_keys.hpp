@@ -19,6 +19,7 @@ enum class Kind {
   number_or_auto, ///< the same, or "auto"
   boolean,
   choice, ///< one of a few words
+  words,  ///< a list of some of a few words
   name,
   text, ///< any one line
   pair_of_names,

@@ -104,7 +104,9 @@ private:
         return true;
       }
     }
-    return scene_->block_file.path.empty() && source_.root.contains("blocks") && name.starts_with('b');
+    const bool no_file = scene_->block_file.path.empty() && source_.root.contains("blocks");
+    const bool no_region = !scene_->region.present() && source_.root.contains("region");
+    return (no_file || no_region) && name.starts_with('b');
   }
 
   std::optional<Monitor> read_point(const Section &section) {
@@ -142,8 +144,10 @@ private:
       }
     }
     const bool is_number = name.find_first_not_of("0123456789", 1) == std::string::npos;
-    if (!scene_->block_file.path.empty() && name.starts_with('b') && name.size() > 1 && is_number) {
-      return fmt::format("the blocks of the file begin with b{}", num_blocks(*scene_));
+    const bool has_file = !scene_->block_file.path.empty();
+    if ((has_file || scene_->region.present()) && name.starts_with('b') && name.size() > 1 && is_number) {
+      return fmt::format("the blocks of the {} begin with b{}", has_file ? "file" : "region",
+                         num_blocks(*scene_));
     }
     const std::string near = nearest_word(name, names_);
     return near.empty() ? "unnamed blocks are b<n>, from 0 in file order"

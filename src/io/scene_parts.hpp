@@ -83,6 +83,11 @@ std::vector<BrickGenerator> read_generators(const SceneSource &source, Materials
 BlockFile read_block_file_table(const SceneSource &source, Materials &materials, Fidelity of_run,
                                 const std::string &scene_file);
 
+/// [region] and everything that lies in it. Joint maps are named, not read.
+/// @param scene_file  as the user gave it: the paths of joint maps start from its folder
+RockRegion read_region(const SceneSource &source, Materials &materials, const JointLaws &joints,
+                       const std::string &scene_file);
+
 /// @param scene  with all its blocks
 std::vector<Monitor> read_monitors(const SceneSource &source, const Scene &scene);
 

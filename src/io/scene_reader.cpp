@@ -21,10 +21,10 @@ void expect_blocks(const SceneSource &source) {
       return;
     }
   }
-  if (!source.root.contains("blocks")) {
+  if (!source.root.contains("blocks") && !source.root.contains("region")) {
     source.faults.add(source.root.source(), "the scene has no blocks",
-                      "at least one block, wall, pyramid or block file is required",
-                      "write [[block]], [[wall]], [[pyramid]] or [blocks]");
+                      "at least one block, wall, pyramid, block file or region is required",
+                      "write [[block]], [[wall]], [[pyramid]], [blocks] or [region]");
   }
 }
 
@@ -39,15 +39,22 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.blocks = read_blocks(source, materials, names, fidelity, scene.joints);
   scene.generators = read_generators(source, materials, names, fidelity, scene.blocks);
   scene.block_file = read_block_file_table(source, materials, fidelity, file);
+  scene.region = read_region(source, materials, scene.joints, file);
   scene.output = read_output(source, scene.run.duration);
   scene.monitors = read_monitors(source, scene);
 }
 
 /// The resolved scene will lie in another folder, and may be read from a third one.
-void name_from_everywhere(const BlockFile &file, toml::table &root) {
-  const std::string path = file.path.empty() ? "" : std::filesystem::absolute(file.path).string();
-  if (!path.empty() && path.size() <= longest_text) {
-    *root["blocks"]["file"].as_string() = path;
+void name_from_everywhere(const Scene &scene, toml::table &root) {
+  const auto name = [](const std::string &path, toml::node *node) {
+    const std::string whole = path.empty() ? "" : std::filesystem::absolute(path).string();
+    if (!whole.empty() && whole.size() <= longest_text) {
+      *node->as_string() = whole;
+    }
+  };
+  name(scene.block_file.path, root["blocks"]["file"].node());
+  for (std::size_t i = 0; i < scene.region.maps.size(); ++i) {
+    name(scene.region.maps[i].path, root["joint_map"][i]["file"].node());
   }
 }
 
@@ -70,7 +77,7 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     read_parts({*root, faulty, faults}, file, reading.scene);
     reading.diagnostics = faults.sorted();
     if (!has_errors(reading.diagnostics)) {
-      name_from_everywhere(reading.scene.block_file, *root);
+      name_from_everywhere(reading.scene, *root);
       reading.scene.resolved = to_toml(*root, origins);
     }
   } else {

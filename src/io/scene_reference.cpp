@@ -46,6 +46,8 @@ std::string_view type_of(const Key &key) {
     return "boolean";
   case Kind::choice:
     return "word";
+  case Kind::words:
+    return "list of words";
   case Kind::name:
     return "name";
   case Kind::text:
@@ -71,7 +73,7 @@ std::string_view type_of(const Key &key) {
 }
 
 std::string allowed(const Key &key) {
-  if (key.kind == Kind::choice) {
+  if (key.kind == Kind::choice || key.kind == Kind::words) {
     std::string words;
     for (const std::string &word : words_of(key.choices)) {
       words += fmt::format("{}`{}`", words.empty() ? "" : ", ", word);

@@ -95,6 +95,12 @@ std::vector<Section> Section::list(std::string_view key) const {
   return sections;
 }
 
+std::optional<Section> Section::table(std::string_view key) const {
+  const toml::node *node = sound(key);
+  return node == nullptr ? std::nullopt
+                         : std::optional(Section(node, fmt::format("{} of {}", key, label_), *faulty_));
+}
+
 std::optional<std::string> Section::text(std::string_view key) const {
   const toml::node *node = sound(key);
   return node == nullptr ? std::nullopt : node->value<std::string>();

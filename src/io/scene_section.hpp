@@ -52,6 +52,8 @@ public:
   void read(std::string_view key, std::int64_t &value) const;
   /// The tables of a list below; none if the list as a whole is at fault.
   [[nodiscard]] std::vector<Section> list(std::string_view key) const;
+  /// The table below, "<key> of <this>" in messages; nothing where it is absent or at fault.
+  [[nodiscard]] std::optional<Section> table(std::string_view key) const;
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;
 
   /// The words of a choice stand in the order of the enumerators.

@@ -147,11 +147,12 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
 }
 
 bool is_named_list(std::string_view key) {
-  return key == "block" || key == "wall" || key == "pyramid";
+  return key == "block" || key == "wall" || key == "pyramid" || key == "joint_set" || key == "fault" ||
+         key == "opening";
 }
 
-// Finds the block, wall or pyramid that path[1], or path[1] to path[k] joined by dots (names may hold dots),
-// names, and takes these segments off the path.
+// Finds the block, wall, joint set or other element with a name that path[1], or path[1] to path[k] joined by
+// dots (names may hold dots), names, and takes these segments off the path.
 toml::table *find_element(toml::table &root, Path &path, const toml::source_region &where, Faults &faults) {
   const std::string list = path.front();
   std::vector<std::string> names;

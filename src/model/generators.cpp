@@ -165,7 +165,7 @@ SceneBlock make_block(const BrickGenerator &generator, std::int64_t index) {
 }
 
 std::int64_t num_blocks(const Scene &scene) {
-  auto count = static_cast<std::int64_t>(scene.blocks.size()) + scene.block_file.num_blocks;
+  auto count = static_cast<std::int64_t>(scene.blocks.size()) + scene.block_file.num_blocks + scene.num_region_blocks;
   for (const BrickGenerator &generator : scene.generators) {
     count += num_blocks(generator);
   }
@@ -196,6 +196,9 @@ SourcePosition block_position(const Scene &scene, std::int64_t id) {
   if (origin.generator != nullptr) {
     return origin.generator->where;
   }
+  if (origin.index >= scene.block_file.num_blocks && scene.region.present()) {
+    return scene.region.where;
+  }
   return {scene.block_file.path + ", block " + std::to_string(origin.index), 0, 0};
 }
 
@@ -208,12 +211,15 @@ std::int64_t find_generated_block(const Scene &scene, std::string_view name) {
     }
     first += num_blocks(generator);
   }
-  if (scene.block_file.path.empty() || !name.starts_with('b')) {
+  const bool has_file = !scene.block_file.path.empty();
+  const bool has_region = scene.region.present();
+  if ((!has_file && !has_region) || !name.starts_with('b')) {
     return -1;
   }
   const std::int64_t id = to_number(name.substr(1));
-  const bool count_known = scene.block_file.num_blocks > 0;
-  return id >= first && (!count_known || id < first + scene.block_file.num_blocks) ? id : -1;
+  const bool count_known =
+      (!has_file || scene.block_file.num_blocks > 0) && (!has_region || scene.num_region_blocks > 0);
+  return id >= first && (!count_known || id < num_blocks(scene)) ? id : -1;
 }
 
 } // namespace gcpdda

@@ -18,6 +18,7 @@
 #include "gcpdda/model/stiffness.hpp"
 #include "gcpdda/parallel/migration.hpp"
 #include "gcpdda/parallel/packing.hpp"
+#include "gcpdda/simulation/region_slabs.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -99,7 +100,8 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
 // Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
 void Simulation::distribute(const std::filesystem::path &restart_from) {
   stop_on_errors(open_block_file(communicator_, scene_));
-  std::vector<SceneBlock> slab = load_slab();
+  std::vector<SceneBlock> slab = load_slab(cut_region());
+  note_groups(slab);
   resolve_stiffness(slab);
   place_monitors(slab);
   survey(slab);
@@ -123,8 +125,10 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
   map_ = partition_cells(map_.grid, count_contact_work(), communicator_.size(), &partition_);
 }
 
-std::vector<SceneBlock> Simulation::load_slab() {
-  const std::int64_t num_listed = num_blocks() - scene_.block_file.num_blocks;
+/// @param cut  what this rank has cut out of the region
+std::vector<SceneBlock> Simulation::load_slab(std::vector<SceneBlock> cut) {
+  const std::int64_t num_before_region = num_blocks() - scene_.num_region_blocks;
+  const std::int64_t num_listed = num_before_region - scene_.block_file.num_blocks;
   const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
   const std::int64_t last = slab_begin(num_blocks(), communicator_.size(), communicator_.rank() + 1);
   std::vector<SceneBlock> slab;
@@ -133,8 +137,13 @@ std::vector<SceneBlock> Simulation::load_slab() {
     slab.push_back(block_of(scene_, id));
   }
   if (!scene_.block_file.path.empty()) {
-    stop_on_errors(read_block_file(communicator_, scene_, std::max(first, num_listed) - num_listed,
-                                   std::max(last, num_listed) - num_listed, slab));
+    const auto in_file = [&](std::int64_t id) {
+      return std::clamp(id, num_listed, num_before_region) - num_listed;
+    };
+    stop_on_errors(read_block_file(communicator_, scene_, in_file(first), in_file(last), slab));
+  }
+  if (scene_.region_blocks) {
+    send_to_slabs(communicator_, num_blocks(), num_before_region, std::move(cut), slab);
   }
   return slab;
 }

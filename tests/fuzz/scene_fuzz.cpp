@@ -114,7 +114,7 @@ void check_scene(const Scene &scene) {
     first += num_blocks(generator);
   }
   require(first <= 2'147'483'647, "ids fit 32 bits");
-  const bool has_file = !scene.block_file.path.empty();
+  const bool has_file = !scene.block_file.path.empty() || scene.region.present();
   require(first >= 1 || has_file, "a scene has blocks");
   for (const Monitor &monitor : scene.monitors) {
     require(monitor.is_point || (monitor.block >= 0 && (monitor.block < first || has_file)),

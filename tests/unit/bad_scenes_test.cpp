@@ -339,8 +339,9 @@ TEST(BadScene, NothingAtAll) {
       "s.toml:1:1: error: 'run' is missing, it is required, write [run]",
       "s.toml:1:1: error: 'material' is missing, it is required, write [material.granite]",
       "s.toml:1:1: error: 'joint' is missing, it is required, write [joint.default]",
-      "s.toml:1:1: error: the scene has no blocks, at least one block, wall, pyramid or block file is "
-      "required, write [[block]], [[wall]], [[pyramid]] or [blocks]"};
+      "s.toml:1:1: error: the scene has no blocks, at least one block, wall, pyramid, block file or region "
+      "is "
+      "required, write [[block]], [[wall]], [[pyramid]], [blocks] or [region]"};
   EXPECT_EQ(messages(""), expected);
 }
 

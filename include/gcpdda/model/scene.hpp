@@ -3,9 +3,11 @@
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/joint_law.hpp"
+#include "gcpdda/model/rock_region.hpp"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -67,6 +69,7 @@ struct SceneBlock {
   std::vector<Vec2> vertices;
   std::vector<std::int32_t>
       edge_joint; ///< law of each edge, index into JointLaws::laws, -1: by the materials; empty: all
+  std::int32_t opening = -1;        ///< index into RockRegion::openings, -1: in none
   std::array<double, 3> velocity{}; ///< vx, vy (m/s), omega (rad/s)
   bool fixed = false;
   bool driven = false; ///< keeps `velocity`, or follows its table, whatever acts on it
@@ -117,15 +120,27 @@ struct Monitor {
   SourcePosition where;
 };
 
+/// Blocks that have a name together: those within an opening.
+struct BlockGroup {
+  std::string name;
+  std::vector<std::int64_t> blocks; ///< ids, ascending
+};
+
+class BlockSource;
+
 /// The whole input after validation; every rank holds the same one.
 struct Scene {
   std::string stem; ///< file name without folder and extension
   RunSettings run;
   std::vector<Material> materials; ///< in file order
   JointLaws joints;
-  std::vector<SceneBlock> blocks;         ///< of the scene file, the first BlockIds
-  std::vector<BrickGenerator> generators; ///< the next ones
-  BlockFile block_file;                   ///< the last ones
+  std::vector<SceneBlock> blocks;                   ///< of the scene file, the first BlockIds
+  std::vector<BrickGenerator> generators;           ///< the next ones
+  BlockFile block_file;                             ///< after them
+  RockRegion region;                                ///< its blocks are the last ones
+  std::shared_ptr<const BlockSource> region_blocks; ///< what cuts the region; null without one
+  std::int64_t num_region_blocks = 0;               ///< 0 until the region has been cut
+  std::vector<BlockGroup> groups;                   ///< one of each opening once the region has been cut
   OutputSettings output;
   std::vector<Monitor> monitors;
   std::string resolved; ///< the scene after --set, as TOML text

@@ -145,7 +145,9 @@ private:
   void distribute(const std::filesystem::path &restart_from);
   void identify(std::span<const SceneBlock> slab);
   void go_on();
-  [[nodiscard]] std::vector<SceneBlock> load_slab();
+  [[nodiscard]] std::vector<SceneBlock> cut_region();
+  [[nodiscard]] std::vector<SceneBlock> load_slab(std::vector<SceneBlock> cut);
+  void note_groups(std::span<const SceneBlock> slab);
   void resolve_stiffness(std::span<const SceneBlock> slab);
   void survey(std::span<const SceneBlock> slab);
   void find_laws_on_edges(std::span<const SceneBlock> slab);

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "gcpdda/base/diagnostic.hpp"
+#include "gcpdda/model/scene.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace gcpdda {
+
+/// Blocks that are made tile by tile. What a tile holds depends on the scene alone, so every rank can make
+/// its share of the tiles without asking the others; ids follow the tiles. How many blocks there are is not
+/// known before.
+class BlockSource {
+public:
+  struct Made {
+    std::vector<SceneBlock> blocks; ///< in the order of the tiles; names and positions stay empty
+    Diagnostics faults;             ///< of these tiles
+  };
+
+  virtual ~BlockSource() = default;
+  [[nodiscard]] virtual std::int64_t num_tiles() const = 0;
+  /// Blocks of the tiles [first, last).
+  [[nodiscard]] virtual Made make(std::int64_t first, std::int64_t last) const = 0;
+
+protected:
+  BlockSource() = default;
+  BlockSource(const BlockSource &) = default;
+  BlockSource &operator=(const BlockSource &) = default;
+};
+
+} // namespace gcpdda

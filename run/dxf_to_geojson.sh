@@ -1,0 +1,20 @@
+#!/bin/sh
+# Joint traces from a DXF drawing, as a map for [[joint_map]]: run/dxf_to_geojson.sh IN.dxf OUT.geojson [LAYER]
+# Lines, polylines, arcs and splines (the curves as chords) of all layers or of one; units stay those of the
+# drawing, which must be m. Needs ogr2ogr (Debian package gdal-bin), which gcpdda itself does not.
+set -eu
+if [ $# -lt 2 ] || [ $# -gt 3 ]; then
+  sed -n '2,4s/^# //p' "$0" >&2
+  exit 2
+fi
+if ! command -v ogr2ogr > /dev/null; then
+  echo "error: ogr2ogr is missing, it reads the drawing, install the package gdal-bin" >&2
+  exit 4
+fi
+where="OGR_GEOMETRY LIKE '%LINESTRING%'"
+if [ $# -eq 3 ]; then
+  where="$where AND Layer = '$3'"
+fi
+rm -f "$2"
+# RFC7946=NO: coordinates are metres of the drawing, not degrees.
+ogr2ogr -f GeoJSON "$2" "$1" entities -dim XY -where "$where" -lco RFC7946=NO -lco COORDINATE_PRECISION=12

@@ -1,0 +1,58 @@
+#!/usr/bin/python3
+"""Turn a picture of `gcpdda blocks --svg` or `gcpdda inspect --svg` into PNG: svg_to_png.py IN.svg OUT.png"""
+import re
+import sys
+import xml.etree.ElementTree as xml
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import hsv_to_rgb
+
+
+def colour(text):
+    """'#rrggbb', a name, or hsl(h,s%,l%)."""
+    match = re.fullmatch(r"hsl\(([\d.]+),([\d.]+)%,([\d.]+)%\)", text)
+    if not match:
+        return text
+    hue, saturation, light = float(match[1]) / 360, float(match[2]) / 100, float(match[3]) / 100
+    value = light + saturation * min(light, 1 - light)
+    return tuple(hsv_to_rgb((hue, 2 * (1 - light / value) if value > 0 else 0, value)))
+
+
+def main(svg, png):
+    root = xml.parse(svg).getroot()
+    width, height = float(root.get("width")), float(root.get("height"))
+    figure = plt.figure(figsize=(width / 100, height / 100), dpi=100)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(0, width), ylim=(height, 0))
+    axes.axis("off")
+    polygons, fills, strokes = [], [], []
+    lines, colours = [], []
+    for element in root:
+        kind = element.tag.split("}")[-1]
+        if kind == "polygon":
+            polygons.append([tuple(map(float, p.split(","))) for p in element.get("points").split()])
+            fills.append(colour(element.get("fill")))
+            strokes.append(float(element.get("stroke-width")))
+        elif kind == "path":
+            numbers = list(map(float, re.findall(r"[-\d.]+", element.get("d"))))
+            lines.append([numbers[:2], numbers[2:]])
+            colours.append(colour(element.get("stroke")))
+        elif kind == "circle":
+            axes.add_patch(plt.Circle((float(element.get("cx")), float(element.get("cy"))), float(element.get("r")),
+                                      fill=False, color=element.get("stroke"), lw=1.5, zorder=4))
+        elif kind == "text":
+            axes.text(float(element.get("x")), float(element.get("y")), element.text, fontsize=9,
+                      color=colour(element.get("fill", "black")), zorder=5)
+    axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors="#555555", linewidths=strokes))
+    axes.add_collection(LineCollection(lines, colors=colours, linewidths=0.9))
+    figure.savefig(png, dpi=70)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    main(sys.argv[1], sys.argv[2])

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "gcpdda/model/scene.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+
+#include <string>
+
+namespace gcpdda {
+
+/// What the command line says of gcpdda blocks.
+struct BlocksOptions {
+  std::string svg;  ///< picture; empty for none, as below
+  std::string json; ///< report for programs
+};
+
+/// Reads what the region of a valid scene needs and gives the scene what cuts it. Without a region nothing
+/// happens. Collective.
+/// @throws SceneError, FileError
+void prepare_region(const Communicator &world, Scene &scene);
+
+/// Cuts the region of a prepared scene, checks and draws its blocks and prints a report on the root.
+/// Collective.
+/// @return exit code: 0, or 1 where the areas of the blocks do not add up to that of the region
+/// @throws SceneError, FileError
+int cut_blocks(const Communicator &world, const Scene &scene, const BlocksOptions &options);
+
+} // namespace gcpdda

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "gcpdda/parallel/communicator.hpp"
+
+#include <string>
+
+namespace gcpdda {
+
+/// Text of a file that the root reads, on all ranks. Collective; throws FileError on all ranks.
+/// @param who  what the message calls it: "the scene"
+std::string read_on_root(const Communicator &world, const std::string &path, const std::string &who);
+
+/// The root writes a text. Collective; throws FileError on all ranks.
+void write_on_root(const Communicator &world, const std::string &path, const std::string &text,
+                   const std::string &who);
+
+} // namespace gcpdda

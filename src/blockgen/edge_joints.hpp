@@ -1,0 +1,36 @@
+#pragma once
+
+#include "traces.hpp"
+
+#include <span>
+#include <vector>
+
+namespace gcpdda::blockgen {
+
+/// Finds the trace an edge of a face comes from.
+class EdgeJoints {
+public:
+  /// @param traces    what the faces were made of; they must stay
+  /// @param tolerance farther from a trace than this an edge is not of it, m
+  EdgeJoints(std::span<const Trace> traces, const Aabb &box, double tolerance);
+
+  /// Joint of the first trace that the edge lies on, -1 if none.
+  [[nodiscard]] std::int32_t of(Vec2 from, Vec2 to) const;
+
+private:
+  void enter(std::size_t trace);
+  [[nodiscard]] std::size_t column(double x) const;
+  [[nodiscard]] std::size_t row(double y) const;
+  [[nodiscard]] bool lies_on(Vec2 p, const Trace &trace) const;
+
+  std::span<const Trace> traces_;
+  Aabb box_;
+  double tolerance_;
+  std::size_t num_columns_ = 1;
+  std::size_t num_rows_ = 1;
+  double width_ = 1.0;                           ///< of a bin, m
+  double height_ = 1.0;                          ///< of a bin, m
+  std::vector<std::vector<std::uint32_t>> bins_; ///< traces that pass, ascending
+};
+
+} // namespace gcpdda::blockgen

@@ -1,0 +1,164 @@
+#include "gcpdda/blockgen/region_cutter.hpp"
+
+#include "tile.hpp"
+
+#include "gcpdda/geometry/polygon.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gcpdda {
+
+namespace {
+
+/// Where GEOS has its origin: at [0, 0], or, for a region far from there, at a point whose distances from all
+/// vertices have no rounding error and give these vertices back.
+Vec2 origin_for(const Aabb &box) {
+  const Vec2 extent = box.extent();
+  const double size = std::max(extent.x, extent.y);
+  const double unit = std::exp2(std::ceil(std::log2(size)));
+  const auto coordinate = [&](double low, double high) {
+    constexpr double far = 8.0;
+    return std::max(std::abs(low), std::abs(high)) <= far * size
+               ? 0.0
+               : std::round(0.5 * (low + high) / unit) * unit;
+  };
+  return {coordinate(box.low.x, box.high.x), coordinate(box.low.y, box.high.y)};
+}
+
+bool any_fixed(const RockRegion &region) {
+  return std::find(region.fixed.begin(), region.fixed.end(), true) != region.fixed.end();
+}
+
+Diagnostic sliver_fault(const RockRegion &region, Vec2 at) {
+  return {Severity::error, region.where, fmt::format("the block at [{:.9g}, {:.9g}] is a sliver", at.x, at.y),
+          fmt::format("its mean width is below {:g} m or its area below {:g} m2, and slivers = \"refuse\"",
+                      region.min_width, region.min_area),
+          "move a joint, lower min_width and min_area, or use slivers = \"merge\""};
+}
+
+} // namespace
+
+RegionCutter::RegionCutter(const Scene &scene, std::int64_t blocks_per_tile)
+    : region_(scene.region), around_(bounding_box(region_.outline)), origin_(origin_for(around_)) {
+  const double expected = expected_blocks(region_);
+  const double area = signed_area(region_.outline);
+  constexpr double halo_in_blocks = 3.0;
+  halo_ = halo_in_blocks * std::sqrt(area / expected);
+  // The smallest vertex of a block may lie on the upper side: it belongs to the last row.
+  constexpr double beyond = 1e-9;
+  const Vec2 extent = around_.extent();
+  around_ = around_.inflated(beyond * std::max(extent.x, extent.y));
+  const double tiles = std::ceil(expected / static_cast<double>(blocks_per_tile));
+  const double columns = std::clamp(std::round(std::sqrt(tiles * extent.x / extent.y)), 1.0, tiles);
+  num_columns_ = static_cast<std::int64_t>(columns);
+  num_rows_ = static_cast<std::int64_t>(std::ceil(tiles / columns));
+}
+
+std::int64_t RegionCutter::num_tiles() const {
+  return num_columns_ * num_rows_ + (any_fixed(region_) ? 1 : 0);
+}
+
+RegionCutter::Made RegionCutter::make(std::int64_t first, std::int64_t last) const {
+  CutReport report;
+  return make(first, last, report);
+}
+
+RegionCutter::Made RegionCutter::make(std::int64_t first, std::int64_t last, CutReport &report) const {
+  Aabb share;
+  const std::int64_t last_cut = std::min(last, num_columns_ * num_rows_);
+  for (std::int64_t tile = first; tile < last_cut; ++tile) {
+    share.include(tile_box(tile));
+  }
+  // Joints are drawn once for all tiles of the share, and once more where a halo must grow beyond it.
+  const Aabb known = share.inflated(2.0 * halo_);
+  const std::vector<blockgen::Trace> traces =
+      first < last_cut ? blockgen::traces_in(region_, known) : std::vector<blockgen::Trace>();
+  blockgen::TileCutter cutter(region_, origin_, [&](const Aabb &box) {
+    if (!known.holds(box.low) || !known.holds(box.high)) {
+      return blockgen::traces_in(region_, box);
+    }
+    std::vector<blockgen::Trace> near;
+    for (std::size_t k = 0; k < traces.size(); ++k) {
+      if (k < region_.outline.size() || traces[k].box().meets(box)) { // the outline always: traces_in()
+        near.push_back(traces[k]);
+      }
+    }
+    return near;
+  });
+  Made made;
+  for (std::int64_t tile = first; tile < last_cut; ++tile) {
+    std::vector<SceneBlock> blocks = cutter.cut({tile_box(tile), halo_}, report);
+    std::move(blocks.begin(), blocks.end(), std::back_inserter(made.blocks));
+  }
+  if (last_cut < last) {
+    std::vector<SceneBlock> blocks = fixed_blocks();
+    std::move(blocks.begin(), blocks.end(), std::back_inserter(made.blocks));
+  }
+  if (region_.slivers == SliverRule::refuse) {
+    for (const Vec2 at : report.kept_slivers) {
+      made.faults.push_back(sliver_fault(region_, at));
+    }
+  }
+  return made;
+}
+
+Aabb RegionCutter::tile_box(std::int64_t tile) const {
+  const Vec2 extent = around_.extent();
+  const auto column = static_cast<double>(tile % num_columns_);
+  const auto row = static_cast<double>(tile / num_columns_);
+  const double width = extent.x / static_cast<double>(num_columns_);
+  const double height = extent.y / static_cast<double>(num_rows_);
+  return {{around_.low.x + column * width, around_.low.y + row * height},
+          {around_.low.x + (column + 1.0) * width, around_.low.y + (row + 1.0) * height}};
+}
+
+// Along the part of each side that the region touches; those below and above reach over the corners.
+std::vector<SceneBlock> RegionCutter::fixed_blocks() const {
+  const Aabb box = bounding_box(region_.outline);
+  const double t = region_.fixed_thickness;
+  std::vector<SceneBlock> blocks;
+  const auto is_fixed = [&](Side side) { return region_.fixed[static_cast<std::size_t>(side)]; };
+  const auto add = [&](Vec2 low, Vec2 high) {
+    SceneBlock block;
+    block.material = region_.material;
+    block.fixed = true;
+    block.vertices = {low, {high.x, low.y}, high, {low.x, high.y}};
+    blocks.push_back(std::move(block));
+  };
+  const auto touched = [&](auto is_on_side, auto along) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Vec2 p : region_.outline) {
+      if (is_on_side(p)) {
+        low = std::min(low, along(p));
+        high = std::max(high, along(p));
+      }
+    }
+    return std::pair(low, high);
+  };
+  const auto x_of = [](Vec2 p) { return p.x; };
+  const auto y_of = [](Vec2 p) { return p.y; };
+  if (is_fixed(Side::bottom)) {
+    const auto [low, high] = touched([&](Vec2 p) { return p.y == box.low.y; }, x_of);
+    add({low - t, box.low.y - t}, {high + t, box.low.y});
+  }
+  if (is_fixed(Side::left)) {
+    const auto [low, high] = touched([&](Vec2 p) { return p.x == box.low.x; }, y_of);
+    add({box.low.x - t, low}, {box.low.x, high});
+  }
+  if (is_fixed(Side::right)) {
+    const auto [low, high] = touched([&](Vec2 p) { return p.x == box.high.x; }, y_of);
+    add({box.high.x, low}, {box.high.x + t, high});
+  }
+  if (is_fixed(Side::top)) {
+    const auto [low, high] = touched([&](Vec2 p) { return p.y == box.high.y; }, x_of);
+    add({low - t, box.high.y}, {high + t, box.high.y + t});
+  }
+  return blocks;
+}
+
+} // namespace gcpdda

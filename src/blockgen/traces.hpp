@@ -1,0 +1,32 @@
+#pragma once
+
+#include "gcpdda/geometry/aabb.hpp"
+#include "gcpdda/model/rock_region.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace gcpdda::blockgen {
+
+/// One straight piece of a joint, or of an outline.
+struct Trace {
+  Vec2 from;
+  Vec2 to;
+  std::int32_t joint = -1; ///< index into JointLaws::laws, -1: by the materials
+
+  [[nodiscard]] Aabb box() const;
+};
+
+/// Everything that cuts the region and reaches into `box`, whole, always in the same order: outlines of the
+/// region, its openings and layers, faults, maps, masonry, joint sets. Outlines of the region come whether
+/// they reach in or not, so that every place in the region lies within a closed ring.
+/// Each trace depends on the region alone.
+std::vector<Trace> traces_in(const RockRegion &region, const Aabb &box);
+
+/// One point of each Voronoi cell whose grid cell meets `box`.
+std::vector<Vec2> voronoi_sites(const VoronoiCells &cells, const RockRegion &region, const Aabb &box);
+
+/// Parts of a segment inside a simple polygon.
+std::vector<Trace> parts_within(const Trace &trace, const std::vector<Vec2> &outline);
+
+} // namespace gcpdda::blockgen
