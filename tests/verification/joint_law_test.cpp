@@ -161,6 +161,22 @@ TEST(PlaneSliding, WithCohesionHoldsAboveTheLimitAndSlidesBelow) {
   EXPECT_FALSE(holds_on_slope(0.99)) << "1 % below it";
 }
 
+// The scene that ships: two glued beams, one 10 % above the limit 3 rho g L^2/h, one below it.
+TEST(Overhang, StrongHoldsAndWeakBreaksOff) {
+  Simulation simulation(Communicator::self(), shipped_scene("overhang", {"run.duration=3.2"}));
+  run(simulation);
+  std::vector<std::int64_t> bonded;
+  for (std::size_t k = 0; k < simulation.contacts().regions().size(); ++k) {
+    const CandidatePair &pair = simulation.candidates().pairs[simulation.contacts().regions()[k].pair];
+    if (simulation.history().regions[k].is_bond() && simulation.blocks().is_fixed(pair.lower.value)) {
+      bonded.push_back(simulation.blocks().properties[pair.higher.value].id.value);
+    }
+  }
+  EXPECT_EQ(bonded, std::vector<std::int64_t>{2}) << "the pier holds the left beam alone";
+  expect_below("overhang: the strong beam's end has sunk by, m", 0.1, -displacement_of(simulation, 5).u.y);
+  expect_above("overhang: the weak beam's end has fallen by, m", 1.0, -displacement_of(simulation, 9).u.y);
+}
+
 /// Two blocks glued along an edge that is slanted, moved by hand.
 struct Glued : ContactBench {
   explicit Glued(JointLaws joints)
