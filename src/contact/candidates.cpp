@@ -364,8 +364,9 @@ Candidates make_candidates(const BlockSystem &system,
     EdgeChain lower_chain;
     EdgeChain higher_chain;
     CandidatePair candidate = make_pair(system, lower, higher, parameters);
+    const JointLaw &law = parameters.joints.laws[static_cast<std::size_t>(candidate.law)];
     const bool is_plain = parameters.potential == PotentialKind::exact && !candidate.is_mixed &&
-                          finder.is_plain(lower.value, higher.value);
+                          law.is_constant() && finder.is_plain(lower.value, higher.value);
     if (is_plain && !finder.find(lower.value, higher.value, lower_chain, higher_chain)) {
       continue;
     }

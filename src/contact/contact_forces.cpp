@@ -1,5 +1,6 @@
 #include "gcpdda/contact/contact_forces.hpp"
 
+#include "bond_work.hpp"
 #include "pair_motion.hpp"
 #include "plain_batch.hpp"
 
@@ -111,7 +112,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
                                            ContactHistory &history, std::span<const std::uint32_t> pairs) {
   for (const std::uint32_t k : pairs) {
     const CandidatePair &pair = candidates.pairs[k];
-    if (system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
+    if (system.box[pair.lower.value].meets(system.box[pair.higher.value]) || history.has_bonds(k)) {
       ++report_.evaluations;
       const auto begin = static_cast<std::uint32_t>(forces_.size());
       evaluate_pair(system, candidates, k,
@@ -128,6 +129,7 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   find_increments(system, 0, system.num_owned);
   forces_.clear();
   damping_dyads_.clear();
+  bond_dyads_.clear();
   next_.regions.clear();
   ranges_.assign(candidates.pairs.size(), {});
   // Most candidates touch: to grow by doubling would take more memory than to have room for all.

@@ -83,7 +83,7 @@ BlockGradientSum sum_gradient_forces(const BlockSystem &system, const Candidates
     const double sign = is_lower ? 1.0 : -1.0;
     const Vec2 arm = f.origin - centroid;
     dyads.force += sign * (f.dyad + outer(arm, f.force));
-    dyads.shear += sign * outer(f.point - centroid, f.shear_force);
+    dyads.shear += sign * (outer(f.point - centroid, f.shear_force) + contacts.bond_dyad(f));
     dyads.damping += sign * (contacts.damping_dyad(f) + outer(arm, f.damping_force));
   });
   // int t X^T with X = F^-1 (x - x_c).

@@ -65,6 +65,9 @@ InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidat
     const double sliding = dot(lower_velocity - higher_velocity, region.tangent);
     const double rounding =
         16.0 * std::numeric_limits<double>::epsilon() * (norm(lower_velocity) + norm(higher_velocity));
+    if (std::abs(sliding) > rounding && force.bonded) {
+      continue; // its spring starts unstretched
+    }
     if (std::abs(sliding) > rounding) {
       set_shear(region, std::copysign(region.cap, sliding));
       history_.regions[k].state = ContactState::slip;

@@ -1,5 +1,6 @@
 // One pair after the other, any shapes: what the plain pairs' lanes (plain_kernel.hpp) are not for.
 
+#include "bond_work.hpp"
 #include "pair_motion.hpp"
 
 #include "gcpdda/contact/contact_forces.hpp"
@@ -11,65 +12,7 @@
 
 namespace gcpdda {
 
-/// Relative velocity of two blocks as a field: v(x) = at_origin + gradient (x - origin).
-struct ContactForces::RelativeVelocity {
-  Vec2 at_origin;
-  Mat2 gradient;
-
-  RelativeVelocity(const BlockSystem &system, const CandidatePair &pair, Vec2 origin) {
-    add(system, pair.lower.value, origin, 1.0);
-    add(system, pair.higher.value, origin, -1.0);
-  }
-  [[nodiscard]] Vec2 at(Vec2 from_origin) const { return at_origin + gradient(from_origin); }
-
-private:
-  void add(const BlockSystem &system, std::size_t row, Vec2 origin, double sign) {
-    const RigidDof &v = system.velocity[row];
-    const Vec2 arm = origin - system.trial_centroid[row];
-    if (system.is_deformable(row)) {
-      const Mat2 own = system.deformation_of(row).rate * system.trial_inverse[system.deformation_begin[row]];
-      at_origin += sign * (v.u + own(arm));
-      gradient += sign * own;
-    } else {
-      at_origin += sign * (v.u + v.r * perp(arm));
-      gradient.xy -= sign * v.r;
-      gradient.yx += sign * v.r;
-    }
-  }
-};
-
 namespace {
-
-/// int q ds and int q s ds of q = max(-p, d) over [0, length], p >= 0 and d linear with the given end values.
-struct TractionIntegral {
-  double total = 0.0;
-  double along = 0.0;
-
-  void add_linear(double s0, double q0, double s1, double q1) {
-    const double length = s1 - s0;
-    const double stretch = 0.5 * length * (q0 + q1);
-    total += stretch;
-    along += s0 * stretch + length * length * (q0 + 2.0 * q1) / 6.0;
-  }
-};
-
-TractionIntegral integrate_without_tension(double length, double p0, double p1, double d0, double d1) {
-  TractionIntegral q;
-  const double sum0 = p0 + d0;
-  const double sum1 = p1 + d1;
-  if (sum0 >= 0.0 && sum1 >= 0.0) {
-    q.add_linear(0.0, d0, length, d1);
-  } else if (sum0 <= 0.0 && sum1 <= 0.0) {
-    q.add_linear(0.0, -p0, length, -p1);
-  } else {
-    const double share = sum0 / (sum0 - sum1);
-    const double cut = share * length;
-    const double p_cut = p0 + share * (p1 - p0);
-    q.add_linear(0.0, std::max(-p0, d0), cut, -p_cut);
-    q.add_linear(cut, -p_cut, length, std::max(-p1, d1));
-  }
-  return q;
-}
 
 double deepest(std::span<const Piece> pieces) {
   double depth = 0.0;
@@ -166,10 +109,19 @@ void ContactForces::recall(const BlockSystem &system, const CandidatePair &pair,
 }
 
 void ContactForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
-                                 const RelativeVelocity &velocity, RegionMemory &memory, RegionForce &force) {
+                                 const RelativeVelocity &velocity, const BondShare &bonds,
+                                 RegionMemory &memory, RegionForce &force) {
   const double extent = force.extent_end - force.extent_begin;
   memory.longest = std::max(memory.longest, extent);
-  force.cap = force.normal_force * pair.tan_friction + pair.cohesion * extent;
+  if (bonds.holds) {
+    memory.shear = 0.0;
+    memory.state = ContactState::stick;
+    return;
+  }
+  const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
+  const double tan_friction =
+      law.is_barton_bandis ? law.tan_friction_at(force.normal_force / extent) : pair.tan_friction;
+  force.cap = force.normal_force * tan_friction + pair.cohesion * extent;
   memory.state = force.cap > 0.0 ? ContactState::stick : ContactState::slip;
   if (force.cap <= 0.0) {
     memory.shear = 0.0;
@@ -177,7 +129,9 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   }
   const Vec2 tangent = perp(force.normal);
   const double stiffness = pair.tangential_stiffness * memory.longest;
-  if (!force.born) {
+  if (bonds.released) {
+    memory.shear += bonds.shear; // stretched to this configuration already
+  } else if (!force.born) {
     const Vec2 slide =
         slide_at(system, pair, force.point, increments_[pair.lower.value], increments_[pair.higher.value]);
     memory.shear += stiffness * dot(slide, tangent);
@@ -272,11 +226,18 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
 void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &candidates,
                                   std::uint32_t number, std::span<RegionMemory> old) {
   const CandidatePair &pair = candidates.pairs[number];
-  if (!overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
-                     parameters_.potential)) {
-    return;
+  const bool touches = system.box[pair.lower.value].meets(system.box[pair.higher.value]) &&
+                       overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
+                                     parameters_.potential);
+  const auto first_bond =
+      std::find_if(old.begin(), old.end(), [](const RegionMemory &m) { return m.is_bond(); });
+  const std::span<RegionMemory> bonds(first_bond, old.end());
+  old = old.first(old.size() - bonds.size());
+  bonds_.clear();
+  if (!bonds.empty()) {
+    find_bonds(system, pair, touches ? overlap_.pieces() : std::span<const Piece>(), bonds);
   }
-  for (const Region &region : overlap_.regions()) {
+  for (const Region &region : touches ? overlap_.regions() : std::span<const Region>()) {
     RegionForce &force = forces_.emplace_back();
     if (!measure(region, force)) {
       forces_.pop_back();
@@ -291,19 +252,23 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &c
     } else {
       recall(system, pair, region, old, memory, force);
     }
+    const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, region);
     if (!pair.is_mixed) {
-      load_region(system, pair, region, memory, force);
+      load_region(system, pair, region, share, memory, force);
       continue;
     }
     if (force.born) {
       memory.law = law_at_birth(system, parameters_.joints, pair, overlap_.pieces(), region);
     }
-    load_region(system, constants_of(system, parameters_, pair, memory.law), region, memory, force);
+    load_region(system, constants_of(system, parameters_, pair, memory.law), region, share, memory, force);
+  }
+  if (!bonds_.empty()) {
+    append_bonds(system, pair, number);
   }
 }
 
 void ContactForces::load_region(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-                                RegionMemory &memory, RegionForce &force) {
+                                const BondShare &bonds, RegionMemory &memory, RegionForce &force) {
   force.force = pair.half_stiffness * force.force;
   force.dyad = pair.half_stiffness * force.dyad;
   force.normal_force *= pair.half_stiffness;
@@ -312,7 +277,7 @@ void ContactForces::load_region(const BlockSystem &system, const CandidatePair &
     memory.state = ContactState::slip;
   } else {
     const RelativeVelocity velocity(system, pair, force.origin);
-    add_friction(system, pair, velocity, memory, force);
+    add_friction(system, pair, velocity, bonds, memory, force);
     if (pair.damping > 0.0) {
       add_normal_dashpot(pair, velocity, region, force);
     }

@@ -2,6 +2,8 @@
 
 #include "gcpdda/contact/contact_forces.hpp"
 
+#include <algorithm>
+
 namespace gcpdda {
 
 /// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
@@ -19,6 +21,64 @@ inline Vec2 slide_at(const BlockSystem &system, const CandidatePair &pair, Vec2 
 inline void add_force(RegionForce &force, Vec2 at, Vec2 f) {
   force.force += f;
   force.dyad += outer(at - force.origin, f);
+}
+
+/// Relative velocity of two blocks as a field: v(x) = at_origin + gradient (x - origin).
+struct ContactForces::RelativeVelocity {
+  Vec2 at_origin;
+  Mat2 gradient;
+
+  RelativeVelocity(const BlockSystem &system, const CandidatePair &pair, Vec2 origin) {
+    add(system, pair.lower.value, origin, 1.0);
+    add(system, pair.higher.value, origin, -1.0);
+  }
+  [[nodiscard]] Vec2 at(Vec2 from_origin) const { return at_origin + gradient(from_origin); }
+
+private:
+  void add(const BlockSystem &system, std::size_t row, Vec2 origin, double sign) {
+    const RigidDof &v = system.velocity[row];
+    const Vec2 arm = origin - system.trial_centroid[row];
+    if (system.is_deformable(row)) {
+      const Mat2 own = system.deformation_of(row).rate * system.trial_inverse[system.deformation_begin[row]];
+      at_origin += sign * (v.u + own(arm));
+      gradient += sign * own;
+    } else {
+      at_origin += sign * (v.u + v.r * perp(arm));
+      gradient.xy -= sign * v.r;
+      gradient.yx += sign * v.r;
+    }
+  }
+};
+
+/// int q ds and int q s ds of q = max(-p, d) over [0, length], p >= 0 and d linear with the given end values.
+struct TractionIntegral {
+  double total = 0.0;
+  double along = 0.0;
+
+  void add_linear(double s0, double q0, double s1, double q1) {
+    const double length = s1 - s0;
+    const double stretch = 0.5 * length * (q0 + q1);
+    total += stretch;
+    along += s0 * stretch + length * length * (q0 + 2.0 * q1) / 6.0;
+  }
+};
+
+inline TractionIntegral integrate_without_tension(double length, double p0, double p1, double d0, double d1) {
+  TractionIntegral q;
+  const double sum0 = p0 + d0;
+  const double sum1 = p1 + d1;
+  if (sum0 >= 0.0 && sum1 >= 0.0) {
+    q.add_linear(0.0, d0, length, d1);
+  } else if (sum0 <= 0.0 && sum1 <= 0.0) {
+    q.add_linear(0.0, -p0, length, -p1);
+  } else {
+    const double share = sum0 / (sum0 - sum1);
+    const double cut = share * length;
+    const double p_cut = p0 + share * (p1 - p0);
+    q.add_linear(0.0, std::max(-p0, d0), cut, -p_cut);
+    q.add_linear(cut, -p_cut, length, std::max(-p1, d1));
+  }
+  return q;
 }
 
 } // namespace gcpdda

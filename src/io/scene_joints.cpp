@@ -124,10 +124,96 @@ private:
     }
     law.read("tangential_ratio", values.tangential_ratio);
     law.read("cohesion", values.cohesion);
-    if (law.sound("friction_angle_deg") != nullptr) {
+    read_angle(law, "friction_angle_deg", values.tan_friction);
+    read_strength(law, values);
+  }
+
+  static void read_angle(const Section &law, const char *key, double &tangent) {
+    if (law.sound(key) != nullptr) {
       double degrees = 0.0;
-      law.read("friction_angle_deg", degrees);
-      values.tan_friction = std::tan(degrees * std::numbers::pi / 180.0);
+      law.read(key, degrees);
+      tangent = std::tan(degrees * std::numbers::pi / 180.0);
+    }
+  }
+
+  // What is not given is as in default, whose values stand in `values`; of default itself as without bonds.
+  void read_strength(const Section &law, JointLaw &values) {
+    enum class Kind { coulomb, barton_bandis };
+    Kind kind = values.is_barton_bandis ? Kind::barton_bandis : Kind::coulomb;
+    law.read_choice("joint.*", "law", kind);
+    values.is_barton_bandis = kind == Kind::barton_bandis;
+    law.read("jrc", values.roughness);
+    law.read("jcs", values.strength);
+    if (values.is_barton_bandis) {
+      read_barton_bandis(law, values);
+      return;
+    }
+    for (const char *key : {"jrc", "jcs"}) {
+      if (const toml::node *node = law.given(key)) {
+        fault(node->source(), law.subject(key) + " has no meaning for Coulomb's law",
+              "it belongs to barton-bandis", "write law = \"barton-bandis\", or leave it out");
+      }
+    }
+    values.roughness = 0.0;
+    read_bonds(law, values);
+  }
+
+  void read_barton_bandis(const Section &law, JointLaw &values) {
+    for (const char *key : {"friction_angle_deg", "tension", "residual_cohesion"}) {
+      if (const toml::node *node = law.given(key)) {
+        fault(node->source(), law.subject(key) + " has no meaning for barton-bandis",
+              "its friction angle follows from residual_friction_angle_deg, jrc, jcs and the pressure, and "
+              "it has no bonds",
+              "leave it out");
+      }
+    }
+    for (const auto &[key, value] : {std::pair("jrc", values.roughness), std::pair("jcs", values.strength)}) {
+      if (law.given(key) == nullptr && value == 0.0) {
+        fault(law.source(), law.subject(key) + " is missing", "barton-bandis needs jrc and jcs",
+              fmt::format("for example {}", key == std::string("jrc") ? "jrc = 8.0" : "jcs = 50e6"));
+      }
+    }
+    values.tan_friction = residual_given_ ? values.residual_tan_friction : 0.0;
+    read_angle(law, "residual_friction_angle_deg", values.tan_friction);
+    values.residual_tan_friction = values.tan_friction;
+    residual_given_ = residual_given_ || law.given("residual_friction_angle_deg") != nullptr;
+    values.has_bonds = false;
+    values.tension = 0.0;
+  }
+
+  void read_bonds(const Section &law, JointLaw &values) {
+    for (const char *key : {"tension", "residual_friction_angle_deg", "residual_cohesion"}) {
+      values.has_bonds = values.has_bonds || law.given(key) != nullptr;
+    }
+    law.read("tension", values.tension);
+    law.read("residual_cohesion", values.residual_cohesion);
+    if (values.name == "default") {
+      residual_given_ = law.given("residual_friction_angle_deg") != nullptr;
+    }
+    if (!residual_given_) {
+      values.residual_tan_friction = values.tan_friction;
+    }
+    read_angle(law, "residual_friction_angle_deg", values.residual_tan_friction);
+    const auto place = [&](const char *key) {
+      return (law.given(key) != nullptr ? law.given(key)->source() : law.source());
+    };
+    if (values.residual_tan_friction > values.tan_friction) {
+      fault(place("residual_friction_angle_deg"),
+            law.label() + " has a residual friction angle above friction_angle_deg",
+            "what is left when a bond breaks is less than before", "exchange them");
+    }
+    if (values.residual_cohesion > values.cohesion) {
+      fault(place("residual_cohesion"), law.label() + " has a residual cohesion above its cohesion",
+            "what is left when a bond breaks is less than before", "exchange them");
+    }
+    if (values.tension * values.tan_friction > (1.0 + 1e-12) * values.cohesion || // rounding of the tangent
+
+        (values.tension > 0.0 && values.cohesion == 0.0)) {
+      fault(place("tension"), fmt::format("{} has a tension of {} Pa", law.label(), values.tension),
+            fmt::format(
+                "Coulomb's line with a cohesion of {} Pa ends at cohesion/tan(friction angle) = {:.6g} Pa",
+                values.cohesion, values.tan_friction > 0.0 ? values.cohesion / values.tan_friction : 0.0),
+            "lower tension or raise cohesion");
     }
   }
 
@@ -158,6 +244,7 @@ private:
   const MaterialIndex *materials_;
   bool weightless_ = false;
   JointLaws laws_;
+  bool residual_given_ = false; ///< in default
   std::map<MaterialPair, Section> law_of_pair_;
 };
 

@@ -62,6 +62,12 @@ constexpr Key all_keys[] = {
   {"joint.*.tangential_ratio", Kind::number, optional, above_to(0, 1000), "", "0.5", "0.5", "Tangential stiffness over normal stiffness."},
   {"joint.*.friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "0.0", "35.0", "[degrees] Friction angle."},
   {"joint.*.cohesion", Kind::number, optional, from_to(0, 1e20), "", "0.0", "0.0", "[Pa] Cohesion."},
+  {"joint.*.tension", Kind::number, optional, from_to(0, 1e20), "", "<none: no bonds>", "1e5", "[Pa] Tensile strength of the bonds, at most cohesion/tan(friction angle). A law with this key or a residual one has bonds: edges that lie on each other at the start hold together, with friction_angle_deg and cohesion in shear, until they break; then, and wherever else they touch, the residual values hold."},
+  {"joint.*.residual_friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "<friction_angle_deg>", "30.0", "[degrees] Friction angle without a bond, at most friction_angle_deg; of barton-bandis the angle that remains under high pressure."},
+  {"joint.*.residual_cohesion", Kind::number, optional, from_to(0, 1e20), "", "<0 of a law with bonds>", "1e4", "[Pa] Cohesion without a bond, at most cohesion; only in a law with bonds."},
+  {"joint.*.law", Kind::choice, optional, any, "coulomb barton-bandis", "\"coulomb\"", "\"coulomb\"", "Friction: Coulomb, or phi = residual angle + JRC log10(JCS/normal stress), at most 70 degrees."},
+  {"joint.*.jrc", Kind::number, optional, above_to(0, 40), "", "<required for barton-bandis>", "8.0", "Joint roughness coefficient of barton-bandis."},
+  {"joint.*.jcs", Kind::number, optional, above_to(0, 1e20), "", "<required for barton-bandis>", "50e6", "[Pa] Joint wall compressive strength of barton-bandis."},
 
   {"block[]", Kind::table_list, optional, any, "", "", "[[block]]", "Single blocks; they have the first ids, walls and pyramids in the order of the file the next."},
   {"block[].name", Kind::name, optional, any, "", "<b and the position of the block, from 0>", "\"slider\"", "Name, unique in the scene."},

@@ -1,6 +1,7 @@
 #include "gcpdda/simulation/energy_ledger.hpp"
 
 #include "gcpdda/base/exact_sum.hpp"
+#include "gcpdda/contact/bonds.hpp"
 #include "gcpdda/contact/region_law.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/simulation/half_works.hpp"
@@ -88,22 +89,28 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
 
 enum class Moment { now, middle };
 
-/// Energy of the stick springs; in the middle of two trial configurations F_n F_{n+1}/(2 k), the form that
-/// the leapfrog conserves exactly. Slipping springs keep theirs.
+/// Energy of the stick springs and of open bonds; in the middle of two trial configurations F_n F_{n+1}/(2
+/// k), the form that the leapfrog conserves exactly. Slipping springs keep theirs.
 void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
+  const ContactParameters &parameters = simulation.contacts().parameters();
   for (std::size_t k = 0; k < simulation.contacts().regions().size(); ++k) {
     const RegionForce &force = simulation.contacts().regions()[k];
     const CandidatePair &pair = simulation.candidates().pairs[force.pair];
     const RegionMemory &memory = simulation.history().regions[k];
-    if (memory.shear == 0.0 || !simulation.counts_here(pair)) {
+    if (!simulation.counts_here(pair)) {
       continue;
     }
-    const double stiffness =
-        constants_of(simulation.blocks(), simulation.contacts().parameters(), pair, memory.law)
-            .tangential_stiffness *
-        memory.longest;
+    const CandidatePair constants = constants_of(simulation.blocks(), parameters, pair, memory.law);
+    if (memory.is_bond()) {
+      sum.add(2.0 * constants.half_stiffness *
+              bond_energy(simulation.blocks(), pair, memory, moment == Moment::middle));
+    }
+    if (memory.shear == 0.0) {
+      continue;
+    }
+    const double stiffness = constants.tangential_stiffness * memory.longest;
     double next = memory.shear;
-    if (moment == Moment::middle && memory.state == ContactState::stick) {
+    if (moment == Moment::middle && memory.state != ContactState::slip) {
       next += stiffness * coming_slide(simulation.blocks(), pair, force);
     }
     sum.add(0.5 * memory.shear * next / stiffness);

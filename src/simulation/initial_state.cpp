@@ -1,5 +1,6 @@
 // The consistent initial state of a Simulation, and what is wrong with it.
 
+#include "gcpdda/contact/bonds.hpp"
 #include "gcpdda/contact/initial_friction.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 
@@ -88,6 +89,22 @@ void Simulation::check_initial_overlaps() {
   }
 }
 
+// The blocks of a bond must stay candidates until it breaks.
+void Simulation::check_bonds() {
+  for (const JointLaw &law : scene_.joints.laws) {
+    const double opening = law.tension / law.normal_stiffness;
+    if (law.has_bonds && opening > 0.5 * base_skin_) {
+      notes_.push_back(
+          {Severity::error,
+           {},
+           fmt::format("bonds of [joint.{}] open by {:.3g} m before they break", law.name, opening),
+           fmt::format("that is tension/normal_stiffness, and blocks are looked for within {:.3g} m",
+                       0.5 * base_skin_),
+           "raise normal_stiffness or lower tension"});
+    }
+  }
+}
+
 void Simulation::accelerate_owned() {
   gather_forces();
   accelerate(blocks_, forces_);
@@ -96,6 +113,8 @@ void Simulation::accelerate_owned() {
 
 // a_0 = M^-1 F(0): constant acceleration is then exact from the first step.
 void Simulation::find_initial_state() {
+  check_bonds(); // told with the other faults of the initial state
+  bond_joints(blocks_, candidates_, contacts_.parameters().joints, history_);
   take(contacts_.evaluate(blocks_, candidates_, history_)); // ghosts are whole copies yet
   check_initial_overlaps();
   if (scene_.run.initial_friction == InitialFriction::consistent) {

@@ -2,6 +2,8 @@
 // in contact across ranks, blocks that changed their rank, neighbourhoods made anew.
 
 #include "gcpdda/io/run_comparison.hpp"
+#include "gcpdda/model/contact_history.hpp"
+#include "gcpdda/simulation/restart.hpp"
 #include "gcpdda/simulation/run.hpp"
 #include "shared_folder.hpp"
 #include "support/run_facts.hpp"
@@ -37,6 +39,34 @@ std::string shaken_wall_toml(int rows, int columns, double duration) {
       const double vy = 2.0 + speed(2.0);
       toml += testing::block_toml(fmt::format("brick{}_{}", row, column), testing::rectangle(low, high),
                                   fmt::format("velocity = [{:.6g}, {:.6g}, {:.6g}]", vx, vy, speed(0.5)));
+    }
+  }
+  return toml;
+}
+
+/// Bricks of a running bond that lie exactly on each other; bedding and upright joints are two families with
+/// bonds.
+std::string glued_wall_toml(int rows, int columns, double duration) {
+  std::string toml = fmt::format("[run]\nduration = {}\nfidelity = \"rigid\"\ntime_step = 1e-4\n"
+                                 "[material.rock]\ndensity = 2600.0\n"
+                                 "[joint.default]\nnormal_stiffness = 2e8\nfriction_angle_deg = 30.0\n"
+                                 "[joint.bedding]\ncohesion = 1e6\ntension = 5e5\n"
+                                 "[joint.upright]\nnormal_stiffness = 4e8\ncohesion = 2e6\ntension = 1e6\n"
+                                 "residual_friction_angle_deg = 20.0\n"
+                                 "[output]\ninterval = 0.015\ncheckpoint_interval = 0.015\n",
+                                 duration);
+  std::mt19937 random(4);
+  const auto speed = [&](double most) { return most * (static_cast<double>(random()) / 2147483648.0 - 1.0); };
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const Vec2 low{column + 0.5 * (row % 2), 0.5 * row};
+      const double vx = 20.0 + speed(2.0);
+      const double vy = 2.0 + speed(2.0);
+      toml += testing::block_toml(
+          fmt::format("brick{}_{}", row, column), testing::rectangle(low, low + Vec2{1.0, 0.5}),
+          fmt::format("velocity = [{:.6g}, {:.6g}, 0]\n"
+                      "edge_joints = [\"bedding\", \"upright\", \"bedding\", \"upright\"]",
+                      vx, vy));
     }
   }
   return toml;
@@ -119,6 +149,41 @@ TEST(Identity, OfAShakenWall) {
   if (runs.world().size() > 1) {
     EXPECT_GE(runs.counted("migrations"), 1);
     EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+}
+
+/// Bonds in a frame of contacts.
+std::int64_t num_bonds(const fs::path &folder, int frame) {
+  const std::vector<std::uint8_t> states =
+      read_contact_frame(folder / "frames" / fmt::format("contacts_{:06}.hdf", frame)).state;
+  return std::count(states.begin(), states.end(), static_cast<std::uint8_t>(ContactState::bonded));
+}
+
+// Bricks glued to each other, thrown and torn apart: bonds of two families break while they migrate. A run
+// that stops in the middle and goes on is the same.
+TEST(Identity, OfAWallThatTearsApart) {
+  const std::string toml = glued_wall_toml(20, 12, 0.03);
+  const Scene scene = testing::scene_of(toml);
+  const TwoRuns runs(scene);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("migrations"), 1);
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 25);
+  }
+  const Scene half = testing::scene_of(toml, {"run.duration=0.015"});
+  const testing::SharedFolder folder(runs.world());
+  const testing::CapturedLog log;
+  EXPECT_EQ(run_scene(runs.world(), half, {folder.path("run"), false}), 0);
+  EXPECT_EQ(restart_scene(runs.world(), half, scene, folder.path("run")), 0);
+  runs.world().barrier();
+  if (runs.world().is_root()) {
+    for (const std::string &difference : compare_runs(folder.path("run"), runs.alone())) {
+      ADD_FAILURE() << "restarted: " << difference;
+    }
+    const std::int64_t at_start = num_bonds(runs.alone(), 0);
+    const std::int64_t at_end = num_bonds(runs.alone(), 2);
+    EXPECT_GE(at_start, 600);
+    EXPECT_LE(at_end, at_start - 50);
+    EXPECT_GE(at_end, 50);
   }
 }
 

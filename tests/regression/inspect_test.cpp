@@ -318,7 +318,7 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
       {"[material.NAME]", {"density", "youngs_modulus", "poissons_ratio"}},
       {"[joint.NAME]",
        {"materials", "normal_stiffness", "allowed_overlap", "tangential_ratio", "friction_angle_deg",
-        "cohesion"}},
+        "cohesion", "tension", "residual_friction_angle_deg", "residual_cohesion", "law", "jrc", "jcs"}},
       {"[[block]]",
        {"name", "material", "vertices", "edge_joints", "velocity", "fixed", "fidelity", "fixed_points",
         "prescribed_velocity", "velocity_table", "load"}},

@@ -241,6 +241,34 @@ edge_joints = ["default"])",
     {"EdgeJointsOfNumbers", 17, R"(vertices = [[1, 1], [2, 1], [2, 2], [1, 2]]
 edge_joints = [1, "", "", ""])",
      {R"(18:16: error: entry 0 of 'edge_joints' in block 'slider' is an integer, it must be a string, for example edge_joints = ["bedding", "", "fault", ""])"}},
+    {"ResidualAbovePeak", 8, R"(normal_stiffness = 1e9
+cohesion = 1e5
+friction_angle_deg = 30
+residual_friction_angle_deg = 31
+residual_cohesion = 2e5)",
+     {R"(11:31: error: [joint.default] has a residual friction angle above friction_angle_deg, what is left when a bond breaks is less than before, exchange them)",
+      R"(12:21: error: [joint.default] has a residual cohesion above its cohesion, what is left when a bond breaks is less than before, exchange them)"}},
+    {"TensionBeyondTheApex", 8, R"(normal_stiffness = 1e9
+cohesion = 1e5
+friction_angle_deg = 45
+tension = 2e5)",
+     {R"(11:11: error: [joint.default] has a tension of 200000 Pa, Coulomb's line with a cohesion of 100000 Pa ends at cohesion/tan(friction angle) = 100000 Pa, lower tension or raise cohesion)"}},
+    {"TensionWithoutCohesion", 8, R"(normal_stiffness = 1e9
+tension = 2e5)",
+     {R"(9:11: error: [joint.default] has a tension of 200000 Pa, Coulomb's line with a cohesion of 0 Pa ends at cohesion/tan(friction angle) = 0 Pa, lower tension or raise cohesion)"}},
+    {"RoughnessWithoutStrength", 8, R"(normal_stiffness = 1e9
+law = "barton-bandis"
+jrc = 8)",
+     {R"(7:1: error: 'jcs' in [joint.default] is missing, barton-bandis needs jrc and jcs, for example jcs = 50e6)"}},
+    {"RoughnessOfCoulomb", 8, R"(normal_stiffness = 1e9
+jrc = 8)",
+     {R"(9:7: error: 'jrc' in [joint.default] has no meaning for Coulomb's law, it belongs to barton-bandis, write law = "barton-bandis", or leave it out)"}},
+    {"BondsOfBartonBandis", 8, R"(normal_stiffness = 1e9
+law = "barton-bandis"
+jrc = 8
+jcs = 1e8
+tension = 1e5)",
+     {R"(12:11: error: 'tension' in [joint.default] has no meaning for barton-bandis, its friction angle follows from residual_friction_angle_deg, jrc, jcs and the pressure, and it has no bonds, leave it out)"}},
     {"LawWithOneMaterial", 8, R"(normal_stiffness = 1e9
 [joint.fault]
 materials = ["clay"])",

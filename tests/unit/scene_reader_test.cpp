@@ -209,7 +209,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     expect_same(good(text, {path + "=" + std::string(key.fallback)}), scene);
     ++compared;
   }
-  EXPECT_EQ(compared, 25);
+  EXPECT_EQ(compared, 26);
 }
 
 TEST(SceneReader, EveryKeyHasASentenceAndAnExample) {

@@ -186,6 +186,13 @@ inline void expect_same(const Scene &a, const Scene &b) {
     EXPECT_EQ(a.joints.laws[i].tangential_ratio, b.joints.laws[i].tangential_ratio);
     EXPECT_EQ(a.joints.laws[i].tan_friction, b.joints.laws[i].tan_friction);
     EXPECT_EQ(a.joints.laws[i].cohesion, b.joints.laws[i].cohesion);
+    EXPECT_EQ(a.joints.laws[i].has_bonds, b.joints.laws[i].has_bonds);
+    EXPECT_EQ(a.joints.laws[i].tension, b.joints.laws[i].tension);
+    EXPECT_EQ(a.joints.laws[i].residual_tan_friction, b.joints.laws[i].residual_tan_friction);
+    EXPECT_EQ(a.joints.laws[i].residual_cohesion, b.joints.laws[i].residual_cohesion);
+    EXPECT_EQ(a.joints.laws[i].is_barton_bandis, b.joints.laws[i].is_barton_bandis);
+    EXPECT_EQ(a.joints.laws[i].roughness, b.joints.laws[i].roughness);
+    EXPECT_EQ(a.joints.laws[i].strength, b.joints.laws[i].strength);
   }
   ASSERT_EQ(a.materials.size(), b.materials.size());
   for (std::size_t i = 0; i < a.materials.size(); ++i) {

@@ -49,7 +49,8 @@ struct RegionForce {
   std::uint32_t pair = 0;        ///< number of the candidate
   bool born = false;             ///< not there at the evaluation before
   bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
-  Vec2 force;                    ///< normal, friction and dashpot, N/m
+  bool bonded = false; ///< a bond (bonds.hpp): normal_force is minus its tension, which joins shear_force
+  Vec2 force;          ///< normal, friction and dashpot, N/m
   PairTorques torque{};
   Vec2 shear_force; ///< elastic part of friction in `force`; acts at `point`
   PairTorques shear_torque{};
@@ -155,12 +156,26 @@ public:
     return region < damping_dyads_.size() ? damping_dyads_[region] : Mat2{};
   }
 
+  /// What the forces of a bond in `shear_force` do beyond acting at `point`: int (x - point) df^T, N.
+  [[nodiscard]] Mat2 bond_dyad(const RegionForce &force) const {
+    const auto region = static_cast<std::size_t>(&force - forces_.data());
+    return region < bond_dyads_.size() ? bond_dyads_[region] : Mat2{};
+  }
+
   /// Replace the shear of a region, friction alone; for the initial state. Arms of x_r from the trial
   /// centroids.
   void set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm);
 
 private:
   struct RelativeVelocity;
+  /// A bond of the pair at hand, and what became of it.
+  struct BondAtWork;
+  /// What bonds leave of the friction of a region.
+  struct BondShare {
+    bool holds = false;    ///< a bond carries the shear
+    bool released = false; ///< one has just broken ...
+    double shear = 0.0;    ///< ... and leaves this, N/m
+  };
 
   void evaluate_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                      std::span<RegionMemory> old);
@@ -176,9 +191,15 @@ private:
   bool measure(const Region &region, RegionForce &force) const;
   /// The same for the pair's law, with friction and dashpots.
   void load_region(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-                   RegionMemory &memory, RegionForce &force);
+                   const BondShare &bonds, RegionMemory &memory, RegionForce &force);
+  /// Stretch the pair's bonds and see which of them hold.
+  void find_bonds(const BlockSystem &system, const CandidatePair &pair, std::span<const Piece> pieces,
+                  std::span<const RegionMemory> memory);
+  [[nodiscard]] BondShare share_of_bonds(const CandidatePair &pair, const Region &region) const;
+  /// Those that hold as regions of their own.
+  void append_bonds(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number);
   void add_friction(const BlockSystem &system, const CandidatePair &pair, const RelativeVelocity &velocity,
-                    RegionMemory &memory, RegionForce &force);
+                    const BondShare &bonds, RegionMemory &memory, RegionForce &force);
   void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity, const Region &region,
                           RegionForce &force);
   void add_shear(RegionForce &force, double elastic, double viscous);
@@ -199,6 +220,8 @@ private:
   std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation
   std::vector<Mat2> damping_dyads_;       ///< by region, up to the last of a pair with a deformable block
   Mat2 damping_dyad_;                     ///< of the region at hand
+  std::vector<Mat2> bond_dyads_;          ///< by region, up to the last bond
+  std::vector<BondAtWork> bonds_;         ///< of the pair at hand
   std::vector<double> facing_;            ///< of the pieces at hand, scratch
 };
 

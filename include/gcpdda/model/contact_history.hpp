@@ -10,18 +10,21 @@
 
 namespace gcpdda {
 
-enum class ContactState : std::uint8_t { stick = 1, slip = 2 };
+enum class ContactState : std::uint8_t { stick = 1, slip = 2, bonded = 3 };
 
-/// Memory of one contact region. Alive from its first evaluation with an overlap to its last.
+/// Memory of one contact region, alive from its first evaluation with an overlap to its last, or of one bond,
+/// alive until it breaks.
 struct RegionMemory {
   double shear = 0.0;   ///< F_t: along -t_r on the lower block, along t_r on the higher one, N/m
   double longest = 0.0; ///< largest extent along t_r so far, m: the tangential stiffness never falls
   double slip = 0.0;    ///< accumulated sliding distance, m
   Vec2 position;        ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
   std::int32_t lower_stretch = 0;  ///< stretches of the outlines between re-entrant vertices that face each
-  std::int32_t higher_stretch = 0; ///< other; 0 for a convex block
+  std::int32_t higher_stretch = 0; ///< other; 0 for a convex block; of a bond -1 - number of its edge
   std::int32_t law = -1;           ///< that the region was born with; -1: the only one its pair can have
   ContactState state = ContactState::stick;
+
+  [[nodiscard]] bool is_bond() const { return lower_stretch < 0; }
 
   /// Two copies of one region, not two regions of a pair.
   [[nodiscard]] bool is_same_region(const RegionMemory &other) const {
@@ -43,13 +46,17 @@ struct RegionRange {
   std::uint32_t count = 0;
 };
 
-/// Contact memory by candidate pair. Only living regions are listed: at most one of two convex blocks.
+/// Contact memory by candidate pair. Only living regions are listed, at most one of two convex blocks, and
+/// behind them the bonds.
 struct ContactHistory {
   std::vector<RegionRange> ranges; ///< one a pair
   std::vector<RegionMemory> regions;
 
   [[nodiscard]] std::span<const RegionMemory> of_pair(std::size_t pair) const {
     return {regions.data() + ranges[pair].begin, ranges[pair].count};
+  }
+  [[nodiscard]] bool has_bonds(std::size_t pair) const {
+    return ranges[pair].count > 0 && of_pair(pair).back().is_bond();
   }
 };
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -18,9 +20,38 @@ struct JointLaw {
   double tan_friction = 0.0;     ///< tan of the friction angle
   double cohesion = 0.0;         ///< Pa
 
+  /// Edges that lie on each other at t = 0 are bonded (contact/bonds.hpp): friction and cohesion above are
+  /// those of the bond, what follows holds once it is broken and where there never was one.
+  bool has_bonds = false;
+  double tension = 0.0; ///< tensile strength of the bond, Pa
+  double residual_tan_friction = 0.0;
+  double residual_cohesion = 0.0; ///< Pa
+  /// Friction angle by Barton and Bandis, see tan_friction_at(); tan_friction is then that of the residual
+  /// angle.
+  bool is_barton_bandis = false;
+  double roughness = 0.0;   ///< JRC
+  double strength = 0.0;    ///< JCS, Pa
   bool is_on_edges = false; ///< some edge of some block has it; known once all blocks have been looked at
 
-  [[nodiscard]] bool has_friction() const { return tan_friction > 0.0 || cohesion > 0.0; }
+  [[nodiscard]] bool has_friction() const { return tan_friction > 0.0 || cohesion > 0.0 || roughness > 0.0; }
+  /// The same constants for every contact at all times.
+  [[nodiscard]] bool is_constant() const { return !has_bonds && !is_barton_bandis; }
+
+  /// Barton and Choubey, Barton and Bandis [doi:10.1007/BF01261801]:
+  ///     phi = phi_r + JRC log10(JCS/sigma_n), at least phi_r and at most 70 degrees (or phi_r, if that is
+  /// more), the bounds that Barton and Choubey give for the curve.
+  ///
+  /// @param normal_stress  of the contact, compression positive, Pa
+  [[nodiscard]] double tan_friction_at(double normal_stress) const {
+    if (!is_barton_bandis || normal_stress >= strength) {
+      return tan_friction;
+    }
+    constexpr double degree = std::numbers::pi / 180.0;
+    const double residual = std::atan(tan_friction);
+    const double steepest = std::max(70.0 * degree, residual);
+    const double angle = residual + roughness * degree * std::log10(strength / normal_stress);
+    return std::tan(std::min(angle, steepest));
+  }
 };
 
 /// All laws of a scene and which one a pair of materials takes.

@@ -12,7 +12,8 @@
 //
 // contact_normal is the true potential of the contact pressure, (k_n/2) int_S (d_A + d_B) dA, not an
 // accumulated work: the residual shows what the time steps made of it, O(dt^2), plus the offset of O(dt^2)
-// between t_n and the middle. friction_loss is the work against friction that is not stored in stick springs.
+// between t_n and the middle. friction_loss is the work against friction
+// and bonds that is not stored in stick springs and bonds: what a broken bond held is in it.
 
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/simulation/simulation.hpp"

@@ -159,6 +159,7 @@ private:
   void find_bound();
   [[nodiscard]] Vec2 gravity() const;
   void find_initial_state();
+  void check_bonds();
   void check_initial_overlaps();
   void find_initial_friction();
   void accelerate_owned();
