@@ -3,6 +3,7 @@
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/joint_law.hpp"
+#include "gcpdda/model/stage.hpp"
 
 #include <array>
 #include <cstdint>
@@ -126,7 +127,8 @@ struct Scene {
   BlockFile block_file;                   ///< the last ones
   OutputSettings output;
   std::vector<Monitor> monitors;
-  std::string resolved; ///< the scene after --set, as TOML text
+  std::vector<Stage> stages; ///< in their order; none for one run of run.duration
+  std::string resolved;      ///< the scene after --set, as TOML text
 };
 
 } // namespace gcpdda
