@@ -74,7 +74,6 @@ public:
     section.read("failure_motion", stage.failure_motion);
     stage.local_damping = stage.kind == StageKind::settle ? 0.8 : -1.0;
     section.read("local_damping", stage.local_damping);
-    stage.mass_scaling = stage.kind == StageKind::settle;
     section.read("mass_scaling", stage.mass_scaling);
     section.read("relax", stage.relax);
     expect_end(section, stage.kind);

@@ -192,7 +192,7 @@ private:
         "step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
         "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
         simulation_.plan().time_step, simulation_.plan().num_steps, simulation_.plan().duration,
-        bound.time_step, scene.run.safety, bound.limit, bound.omega_max));
+        bound.time_step, bound.safety, bound.limit, bound.omega_max));
     for (const JointLaw &law : scene.joints.laws) {
       log_->line(fmt::format(
           "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "

@@ -223,13 +223,12 @@ TEST(SceneReader, DefaultsOfStagesAreThoseInForce) {
   EXPECT_EQ(stage.failure_motion, stated("failure_motion"));
   EXPECT_EQ(stage.relax, stated("relax"));
   EXPECT_EQ(stage.local_damping, 0.8);
-  EXPECT_TRUE(stage.mass_scaling);
+  EXPECT_FALSE(stage.mass_scaling);
   EXPECT_TRUE(stage.until_verdict);
   EXPECT_EQ(stage.duration, 3.0);
   EXPECT_EQ(stage.name, "stage0");
   const Stage run = good(text + "[[stage]]\nkind = \"run\"\nduration = 3.0\n").stages.at(0);
   EXPECT_LT(run.local_damping, 0.0);
-  EXPECT_FALSE(run.mass_scaling);
   EXPECT_FALSE(run.until_verdict);
 }
 

@@ -106,6 +106,31 @@ TEST(Stages, AStackSettlesAtItsOverlaps) {
   }
 }
 
+// Gravity at once and gravity that rises in ten of the wall's slowest periods: no joint slips on either way.
+TEST(Stages, AWallSettlesWhereSlowDynamicsLeavesIt) {
+  const std::string wall =
+      stack_head.substr(stack_head.find("fidelity")) +
+      block_toml("floor", rectangle({-1.0, -1.0}, {9.0, 0.0}), "fixed = true") +
+      "[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 6\ncolumns = 8\n"
+      "block_size = [1.0, 0.5]\n";
+  Simulation settled(Communicator::self(), scene_of("[run]\n" + wall + settle));
+  run_stages(settled);
+  ASSERT_EQ(settled.stage_results().back().verdict, Verdict::settled);
+  Simulation slow(Communicator::self(), scene_of("[run]\nduration = 0.7\ngravity_ramp = 0.5\n" + wall));
+  while (!slow.finished()) {
+    slow.step();
+  }
+  double largest = 0.0;
+  double apart = 0.0;
+  for (std::size_t row = 0; row < slow.blocks().num_owned; ++row) {
+    const Vec2 moved = slow.blocks().displacement[row].u;
+    largest = std::max(largest, norm(moved));
+    apart = std::max(apart, norm(moved - settled.blocks().displacement[row].u));
+  }
+  EXPECT_LE(apart, 1e-3 * largest);
+  EXPECT_LE(2 * settled.step_count(), slow.step_count()); // it pays more the higher the wall
+}
+
 TEST(Stages, AFallingBlockFails) {
   const std::string toml = stack_head + block_toml("stone", rectangle({0.0, 0.0}, {1.0, 1.0}));
   for (const std::string &stage : {settle, wait_undamped}) {
