@@ -113,8 +113,6 @@ double moved_since_refresh(const BlockSystem &system, std::size_t row) {
 
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                             const Scheme &scheme, double time_step, Elasticity elasticity) {
-  expect(system.matrix_begin[system.num_owned] >= system.deformation_begin[system.num_owned],
-         "every deformable block has its matrix");
   std::optional<std::size_t> broken;
   for (std::size_t i = 0; i < system.num_owned; ++i) {
     if (system.has_matrix(i)) {
@@ -123,6 +121,8 @@ std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForc
       }
       continue;
     }
+    expect(!system.is_deformable(i) || system.properties[i].keeps_its_velocity(),
+           "every deformable block that is free to move has its matrix");
     const RigidDof a = system.acceleration[i];
     const RigidDof a_new = (1.0 / (1.0 - scheme.alpha_m)) *
                            (accelerate(system.properties[i], forces.rigid[i]) - scheme.alpha_m * a);

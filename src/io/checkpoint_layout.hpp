@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 inline constexpr const char *format = "gcpdda checkpoint";
-inline constexpr std::int64_t version = 2; ///< since 2 regions have laws
+inline constexpr std::int64_t version = 2; ///< since 2 regions have laws and blocks marks
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -36,6 +36,9 @@ inline constexpr std::array real_facts{RealFact{"/clock/time", &RunFacts::time},
                                        RealFact{"/run/max_overlap_share", &RunFacts::max_overlap_share},
                                        RealFact{"/run/fastest_turn", &RunFacts::fastest_turn}};
 inline constexpr const char *frame_times = "/run/frame_times";
+inline constexpr const char *ledger = "/run/ledger";
+inline constexpr const char *stage_counts = "/stage/counts";
+inline constexpr const char *stage_numbers = "/stage/numbers";
 
 struct WholeFact {
   const char *name;
@@ -112,6 +115,12 @@ template <auto Member> constexpr Field<BlockSystem> of_ledger(const char *name) 
   }
   > (name);
 }
+template <auto Member> constexpr Field<BlockSystem> of_mark(const char *name) {
+  return field < BlockSystem, [](auto &system, std::size_t row) -> auto & {
+    return system.mark[row].*Member;
+  }
+  > (name);
+}
 template <auto Member> constexpr Field<std::vector<Deformation>> of_deformation(const char *name) {
   return field < std::vector<Deformation>, [](auto &deformations, std::size_t row) -> auto & {
     return deformations[row].*Member;
@@ -143,7 +152,9 @@ inline constexpr std::array block_fields{
     detail::of_ledger<&BlockLedger::shear_work>("/block/shear_work"),
     detail::of_ledger<&BlockLedger::damping_work>("/block/damping_work"),
     detail::of_ledger<&BlockLedger::load_work>("/block/load_work"),
-    detail::of_ledger<&BlockLedger::gravity_work>("/block/gravity_work")};
+    detail::of_ledger<&BlockLedger::gravity_work>("/block/gravity_work"),
+    detail::of_mark<&BlockMark::stage>("/block/at_stage_begin"),
+    detail::of_mark<&BlockMark::look>("/block/at_last_look")};
 inline constexpr std::array deformation_fields{
     detail::of_deformation<&Deformation::gradient>("/deformation/gradient"),
     detail::of_deformation<&Deformation::rate>("/deformation/rate"),
@@ -166,12 +177,13 @@ inline constexpr const char *region_states = "/region/state"; ///< u8
 inline constexpr const char *region_laws = "/region/law";     ///< i32
 
 // A field that is added to the state must join one of the lists above, or the words over them.
-static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 8);
+static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 9);
+static_assert(sizeof(BlockMark) == 6 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 18 * sizeof(double));
 static_assert(sizeof(Deformation) == (12 * 4 + 3) * sizeof(double));
 static_assert(sizeof(RegionMemory) == 7 * sizeof(double));
 
-inline constexpr std::array<const char *, 6> groups{"/clock", "/run",         "/scene",
+inline constexpr std::array<const char *, 7> groups{"/clock", "/run",         "/stage", "/scene",
                                                     "/block", "/deformation", "/region"};
 inline constexpr const char *checksum = "/checksum";
 

@@ -71,6 +71,9 @@ Found look_at(const fs::path &path) {
     facts.*member = values.front();
   }
   facts.frame_times = hdf5::read_numbers<double>(file, checkpoint::frame_times);
+  facts.ledger = hdf5::read_numbers<double>(file, checkpoint::ledger);
+  facts.stage_counts = hdf5::read_numbers<std::int64_t>(file, checkpoint::stage_counts);
+  facts.stage_numbers = hdf5::read_numbers<double>(file, checkpoint::stage_numbers);
   found.checksum = only_number(file, checkpoint::checksum);
   return found;
 }
@@ -138,6 +141,9 @@ private:
       sum_.add(name, 0, std::span<const double>(&(facts.*member), 1));
     }
     sum_.add(checkpoint::frame_times, 0, std::span<const double>(facts.frame_times));
+    sum_.add(checkpoint::ledger, 0, std::span<const double>(facts.ledger));
+    sum_.add(checkpoint::stage_counts, 0, std::span<const std::int64_t>(facts.stage_counts));
+    sum_.add(checkpoint::stage_numbers, 0, std::span<const double>(facts.stage_numbers));
   }
 
   Communicator communicator_;
@@ -276,6 +282,18 @@ private:
   std::vector<std::vector<double>> deformation_values_;
 };
 
+template <class T> void share(const Communicator &communicator, std::vector<T> &values) {
+  Bytes bytes(values.size() * sizeof(T));
+  if (!bytes.empty()) {
+    std::memcpy(bytes.data(), values.data(), bytes.size());
+  }
+  communicator.broadcast(bytes);
+  values.resize(bytes.size() / sizeof(T));
+  if (!bytes.empty()) {
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+  }
+}
+
 /// The root's finding for all. Only facts of fixed size and the frames' times travel.
 void share(const Communicator &communicator, Found &found) {
   std::string path = found.path.string();
@@ -302,6 +320,9 @@ void share(const Communicator &communicator, Found &found) {
     std::memcpy(&value, bytes.data() + at, sizeof(value));
     at += sizeof(value);
   });
+  share(communicator, facts.ledger);
+  share(communicator, facts.stage_counts);
+  share(communicator, facts.stage_numbers);
   facts.frame_times.resize((bytes.size() - fixed) / sizeof(double));
   if (!facts.frame_times.empty()) {
     std::memcpy(facts.frame_times.data(), bytes.data() + fixed, bytes.size() - fixed);
@@ -370,7 +391,8 @@ void expect_readable_checkpoint(const Communicator &communicator, const fs::path
 }
 
 Restored restore_newest_checkpoint(const Communicator &communicator, const fs::path &directory,
-                                   const SceneIdentity &scene, BlockSystem &blocks) {
+                                   const SceneIdentity &scene, BlockSystem &blocks,
+                                   const std::function<void(const RunFacts &)> &prepare) {
   Restored restored;
   std::vector<Found> found;
   on_root(communicator, [&] { found = look_at_all(directory, scene, restored.rejected); });
@@ -379,6 +401,9 @@ Restored restore_newest_checkpoint(const Communicator &communicator, const fs::p
   for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
     Found candidate = communicator.is_root() ? found[k] : Found{};
     share(communicator, candidate);
+    if (prepare) {
+      prepare(candidate.facts);
+    }
     try {
       restored.memory = StateReader(communicator, candidate).restore(blocks);
       restored.path = candidate.path;

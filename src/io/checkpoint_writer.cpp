@@ -88,7 +88,7 @@ public:
       file_.group(group);
     }
     write_facts(facts);
-    write_blocks(facts.scene, blocks);
+    write_blocks(facts, blocks);
     write_deformations(facts.scene.num_blocks, blocks);
     write_regions(facts.scene.num_blocks, memory);
     file_.number(checkpoint::checksum, static_cast<std::int64_t>(sum_.total(communicator_)));
@@ -117,6 +117,9 @@ private:
       list(name, std::vector{facts.*member});
     }
     list(checkpoint::frame_times, facts.frame_times);
+    list(checkpoint::ledger, facts.ledger);
+    list(checkpoint::stage_counts, facts.stage_counts);
+    list(checkpoint::stage_numbers, facts.stage_numbers);
   }
 
   template <class Table, class Owner>
@@ -130,15 +133,15 @@ private:
     }
   }
 
-  void write_blocks(const SceneIdentity &scene, const BlockSystem &blocks) {
+  void write_blocks(const RunFacts &facts, const BlockSystem &blocks) {
     std::vector<std::int64_t> ids;
     std::vector<std::uint8_t> kinds;
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
       ids.push_back(blocks.properties[row].id.value);
       kinds.push_back(static_cast<std::uint8_t>(blocks.properties[row].kind));
     }
-    SlabRoute route(communicator_, scene.num_blocks, ids);
-    expect_on_all_ranks(communicator_, route.range().total == scene.num_mobile,
+    SlabRoute route(communicator_, facts.scene.num_blocks, ids);
+    expect_on_all_ranks(communicator_, route.range().total == facts.scene.num_mobile + facts.more_mobile,
                         "each mobile block on one rank of a checkpoint");
     dataset(checkpoint::block_ids, route.range(), route.ids());
     dataset(checkpoint::block_kinds, route.range(), route.route(kinds, 1));

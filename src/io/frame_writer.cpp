@@ -87,12 +87,11 @@ FrameData route_to_slabs(const Communicator &communicator, std::int64_t num_bloc
   };
   const bool is_sorted = std::is_sorted(order.begin(), order.end(), by_block);
   std::sort(order.begin(), order.begin() + (is_sorted ? 0 : std::ssize(order)), by_block);
-  std::int64_t next = slab_begin(num_blocks, communicator.size(), communicator.rank());
-  const bool in_order = std::all_of(order.begin(), order.end(),
-                                    [&next](const PlacedRow &row) { return row.first->block == next++; });
-  expect_on_all_ranks(
-      communicator, in_order && next == slab_begin(num_blocks, communicator.size(), communicator.rank() + 1),
-      "each block on exactly one rank's frame data");
+  const bool once =
+      std::adjacent_find(order.begin(), order.end(), [&](const PlacedRow &a, const PlacedRow &b) {
+        return !by_block(a, b);
+      }) == order.end();
+  expect_on_all_ranks(communicator, once, "each block on exactly one rank's frame data");
   if (num_ranks == 1 && is_sorted) {
     return {std::move(rows[0]), std::move(vertices[0])};
   }
@@ -177,11 +176,18 @@ std::string xdmf_item(const std::string &dimensions, const char *number, const s
                      number, file, dataset);
 }
 
-std::string xdmf_index(const std::vector<std::pair<int, double>> &frames, std::int64_t num_blocks,
-                       std::int64_t num_points, const std::string &topology) {
+struct IndexedFrame {
+  int index;
+  double time;
+  std::int64_t num_blocks;
+  std::int64_t num_points;
+  std::string topology; ///< file
+};
+
+std::string xdmf_index(const std::vector<IndexedFrame> &frames) {
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
                      "    <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  for (const auto &[index, time] : frames) {
+  for (const auto &[index, time, num_blocks, num_points, topology] : frames) {
     const std::string frame = frame_name(index);
     text += fmt::format("      <Grid Name=\"{}\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n",
                         frame, time);
@@ -227,32 +233,21 @@ void FrameWriter::write(int index, double time, FrameData data) {
   const RowRange cells = rows_in_rank_order(communicator_, std::ssize(slab.rows));
   const RowRange points = rows_in_rank_order(communicator_, std::ssize(slab.vertices));
 
-  if (topology_.empty()) {
-    const std::string name = topology_name(index);
-    const auto sizes = vtk::column(slab.rows, [](const FrameRow &row) { return row.num_vertices; });
-    CollectiveFile file(communicator_, directory_ / "frames" / name);
-    file.group("/VTKHDF");
-    file.group("/VTKHDF/CellData");
-    vtk::write_cells(file, cells, points, vtk::CellType::polygon, sizes);
-    file.dataset(vtk::cell_data("block"), cells,
-                 vtk::column(slab.rows, [](const FrameRow &row) { return row.block; }));
-    file.dataset(vtk::cell_data("material"), cells,
-                 vtk::column(slab.rows, [](const FrameRow &row) { return row.material; }));
-    write_xdmf_cells(file, cells, points, sizes);
-    file.publish();
-    all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
-    topology_ = name;
-    num_points_ = points.total;
+  if (topologies_.empty() || topologies_.back().num_cells != cells.total) {
+    expect(topologies_.empty() ? cells.total == num_blocks_ : cells.total < topologies_.back().num_cells,
+           "all blocks in the first frame, none that come later");
+    write_topology(index, slab);
   }
-  expect(points.total == num_points_, "as many vertices as in the first frame");
+  expect(points.total == topologies_.back().num_points, "as many vertices as in the topology");
+  const std::string topology = topology_name(topologies_.back().first_frame);
 
   CollectiveFile file(communicator_, directory_ / "frames" / frame_name(index));
   vtk::write_header(file, time);
   for (const char *name : vtk::cell_datasets) {
-    file.link(vtk::at(name), topology_);
+    file.link(vtk::at(name), topology);
   }
   for (const char *name : constant_cell_data) {
-    file.link(vtk::cell_data(name), topology_);
+    file.link(vtk::cell_data(name), topology);
   }
   vtk::write_points(file, points, slab.vertices);
   write_cell_data(file, cells, slab.rows);
@@ -263,10 +258,40 @@ void FrameWriter::write(int index, double time, FrameData data) {
   write_indices();
 }
 
+void FrameWriter::write_topology(int index, const FrameData &slab) {
+  const RowRange cells = rows_in_rank_order(communicator_, std::ssize(slab.rows));
+  const RowRange points = rows_in_rank_order(communicator_, std::ssize(slab.vertices));
+  const auto sizes = vtk::column(slab.rows, [](const FrameRow &row) { return row.num_vertices; });
+  CollectiveFile file(communicator_, directory_ / "frames" / topology_name(index));
+  file.group("/VTKHDF");
+  file.group("/VTKHDF/CellData");
+  vtk::write_cells(file, cells, points, vtk::CellType::polygon, sizes);
+  file.dataset(vtk::cell_data("block"), cells,
+               vtk::column(slab.rows, [](const FrameRow &row) { return row.block; }));
+  file.dataset(vtk::cell_data("material"), cells,
+               vtk::column(slab.rows, [](const FrameRow &row) { return row.material; }));
+  write_xdmf_cells(file, cells, points, sizes);
+  file.publish();
+  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+  topologies_.push_back({index, cells.total, points.total});
+}
+
+const FrameWriter::Topology &FrameWriter::topology_of(int frame) const {
+  const auto later = std::upper_bound(topologies_.begin(), topologies_.end(), frame,
+                                      [](int index, const Topology &t) { return index < t.first_frame; });
+  return *std::prev(later);
+}
+
 void FrameWriter::write_indices() const {
   on_root(communicator_, [this] {
     write_file(directory_ / "run.hdf.series", series_index(frames_));
-    write_file(directory_ / "run.xdmf", xdmf_index(frames_, num_blocks_, num_points_, topology_));
+    std::vector<IndexedFrame> indexed;
+    for (const auto &[index, time] : frames_) {
+      const Topology &topology = topology_of(index);
+      indexed.push_back(
+          {index, time, topology.num_cells, topology.num_points, topology_name(topology.first_frame)});
+    }
+    write_file(directory_ / "run.xdmf", xdmf_index(indexed));
   });
 }
 
@@ -284,21 +309,38 @@ void FrameWriter::continue_behind(const std::vector<double> &times) {
   for (const double time : times) {
     frames_.emplace_back(static_cast<int>(frames_.size()), time);
   }
-  topology_ = topology_name(0);
   const std::filesystem::path folder = directory_ / "frames";
+  std::vector<std::int64_t> numbers; // of each topology its first frame, cells and points
   on_root(communicator_, [&] {
     const hdf5::QuietErrors quiet;
-    const hdf5::File file(hdf5::open_to_read(folder / topology_));
-    num_points_ = hdf5::read_numbers<std::int64_t>(file, vtk::at("NumberOfPoints")).at(0);
+    const hdf5::File needed(hdf5::open_to_read(folder / topology_name(0)));
+    for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
+      const auto first = number_of(entry.path().filename().string(), "topology", ".h5");
+      if (!first || *first >= std::ssize(times)) {
+        continue;
+      }
+      const hdf5::File file(hdf5::open_to_read(entry.path()));
+      for (const char *count : {"NumberOfCells", "NumberOfPoints"}) {
+        numbers.push_back(hdf5::read_numbers<std::int64_t>(file, vtk::at(count)).at(0));
+      }
+      numbers.push_back(*first);
+    }
   });
-  communicator_.max(std::span(&num_points_, 1));
+  const auto told = communicator_.all_gather(numbers);
+  for (std::size_t k = 0; k + 2 < told.front().size(); k += 3) {
+    topologies_.push_back({static_cast<int>(told.front()[k + 2]), told.front()[k], told.front()[k + 1]});
+  }
+  std::sort(topologies_.begin(), topologies_.end(),
+            [](const Topology &a, const Topology &b) { return a.first_frame < b.first_frame; });
+  expect(!topologies_.empty(), "a run that goes on has a topology");
   write_indices();
   on_root(communicator_, [&] {
     std::vector<std::filesystem::path> later;
     for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
       const auto frame = number_of(name, "frame", ".hdf");
-      const std::int64_t number = frame ? *frame : number_of(name, "contacts", ".hdf").value_or(-1);
+      const auto contacts = frame ? frame : number_of(name, "contacts", ".hdf");
+      const std::int64_t number = contacts ? *contacts : number_of(name, "topology", ".h5").value_or(-1);
       if (number >= std::ssize(times)) {
         later.push_back(entry.path());
       }

@@ -132,6 +132,11 @@ private:
       return check_points(row, node, who);
     case Kind::count:
       return check_count(row, node, who);
+    case Kind::names:
+      return check_names(row, node, who);
+    case Kind::assignments:
+      return (node.is_table() && !node.as_table()->empty()) ||
+             wrong_type(row, node, who, "a table of paths and values");
     }
     return true;
   }
@@ -291,6 +296,18 @@ private:
       const std::string element_name = fmt::format("entry {} of {}", i, who);
       sound &= names ? check_name(row, element, element_name)
                      : check_number(row, element, element_name, "a number");
+    }
+    return sound;
+  }
+
+  bool check_names(const Key &row, const toml::node &node, const std::string &who) {
+    const toml::array *names = node.as_array();
+    if (names == nullptr || names->empty() || names->size() > most_vertices) {
+      return wrong_type(row, node, who, fmt::format("an array of 1 to {} names", most_vertices));
+    }
+    bool sound = true;
+    for (std::size_t i = 0; i < names->size(); ++i) {
+      sound &= check_name(row, (*names)[i], fmt::format("entry {} of {}", i, who));
     }
     return sound;
   }

@@ -38,6 +38,17 @@ void Faults::add(const toml::source_region &where, std::string what, std::string
                                                            std::move(what), std::move(why), std::move(hint)});
 }
 
+void Faults::add_new(const Faults &other) {
+  for (const auto &[order, diagnostic] : other.entries_) {
+    const auto is_same = [text = to_string(diagnostic)](const auto &entry) {
+      return to_string(entry.second) == text;
+    };
+    if (std::none_of(entries_.begin(), entries_.end(), is_same)) {
+      entries_.emplace_back(order, diagnostic);
+    }
+  }
+}
+
 Diagnostics Faults::sorted() const {
   auto entries = entries_;
   std::stable_sort(entries.begin(), entries.end(),

@@ -38,6 +38,9 @@ public:
   explicit Faults(const Origins &origins) : origins_(&origins) {}
 
   void add(const toml::source_region &where, std::string what, std::string why, std::string hint);
+  /// Those of another reading of the scene that are not here yet.
+  void add_new(const Faults &other);
+  [[nodiscard]] bool empty() const { return entries_.empty(); }
   [[nodiscard]] const Origins &origins() const { return *origins_; }
   /// All of them, by position; those at one position in the order they were added.
   [[nodiscard]] Diagnostics sorted() const;

@@ -31,7 +31,7 @@ constexpr auto optional = Need::optional;
 // clang-format off
 constexpr Key all_keys[] = {
   {"run", Kind::table, required, any, "", "", "[run]", "How the run goes."},
-  {"run.duration", Kind::number, required, above_to(0, 1e12), "", "", "2.0", "[s] Simulated time."},
+  {"run.duration", Kind::number, optional, above_to(0, 1e12), "", "<required without [[stage]]>", "2.0", "[s] Simulated time; with [[stage]] the stages say how long they last."},
   {"run.gravity", Kind::vector2, optional, from_to(-1e6, 1e6), "", "[0.0, -9.81]", "[0.0, -9.81]", "[m/s2] Acceleration of gravity."},
   {"run.gravity_ramp", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.0", "[s] Time over which gravity rises smoothly from zero."},
   {"run.time_step", Kind::number_or_auto, optional, above_to(0, 1e12), "", "\"auto\"", "1e-4", "[s] Time step, used as given, or \"auto\" for the largest one that meets the stability bound."},
@@ -192,6 +192,20 @@ constexpr Key all_keys[] = {
   {"output.history_interval", Kind::number, optional, above_to(0, 1e12), "", "<interval>", "0.02", "[s] Time between rows of the histories; divides interval or is a multiple of it."},
   {"output.checkpoint_interval", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.5", "[s] Simulated time between checkpoints, from which gcpdda restart goes on; rounded to whole steps; 0 for none but that of SIGUSR1."},
   {"output.contacts", Kind::boolean, optional, any, "", "true", "true", "Whether contacts are written beside the frames."},
+
+  {"stage[]", Kind::table_list, optional, any, "", "", "[[stage]]", "What happens one after the other, in the order of the file; without stages the run is one of run.duration. Every stage that takes steps ends in a checkpoint and a verdict: settled, failed or undecided."},
+  {"stage[].name", Kind::name, optional, any, "", "<stage and its position, from 0>", "\"gravity\"", "Name, unique among the stages."},
+  {"stage[].kind", Kind::choice, required, any, "run settle excavate change", "", "\"settle\"", "run: dynamics for a duration, or until a verdict and at most for a limit; settle: damped motion until rest, or failure; excavate: blocks are taken away; change: only set. Excavate and change take no time."},
+  {"stage[].duration", Kind::number, optional, above_to(0, 1e12), "", "<run: exactly one of this and limit>", "2.0", "[s] How long a run lasts."},
+  {"stage[].limit", Kind::number, optional, above_to(0, 1e12), "", "<required for settle>", "10.0", "[s] Longest time until a verdict; a stage that reaches it undecided ends the run with exit code 7, one that has failed ends it with 0."},
+  {"stage[].tolerance", Kind::number, optional, above_to(0, 0.1), "", "1e-5", "1e-5", "Largest unbalanced force over the largest force in the model at which blocks count as settled."},
+  {"stage[].failure_motion", Kind::number, optional, above_to(0, 1e6), "", "0.5", "0.5", "A block that has moved by this share of its size (the root of its area) in the stage and is not slowing down has failed."},
+  {"stage[].local_damping", Kind::number, optional, from_below(0, 1), "", "<settle: 0.8; run: run.local_damping>", "0.8", "Share of the net force that is taken away against the motion in this stage."},
+  {"stage[].mass_scaling", Kind::boolean, optional, any, "", "false", "true", "Whether a settle stage makes blocks heavier against acceleration (not against gravity) until all swing as slowly as the slowest one: the step is as long as for that block, for models with a few small blocks. Where joints slip on the way to rest they end elsewhere, because blocks fall at different rates: let gravity rise slowly (run.gravity_ramp)."},
+  {"stage[].blocks", Kind::names, optional, any, "", "<none>", "[\"wall.0.3\", \"wall.0.4\"]", "Names of the blocks to excavate, also of generated ones or those of the block file."},
+  {"stage[].region", Kind::polygon, optional, from_to(-1e9, 1e9), "", "<none>", "[[0, 0], [4, 0], [4, 3], [0, 3]]", "[m] Polygon; blocks whose centroid lies in it when the stage begins are excavated, fixed ones too."},
+  {"stage[].relax", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.5", "[s] Time over which the forces of excavated blocks on those that stay fall linearly to zero; 0: at once."},
+  {"stage[].set", Kind::assignments, optional, any, "", "<none>", "{ \"joint.default.friction_angle_deg\" = 25.0 }", "Values of the scene that change when the stage begins, by path as with --set: keys of [run] that can change (gravity, time_step, safety, contact_damping, local_damping, elasticity, potential), any value of a [joint.NAME] or [material.NAME], block.NAME.fixed and block.NAME.load."},
 
   {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks and points whose history is written to history/<name>.csv: either block, or name and point."},
   {"monitor[].block", Kind::name, optional, any, "", "<exactly one of this and point>", "\"slider\"", "Name of the block, also of a generated one or one of the block file."},

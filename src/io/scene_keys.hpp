@@ -29,7 +29,9 @@ enum class Kind {
   points,         ///< list of [x, y]
   polygon,        ///< the same, at least three
   velocity_table, ///< list of [t, vx, vy, omega]
-  count           ///< integer, or a real number that is one
+  count,          ///< integer, or a real number that is one
+  names,          ///< list of names
+  assignments     ///< table of dotted paths and their values
 };
 
 /// Numbers a key accepts; also each number of a vector or polygon.

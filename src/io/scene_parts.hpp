@@ -91,4 +91,11 @@ RockRegion read_region(const SceneSource &source, Materials &materials, const Jo
 /// @param scene  with all its blocks
 std::vector<Monitor> read_monitors(const SceneSource &source, const Scene &scene);
 
+/// The stages, each without what it sets (scene_changes.hpp).
+/// @param scene  with all its blocks
+std::vector<Stage> read_stages(const SceneSource &source, const Scene &scene);
+
+/// Longest time all stages may take together, s.
+double duration_of_stages(const SceneSource &source);
+
 } // namespace gcpdda::scene_text

@@ -40,8 +40,68 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.generators = read_generators(source, materials, names, fidelity, scene.blocks);
   scene.block_file = read_block_file_table(source, materials, fidelity, file);
   scene.region = read_region(source, materials, scene.joints, file);
+  if (source.root.contains("stage")) {
+    scene.run.duration = duration_of_stages(source);
+  }
   scene.output = read_output(source, scene.run.duration);
   scene.monitors = read_monitors(source, scene);
+}
+
+// A block that could move keeps its state when a stage fixes it: it is held where it is then.
+void hold_where_they_are(Scene &scene, std::vector<bool> &could_move) {
+  could_move.resize(scene.blocks.size());
+  for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
+    SceneBlock &block = scene.blocks[i];
+    if (block.fixed && could_move[i]) {
+      block.fixed = false;
+      block.driven = true;
+      block.velocity = {};
+      block.velocity_table.clear();
+    }
+    could_move[i] = could_move[i] || !block.fixed;
+  }
+}
+
+/// What a reading starts from.
+struct Text {
+  std::string_view toml;
+  const std::string &file;
+  const std::vector<std::string> &sets;
+};
+
+/// The scene of a stage is that of the file with all that is set up to it; its faults are told where they are
+/// set. Moved values leave a copy of the tree that is no longer good: each stage takes a new one.
+void read_changes(const Text &text, Faults &faults, Scene &scene) {
+  std::vector<bool> could_move;
+  Scene start = scene;
+  hold_where_they_are(start, could_move);
+  for (std::size_t last = 0; last < scene.stages.size(); ++last) {
+    Faults own(faults.origins());
+    auto root = parse_scene(text.toml, own);
+    for (std::size_t i = 0; i < text.sets.size(); ++i) {
+      apply_set(*root, text.sets[i], i, own);
+    }
+    toml::array *stages = (*root)["stage"].as_array();
+    bool changes = false;
+    for (std::size_t k = 0; k <= last; ++k) {
+      const toml::table *stage = (*stages)[k].as_table();
+      toml::table *set = stage == nullptr ? nullptr : (*stages)[k].as_table()->get_as<toml::table>("set");
+      changes = set != nullptr;
+      for (auto entry = set == nullptr ? toml::table::iterator() : set->begin();
+           changes && entry != set->end(); ++entry) {
+        apply_change(*root, entry->first, entry->second, own);
+      }
+    }
+    if (!changes) {
+      continue;
+    }
+    auto after = std::make_shared<Scene>();
+    const FaultyNodes faulty = check_keys(*root, own);
+    read_parts({*root, faulty, own}, text.file, *after);
+    faults.add_new(own);
+    hold_where_they_are(*after, could_move);
+    scene.stages[last].after = std::move(after);
+  }
 }
 
 /// The resolved scene will lie in another folder, and may be read from a third one.
@@ -75,6 +135,8 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     }
     const FaultyNodes faulty = check_keys(*root, faults);
     read_parts({*root, faulty, faults}, file, reading.scene);
+    reading.scene.stages = read_stages({*root, faulty, faults}, reading.scene);
+    read_changes({text, file, sets}, faults, reading.scene);
     reading.diagnostics = faults.sorted();
     if (!has_errors(reading.diagnostics)) {
       name_from_everywhere(reading.scene, *root);

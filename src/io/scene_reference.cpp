@@ -68,6 +68,10 @@ std::string_view type_of(const Key &key) {
     return "list of rows of four numbers";
   case Kind::count:
     return "integer";
+  case Kind::names:
+    return "list of names";
+  case Kind::assignments:
+    return "table of paths and values";
   }
   return "";
 }

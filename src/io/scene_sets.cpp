@@ -148,7 +148,7 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
 
 bool is_named_list(std::string_view key) {
   return key == "block" || key == "wall" || key == "pyramid" || key == "joint_set" || key == "fault" ||
-         key == "opening";
+         key == "opening" || key == "stage";
 }
 
 // Finds the block, wall, joint set or other element with a name that path[1], or path[1] to path[k] joined by
@@ -184,6 +184,26 @@ toml::table *find_element(toml::table &root, Path &path, const toml::source_regi
                  ? fmt::format("unnamed {}s are {}<n>, from 0 in file order", list, prefix_of_unnamed(list))
                  : fmt::format("did you mean '{}'?", near));
   return nullptr;
+}
+
+/// What a stage may set: nothing that would need another state.
+bool can_change(const Path &path) {
+  const std::string &last = path.back();
+  const auto is_one_of = [&](std::initializer_list<const char *> names) {
+    return std::find(names.begin(), names.end(), last) != names.end();
+  };
+  if (path.front() == "run") {
+    return path.size() == 2 && is_one_of({"gravity", "time_step", "safety", "contact_damping",
+                                          "local_damping", "elasticity", "potential"});
+  }
+  if (path.front() == "joint") {
+    return path.size() == 3 && !is_one_of({"materials", "allowed_overlap"}) &&
+           find_key("joint.*", last) != nullptr;
+  }
+  if (path.front() == "material") {
+    return path.size() == 3 && find_key("material.*", last) != nullptr;
+  }
+  return path.front() == "block" && path.size() > 2 && is_one_of({"fixed", "load"});
 }
 
 } // namespace
@@ -230,6 +250,40 @@ void apply_set(toml::table &root, const std::string &set, std::size_t index, Fau
     table = existing->as_table();
     added = entry->second.as_table();
   }
+}
+
+void apply_change(toml::table &root, const toml::key &dotted, toml::node &value, Faults &faults) {
+  const auto path = split(trimmed(dotted.str()));
+  if (!path || !can_change(*path)) {
+    faults.add(dotted.source(), fmt::format("a stage cannot set '{}'", shown(dotted.str())),
+               "it sets values of joints and materials, block.NAME.fixed, block.NAME.load and some of [run]",
+               "for example set = { \"joint.default.friction_angle_deg\" = 25.0 }");
+    return;
+  }
+  Path below = *path;
+  toml::table *table = &root;
+  if (is_named_list(path->front())) {
+    table = find_element(root, below, dotted.source(), faults);
+    if (table == nullptr) {
+      return;
+    }
+  }
+  while (below.size() > 1) {
+    toml::node *next = table->get(below.front());
+    if (next == nullptr && path->front() == "run") {
+      table->insert(below.front(), toml::table());
+      next = table->get(below.front());
+    }
+    if (next == nullptr || !next->is_table()) {
+      faults.add(dotted.source(),
+                 fmt::format("'{}' names no {} of the scene", shown(dotted.str()), path->front()),
+                 fmt::format("[{}.{}] is not there", path->front(), shown(below.front())), "check the name");
+      return;
+    }
+    table = next->as_table();
+    below.erase(below.begin());
+  }
+  table->insert_or_assign(toml::key(below.front(), toml::source_region(dotted.source())), std::move(value));
 }
 
 } // namespace gcpdda::scene_text

@@ -17,4 +17,9 @@ std::optional<toml::table> parse_scene(std::string_view text, Faults &faults);
 /// check of the whole tree to say.
 void apply_set(toml::table &root, const std::string &set, std::size_t index, Faults &faults);
 
+/// Puts the value that a stage sets into the tree; what must stay as it was at the start is at fault.
+/// @param path  as for --set
+/// @param value  moved into the tree
+void apply_change(toml::table &root, const toml::key &path, toml::node &value, Faults &faults);
+
 } // namespace gcpdda::scene_text

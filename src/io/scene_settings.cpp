@@ -34,12 +34,25 @@ void check_scheme_keys(const SceneSource &source, const Section &run, SchemeKind
   }
 }
 
+void check_duration(const SceneSource &source, const Section &run) {
+  const toml::node *duration = run.given("duration");
+  const bool staged = source.root.contains("stage");
+  if (duration == nullptr && !staged && run.is_table() && source.root.contains("run")) {
+    source.faults.add(run.source(), run.subject("duration") + " is missing", "it is required",
+                      "for example duration = 2.0");
+  } else if (duration != nullptr && staged) {
+    fault(source, *duration, run.subject("duration") + " has no meaning beside [[stage]]",
+          "the stages say how long they last", "leave it out");
+  }
+}
+
 } // namespace
 
 RunSettings read_run(const SceneSource &source) {
   const Section run = section(source.root, "run", source.faulty);
   RunSettings settings;
   run.read("duration", settings.duration);
+  check_duration(source, run);
   run.read("gravity", settings.gravity);
   run.read("gravity_ramp", settings.gravity_ramp);
   const toml::node *time_step = run.sound("time_step");

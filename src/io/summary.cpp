@@ -46,6 +46,13 @@ public:
     return add_raw(key, json(value));
   }
   JsonObject &add(const std::string &key, const JsonObject &value) { return add_raw(key, value.text()); }
+  JsonObject &add(const std::string &key, const std::vector<JsonObject> &list) {
+    std::string text;
+    for (const JsonObject &object : list) {
+      text += (text.empty() ? "" : ", ") + object.text();
+    }
+    return add_raw(key, "[" + text + "]");
+  }
   [[nodiscard]] std::string text() const { return "{" + members_ + "}"; }
 
 private:
@@ -70,6 +77,23 @@ JsonObject energy_object(const EnergyRow &row) {
       .add("residual", row.residual)
       .add("unbalanced_ratio", row.unbalanced_ratio)
       .add("max_speed", row.max_speed);
+}
+
+std::vector<JsonObject> stage_objects(const RunSummary &summary) {
+  std::vector<JsonObject> objects;
+  for (const auto &[name, verdict, result] : summary.stages) {
+    objects.push_back(JsonObject()
+                          .add("name", name)
+                          .add("verdict", verdict)
+                          .add("time", result.time)
+                          .add("steps", result.steps)
+                          .add("contact_steps", result.contact_steps)
+                          .add("unbalanced_ratio", result.unbalanced_ratio)
+                          .add("kinetic", result.kinetic)
+                          .add("moved", result.moved)
+                          .add("removed", result.removed));
+  }
+  return objects;
 }
 
 } // namespace
@@ -113,6 +137,9 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
       .add("counters", counters)
       .add("verdict", summary.verdict)
       .add("message", summary.message);
+  if (!summary.stages.empty()) {
+    object.add("stages", stage_objects(summary));
+  }
   write_file(directory / "summary.json", object.text() + "\n");
 }
 

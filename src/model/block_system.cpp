@@ -35,19 +35,12 @@ void append_shape(BlockSystem &system, std::span<const Vec2> vertices, Vec2 cent
   }
 }
 
-/// [std] stiffness of plane strain or plane stress, times the area.
 void append_deformation(BlockSystem &system, const Moments &moments, const Material &material,
                         const RigidDof &velocity, bool plane_strain) {
   Deformation d;
   d.second_moment = material.density * Mat2{moments.xx, moments.xy, moments.xy, moments.yy};
   d.rate = {0.0, -velocity.r, velocity.r, 0.0};
-  const double e = material.youngs_modulus;
-  const double nu = material.poissons_ratio;
-  const double factor =
-      moments.area * (plane_strain ? e / ((1.0 + nu) * (1.0 - 2.0 * nu)) : e / (1.0 - nu * nu));
-  d.stiffness_direct = factor * (plane_strain ? 1.0 - nu : 1.0);
-  d.stiffness_cross = factor * nu;
-  d.stiffness_shear = 0.5 * moments.area * e / (1.0 + nu);
+  set_elasticity(d, moments.area, material, plane_strain);
   system.deformation.push_back(d);
 }
 
@@ -61,6 +54,16 @@ void append_attachments(BlockSystem &system, const SceneBlock &block, Vec2 centr
 }
 
 } // namespace
+
+// [std] plane strain or plane stress, times the area.
+void set_elasticity(Deformation &deformation, double area, const Material &material, bool plane_strain) {
+  const double e = material.youngs_modulus;
+  const double nu = material.poissons_ratio;
+  const double factor = area * (plane_strain ? e / ((1.0 + nu) * (1.0 - 2.0 * nu)) : e / (1.0 - nu * nu));
+  deformation.stiffness_direct = factor * (plane_strain ? 1.0 - nu : 1.0);
+  deformation.stiffness_cross = factor * nu;
+  deformation.stiffness_shear = 0.5 * area * e / (1.0 + nu);
+}
 
 void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material,
                   BlockKind kind, bool plane_strain) {

@@ -182,7 +182,8 @@ double unbalanced_ratio(const Simulation &simulation) {
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     if (!blocks.properties[row].keeps_its_velocity()) {
       largest[0] = std::max(largest[0], norm(simulation.forces().rigid[row].u));
-      largest[1] = std::max(largest[1], blocks.properties[row].mass * norm(simulation.scene().run.gravity));
+      largest[1] =
+          std::max(largest[1], blocks.properties[row].heavy_mass() * norm(simulation.scene().run.gravity));
     }
   }
   for (const RegionForce &force : simulation.contacts().regions()) {
@@ -226,7 +227,36 @@ EnergyRow EnergyLedger::row(Simulation &simulation) const {
   row.boundary_work = terms.load_work.value();
   row.residual = row.kinetic + row.strain + row.contact_normal + row.contact_stick + row.gravity +
                  row.friction_loss + row.damping_loss - row.boundary_work - total_at_start_;
+  if (!before_.empty()) {
+    for (std::size_t k = 0; k < carried.size(); ++k) {
+      row.*carried[k] += before_[k];
+    }
+  }
   return row;
+}
+
+void EnergyLedger::note_end(Simulation &simulation) {
+  const EnergyRow now = row(simulation);
+  at_end_.clear();
+  for (double EnergyRow::*sum : carried) {
+    at_end_.push_back(now.*sum);
+  }
+}
+
+void EnergyLedger::step_over(Simulation &simulation) {
+  const EnergyRow now = row(simulation);
+  before_.resize(carried.size());
+  at_end_.resize(carried.size());
+  for (std::size_t k = 0; k < carried.size(); ++k) {
+    before_[k] += at_end_[k] - now.*carried[k];
+  }
+}
+
+void EnergyLedger::tell(RunFacts &facts) const {
+  facts.total_at_start = total_at_start_;
+  facts.stick_at_start = stick_at_start_;
+  facts.ledger = before_;
+  facts.ledger.insert(facts.ledger.end(), at_end_.begin(), at_end_.end());
 }
 
 } // namespace gcpdda

@@ -190,7 +190,7 @@ private:
     return text +
            line("", fmt::format("at most {:.6g} s = safety {:g} x limit {:.4g} / omega_max {:.6g} rad/s, "
                                 "set by block '{}'",
-                                bound.time_step, simulation_.scene().run.safety, bound.limit, bound.omega_max,
+                                bound.time_step, bound.safety, bound.limit, bound.omega_max,
                                 block_name(simulation_.scene(), bound.block)));
   }
 

@@ -8,6 +8,7 @@
 #include "gcpdda/simulation/results.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 #include "gcpdda/simulation/stop_signal.hpp"
+#include "rank_facts.hpp"
 #include "run_log.hpp"
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <iostream>
-#include <numeric>
 #include <optional>
 
 namespace gcpdda {
@@ -31,53 +31,6 @@ double seconds_since(Clock::time_point start) {
 
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-/// Root's file work that may fail on the root alone: the verdict is shared before anybody throws.
-template <class Work> void on_root(const Communicator &communicator, Work &&work) {
-  std::string trouble;
-  if (communicator.is_root()) {
-    try {
-      work();
-    } catch (const std::exception &e) {
-      trouble = e.what();
-    }
-  }
-  communicator.broadcast(trouble);
-  if (!trouble.empty()) {
-    throw FileError(trouble);
-  }
-}
-
-template <class T> std::int64_t total(const Communicator &communicator, T value) {
-  auto sum = static_cast<std::int64_t>(value);
-  communicator.sum(std::span(&sum, 1));
-  return sum;
-}
-
-/// {min, mean, max} of everybody's value.
-std::array<double, 3> spread(const Communicator &communicator, double value) {
-  std::array<double, 3> s{value, 0.0, value};
-  const auto all = communicator.all_gather(std::vector<double>{value});
-  for (const auto &v : all) {
-    s = {std::min(s[0], v[0]), s[1] + v[0] / static_cast<double>(all.size()), std::max(s[2], v[0])};
-  }
-  return s;
-}
-
-/// max/mean of everybody's count.
-double imbalance_of(const std::vector<std::int64_t> &counts) {
-  const double sum = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
-  const double most = static_cast<double>(*std::max_element(counts.begin(), counts.end()));
-  return sum > 0.0 ? most * static_cast<double>(counts.size()) / sum : 1.0;
-}
-
-std::vector<std::int64_t> counts_by_rank(const Communicator &communicator, std::int64_t mine) {
-  std::vector<std::int64_t> counts;
-  for (const auto &count : communicator.all_gather(std::vector<std::int64_t>{mine})) {
-    counts.push_back(count[0]);
-  }
-  return counts;
 }
 
 /// A run with its files.
@@ -99,12 +52,12 @@ public:
   int run() {
     if (simulation_.finished() && simulation_.restored()) {
       if (communicator_.is_root()) {
-        std::cerr << fmt::format(
-            "the run in {} is finished at t = {:g} s, a longer run.duration goes on from "
-            "there\n",
-            directory_.string(), simulation_.restored()->facts.time);
+        std::cerr << fmt::format("the run in {} is finished at t = {:g} s, {} goes on from there\n",
+                                 directory_.string(), simulation_.restored()->facts.time,
+                                 simulation_.is_staged() ? "a longer limit or a further stage"
+                                                         : "a longer run.duration");
       }
-      return 0;
+      return exit_code_of_stages();
     }
     announce();
     write_owners_of_blocks();
@@ -116,18 +69,22 @@ public:
     const double output_before = output_seconds();
     const double output_cpu_before = output_cpu_seconds_;
     first_step_ = simulation_.step_count();
+    begin_stages();
     while (!simulation_.finished() && !simulation_.stop_agreed()) {
       if (stop_signal_came()) {
         simulation_.ask_to_stop();
       }
       simulation_.step();
-      if (simulation_.step_count() ==
-          std::min<std::int64_t>(first_step_ + steps_to_predict, simulation_.plan().num_steps)) {
+      end_stage_if_over();
+      if (!simulation_.is_staged() &&
+          simulation_.step_count() ==
+              std::min<std::int64_t>(first_step_ + steps_to_predict, simulation_.plan().num_steps)) {
         predict_duration(seconds_since(loop_start));
       }
       write_due();
       write_checkpoint_if_due();
       show_progress(loop_start);
+      begin_stages();
     }
     loop_seconds_ = seconds_since(loop_start) - (output_seconds() - output_before);
     cpu_seconds_ = cpu_seconds() - cpu_start - (output_cpu_seconds_ - output_cpu_before);
@@ -136,6 +93,54 @@ public:
 
 private:
   static constexpr std::int64_t steps_to_predict = 20;
+
+  void end_stage_if_over() {
+    if (!simulation_.is_staged() || !simulation_.stage_is_over() || simulation_.fault()) {
+      return;
+    }
+    ledger_->note_end(simulation_);
+    simulation_.end_stage(); // a settled pile is set to rest
+    ledger_->step_over(simulation_);
+    log_stage();
+  }
+
+  /// Those that take no steps are over at once.
+  void begin_stages() {
+    while (simulation_.is_staged() && simulation_.stage_is_over() && !simulation_.finished() &&
+           !simulation_.stop_agreed()) {
+      simulation_.begin_next_stage();
+      ledger_->step_over(simulation_);
+      if (simulation_.stage_is_over()) {
+        log_stage();
+      }
+    }
+  }
+
+  void log_stage() {
+    const StageResult result = simulation_.stage_results().back();
+    const std::string name = simulation_.stages()[static_cast<std::size_t>(simulation_.stage().index)].name;
+    if (result.verdict == Verdict::done) {
+      log_->line(
+          fmt::format("stage '{}' at t = {:.9g} s, {} blocks removed", name, result.time, result.removed));
+      return;
+    }
+    log_->line(fmt::format("stage '{}' {} at t = {:.9g} s after {} steps: unbalanced {:.2e}, largest motion "
+                           "{:.3g} of a block's size",
+                           name, word_of(result.verdict), result.time, result.steps, result.unbalanced_ratio,
+                           result.moved));
+  }
+
+  static std::string word_of(Verdict verdict) {
+    constexpr std::array words{"undecided", "settled", "failed", "done"};
+    return words.at(static_cast<std::size_t>(verdict));
+  }
+
+  /// 7 where a limit was reached without a verdict.
+  [[nodiscard]] int exit_code_of_stages() const {
+    const StageState &stage = simulation_.stage();
+    const bool waited = simulation_.stages()[static_cast<std::size_t>(stage.index)].until_verdict;
+    return waited && stage.verdict == Verdict::undecided ? 7 : 0;
+  }
 
   void begin_results(const Scene &scene, bool overwrite) {
     on_root(communicator_, [&] {
@@ -187,7 +192,7 @@ private:
         "step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
         "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
         simulation_.plan().time_step, simulation_.plan().num_steps, simulation_.plan().duration,
-        bound.time_step, scene.run.safety, bound.limit, bound.omega_max));
+        bound.time_step, bound.safety, bound.limit, bound.omega_max));
     for (const JointLaw &law : scene.joints.laws) {
       log_->line(fmt::format(
           "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
@@ -236,7 +241,7 @@ private:
     const auto steps = static_cast<double>(simulation_.step_count() - first_step_);
     const double elapsed = seconds_since(loop_start);
     const auto all_steps = static_cast<double>(simulation_.plan().num_steps);
-    const double share = static_cast<double>(simulation_.step_count()) / all_steps;
+    const double share = static_cast<double>(simulation_.stage_step()) / all_steps;
     constexpr std::size_t bar_length = 20;
     const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_length));
     log_->progress(fmt::format(
@@ -248,22 +253,25 @@ private:
   }
 
   void write_due() {
-    const std::int64_t step = simulation_.step_count();
+    const std::int64_t step = simulation_.stage_step();
     const TimePlan &plan = simulation_.plan();
     const bool failed = simulation_.fault().has_value();
-    if (!failed && !plan.output_due(step) && !plan.history_due(step)) {
+    const bool ended = simulation_.is_staged() && simulation_.stage_is_over(); // wherever it falls
+    const bool output_due = failed || ended || plan.output_due(step);
+    const bool history_due = failed || ended || plan.history_due(step);
+    if (!output_due && !history_due) {
       return;
     }
     const auto scope = simulation_.phases().measure(Phase::output);
     const double cpu_start = cpu_seconds();
-    if (failed || plan.output_due(step)) {
+    if (output_due) {
       const int index = num_frames_++;
       frames_->write(index, simulation_.time(), collect_frame(simulation_));
       if (simulation_.scene().output.contacts) {
         frames_->write_contacts(index, simulation_.time(), collect_contacts(simulation_));
       }
     }
-    if (failed || plan.history_due(step)) {
+    if (history_due) {
       write_history(failed);
     }
     output_cpu_seconds_ += cpu_seconds() - cpu_start;
@@ -272,7 +280,9 @@ private:
   // After frames and histories of this step, so that a restart owes none.
   void write_checkpoint_if_due() {
     const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
-    if (simulation_.fault() || (!stopping && !simulation_.plan().checkpoint_due(simulation_.step_count()))) {
+    const bool stage_ends = simulation_.is_staged() && simulation_.stage_is_over();
+    if (simulation_.fault() ||
+        (!stopping && !stage_ends && !simulation_.plan().checkpoint_due(simulation_.stage_step()))) {
       return;
     }
     const auto scope = simulation_.phases().measure(Phase::output);
@@ -280,8 +290,7 @@ private:
     const Clock::time_point start = Clock::now();
     on_root(communicator_, [&] { histories_->sync(); });
     RunFacts facts = simulation_.facts();
-    facts.total_at_start = ledger_->total_at_start();
-    facts.stick_at_start = ledger_->stick_at_start();
+    ledger_->tell(facts);
     facts.frame_times = frames_->times();
     checkpoints_->write(facts, simulation_.blocks(), simulation_.contacts_that_count_here());
     log_->line(fmt::format("checkpoint at t = {:.9g} s, written in {:.3g} s", simulation_.time(),
@@ -299,6 +308,9 @@ private:
     }
     on_root(communicator_, [&] {
       for (std::size_t m = 0; m < rows.size(); ++m) {
+        if (simulation_.is_removed(simulation_.scene().monitors[m].block)) {
+          continue;
+        }
         histories_->write_monitor(m, simulation_.time(), rows[m]);
       }
       if (!failed) {
@@ -356,8 +368,15 @@ private:
     const bool failed = simulation_.fault().has_value();
     const bool stopped = !simulation_.finished();
     RunSummary summary;
-    summary.verdict = failed ? "failed" : stopped ? "stopped" : "completed";
-    summary.message = failed ? fault_message()
+    const bool waited = simulation_.is_staged() && !failed && !stopped && last_stage().until_verdict;
+    const Verdict verdict = simulation_.stage().verdict;
+    summary.verdict = failed ? "failed" : stopped ? "stopped" : waited ? word_of(verdict) : "completed";
+    summary.message = failed   ? fault_message()
+                      : waited ? fmt::format("stage '{}' {} at t = {:g} s", last_stage().name,
+                                             verdict == Verdict::undecided ? "reached its limit undecided"
+                                             : verdict == Verdict::failed  ? "has failed"
+                                                                           : "has settled",
+                                             simulation_.time())
                       : stopped
                           ? fmt::format("stopped by a signal at t = {:g} s, go on with gcpdda restart {}",
                                         simulation_.time(), directory_.string())
@@ -382,7 +401,11 @@ private:
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());
     forget_stop_signal();
-    return failed ? 5 : stopped ? 6 : 0;
+    return failed ? 5 : stopped ? 6 : exit_code_of_stages();
+  }
+
+  [[nodiscard]] const Stage &last_stage() const {
+    return simulation_.stages()[static_cast<std::size_t>(simulation_.stage().index)];
   }
 
   void fill(RunSummary &summary) {
@@ -421,6 +444,12 @@ private:
     for (std::size_t p = 0; p < phase_names.size(); ++p) {
       const double seconds = simulation_.phases().seconds(static_cast<Phase>(p));
       summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
+    }
+    if (simulation_.is_staged()) {
+      for (const StageResult &result : simulation_.stage_results()) {
+        const Stage &stage = simulation_.stages()[summary.stages.size()];
+        summary.stages.push_back({stage.name, word_of(result.verdict), result});
+      }
     }
     const auto add = [&](const char *name, std::int64_t value) {
       summary.counters.emplace_back(name, static_cast<double>(value));

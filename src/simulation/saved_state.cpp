@@ -29,7 +29,10 @@ void Simulation::identify(std::span<const SceneBlock> slab) {
 
 void Simulation::go_on() {
   const RunFacts &facts = restored_->facts;
-  step_count_ = step_to_go_on_from(plan_, facts.time, facts.time_step, notes_);
+  step_count_ = stage_.ended ? facts.step : stage_.first_step;
+  if (!stage_.ended) {
+    step_count_ += step_to_go_on_from(plan_, facts.time - stage_.start_time, facts.time_step, notes_);
+  }
   counters_.contact_steps = communicator_.is_root() ? facts.contact_steps : 0;
   counters_.max_overlap = facts.max_overlap;
   counters_.max_overlap_share = facts.max_overlap_share;
@@ -39,7 +42,11 @@ void Simulation::go_on() {
 RunFacts Simulation::facts() const {
   RunFacts facts;
   facts.scene = identity_;
+  facts.more_mobile = stage_.more_mobile;
   facts.step = step_count_;
+  StageNumbers numbers = to_numbers(stage_);
+  facts.stage_counts = std::move(numbers.counts);
+  facts.stage_numbers = std::move(numbers.reals);
   facts.time = time();
   facts.time_step = plan_.time_step;
   facts.contact_steps = counters_.contact_steps;

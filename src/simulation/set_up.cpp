@@ -81,9 +81,18 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
                                PrescribedMotion(scene_.blocks[i].velocity_table));
     }
   }
+  is_staged_ = !scene_.stages.empty();
+  stages_ = std::move(scene_.stages);
+  if (!is_staged_) {
+    stages_.resize(1);
+    stages_.front().duration = scene_.run.duration;
+  }
+  plan_all_stages();
+  stop_on_errors(notes_);
   distribute(restart_from);
+  scale_masses();
   find_bound();
-  plan_ = plan_time(scene_.run, scene_.output, bound_.time_step, notes_);
+  plan_stage();
   warn_of_lively_impacts();
   make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity,
                       stiffest_joint(scene_.joints));
@@ -119,7 +128,11 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
   take_blocks(std::exchange(slab, {}));
   std::vector<RegionRecord> none;
   if (!restart_from.empty()) { // rows are those of the slab still
-    restored_ = restore_newest_checkpoint(communicator_, restart_from, identity_, blocks_);
+    const Scene start = scene_;
+    const BlockSystem begin = blocks_;
+    restored_ =
+        restore_newest_checkpoint(communicator_, restart_from, identity_, blocks_,
+                                  [&](const RunFacts &facts) { begin_as_restored(start, begin, facts); });
   }
   migrate(communicator_, map_, blocks_, restored_ ? restored_->memory : none);
   map_ = partition_cells(map_.grid, count_contact_work(), communicator_.size(), &partition_);
@@ -364,7 +377,13 @@ void Simulation::find_bound() {
                                   amplification(scheme_, 0.1, bound_.damping_ratio) - 1.0),
                       "use run.contact_time = \"leapfrog\" for results"});
   }
-  bound_.time_step = bound_.omega_max > 0.0 ? scene_.run.safety * bound_.limit / bound_.omega_max
+  // On the way to rest nothing needs to be accurate, only stable. Under scaled masses every block swings at
+  // the bound, and a step as long keeps the pile awake.
+  constexpr double safety_to_settle = 0.9;
+  const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
+  const bool settles = stage.kind == StageKind::settle && !stage.mass_scaling;
+  bound_.safety = settles ? std::max(scene_.run.safety, safety_to_settle) : scene_.run.safety;
+  bound_.time_step = bound_.omega_max > 0.0 ? bound_.safety * bound_.limit / bound_.omega_max
                                             : std::numeric_limits<double>::infinity();
 }
 

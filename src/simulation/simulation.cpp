@@ -214,7 +214,7 @@ void Simulation::gather_forces() {
     if (blocks_.is_deformable(row)) {
       gather_gradient(row);
     }
-    apply_local_damping(blocks_, row, forces_, scene_.run.local_damping);
+    apply_local_damping(blocks_, row, forces_, local_damping_);
     add_half_works(row);
   }
 }
@@ -227,8 +227,8 @@ void Simulation::gather_block(std::size_t row, Vec2 gravity_now) {
     forces_.rigid[row] = {};
     return;
   }
-  ledger.gravity_force = block.mass * gravity_now;
-  ledger.load_force = {};
+  ledger.gravity_force = block.heavy_mass() * gravity_now;
+  ledger.load_force = unloading_of(block.id).rigid;
   for (const MaterialLoad &load : blocks_.loads_of(row)) {
     const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
     ledger.load_force += {load.force, cross(arm, load.force)};
@@ -244,7 +244,7 @@ void Simulation::gather_gradient(std::size_t row) {
   const BlockGradientSum sum = sum_gradient_forces(blocks_, candidates_, contacts_, row);
   d.shear_force = sum.shear;
   d.damping_force = sum.damping;
-  d.load_force = {};
+  d.load_force = unloading_of(blocks_.properties[row].id).gradient;
   for (const MaterialLoad &load : blocks_.loads_of(row)) {
     d.load_force += outer(load.force, load.point);
   }
@@ -267,6 +267,9 @@ void Simulation::add_half_works(std::size_t row) {
 // this rank counts. It cannot run on into the next step: how far a block may go in two steps depends on
 // contacts that nobody has evaluated yet, so a flag one step late is no bound.
 void Simulation::report() {
+  if (is_staged_ && stage_step() > 0 && stage_step() % steps_between_looks(num_blocks()) == 0) {
+    look_at_stage();
+  }
   const auto scope = phases_.measure(Phase::report);
   PendingMax status = communicator_.start_max(own_status());
   count();

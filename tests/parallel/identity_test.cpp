@@ -198,6 +198,32 @@ TEST(Identity, OfAMixedWall) {
   }
 }
 
+// Blocks go, those around are unloaded slowly, parameters change, and a verdict ends the run: all in flight,
+// so that blocks of every kind cross the ranks meanwhile. Frames lose rows from one to the next.
+TEST(Identity, OfAMixedWallInStages) {
+  std::string toml = testing::mixed_wall_toml(24, 14, 0.02);
+  toml.erase(toml.find("duration"), std::string("duration = 0.02\n").size());
+  toml += "[[stage]]\nkind = \"run\"\nduration = 0.005\n"
+          "[[stage]]\nkind = \"excavate\"\nregion = [[5, 2], [12, 2], [12, 8], [5, 8]]\nrelax = 0.004\n"
+          "blocks = [\"l2_2\"]\n"
+          "[[stage]]\nkind = \"run\"\nduration = 0.005\nset = { \"run.gravity\" = [1.0, -9.0], "
+          "\"joint.default.normal_stiffness\" = 2e9, "
+          "\"material.rock.density\" = 2000 }\n"
+          "[[stage]]\nkind = \"run\"\nlimit = 0.08\nfailure_motion = 0.02\n";
+  const TwoRuns runs(testing::scene_of(toml, {"output.interval=0.0025"}));
+  EXPECT_GE(runs.counted("refreshes"), 1);
+  EXPECT_GE(runs.counted("contacts"), 300);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("migrations"), 1);
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+  if (runs.world().is_root()) {
+    EXPECT_EQ(summary_text(runs.together(), "verdict"), "\"failed\"");
+    EXPECT_EQ(summary_text(runs.together(), "stages"), summary_text(runs.alone(), "stages"));
+    EXPECT_TRUE(fs::exists(runs.together() / "frames/topology_000003.h5"));
+  }
+}
+
 // Sixteen columns: only a few contacts can lie between ranks. Friction is lowered so that they slide, and
 // leave their cells.
 TEST(Identity, OfAToppledSlope) {

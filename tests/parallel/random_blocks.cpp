@@ -18,12 +18,13 @@ template <class T> void put_words(std::vector<std::uint64_t> &words, const T &va
 
 // By field: it has padding. A new field must be added here, which the size reminds of.
 void put_words(std::vector<std::uint64_t> &words, const BlockProperties &p) {
-  static_assert(sizeof(BlockProperties) == 72);
+  static_assert(sizeof(BlockProperties) == 80);
   for (const std::int64_t whole : {p.id.value, std::int64_t{p.material}, static_cast<std::int64_t>(p.kind),
                                    std::int64_t{p.is_convex}, std::int64_t{p.has_edge_joints}}) {
     words.push_back(static_cast<std::uint64_t>(whole));
   }
-  for (const double real : {p.area, p.mass, p.inertia, p.radius, p.width, p.centroid.x, p.centroid.y}) {
+  for (const double real :
+       {p.area, p.mass, p.inertia, p.mass_scaling, p.radius, p.width, p.centroid.x, p.centroid.y}) {
     words.push_back(std::bit_cast<std::uint64_t>(real));
   }
 }
@@ -117,6 +118,7 @@ BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double r
       (system.*field)[row] = any_bits(random);
     }
     fill_with_any_bits(system.ledger[row], random);
+    fill_with_any_bits(system.mark[row], random);
   }
   return system;
 }

@@ -194,7 +194,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
   const Scene scene = good(text);
   int compared = 0;
   for (const scene_text::Key &key : scene_text::scene_keys()) {
-    if (key.fallback.empty() || key.fallback.front() == '<') {
+    if (key.fallback.empty() || key.fallback.front() == '<' || key.path.starts_with("stage[]")) {
       continue;
     }
     std::string path(key.path);
@@ -210,6 +210,74 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     ++compared;
   }
   EXPECT_EQ(compared, 26);
+}
+
+// A duration of the run has no meaning beside stages, so they have a scene of their own.
+TEST(SceneReader, DefaultsOfStagesAreThoseInForce) {
+  const std::string text = "[run]\n" + small_scene.substr(small_scene.find("[material"));
+  const Stage stage = good(text + "[[stage]]\nkind = \"settle\"\nlimit = 3.0\n").stages.at(0);
+  const auto stated = [](const char *name) {
+    return std::stod(std::string(scene_text::find_key("stage[]", name)->fallback));
+  };
+  EXPECT_EQ(stage.tolerance, stated("tolerance"));
+  EXPECT_EQ(stage.failure_motion, stated("failure_motion"));
+  EXPECT_EQ(stage.relax, stated("relax"));
+  EXPECT_EQ(stage.local_damping, 0.8);
+  EXPECT_FALSE(stage.mass_scaling);
+  EXPECT_TRUE(stage.until_verdict);
+  EXPECT_EQ(stage.duration, 3.0);
+  EXPECT_EQ(stage.name, "stage0");
+  const Stage run = good(text + "[[stage]]\nkind = \"run\"\nduration = 3.0\n").stages.at(0);
+  EXPECT_LT(run.local_damping, 0.0);
+  EXPECT_FALSE(run.until_verdict);
+}
+
+// Every fault of the stages in one reading, those of what they set where it is set.
+TEST(SceneReader, FaultsOfStagesAreTold) {
+  const std::string text = "[run]\n" + small_scene.substr(small_scene.find("[material")) + R"([[stage]]
+kind = "settle"
+duration = 2
+[[stage]]
+kind = "excavate"
+[[stage]]
+kind = "excavate"
+blocks = ["slidr"]
+[[stage]]
+name = "x"
+kind = "change"
+set = { "joint.default.friction_angle_deg" = 95, "joint.fault.cohesion" = 3, "run.scheme" = "newmark-dda", "block.b.fixed" = true }
+[[stage]]
+name = "x"
+kind = "run"
+[[stage]]
+kind = "change"
+)";
+  const auto first =
+      static_cast<int>(std::count(text.begin(),
+                                  text.begin() + static_cast<std::ptrdiff_t>(text.find("[[stage]]")), '\n')) +
+      1;
+  const SceneReading reading = read_scene(text, "s.toml", {});
+  struct Expected {
+    int line;
+    std::string said;
+  };
+  const std::vector<Expected> expected{{0, "'limit' in stage 'stage0' is missing"},
+                                       {2, "'duration' in stage 'stage0' has no meaning"},
+                                       {3, "stage 'stage1' names no blocks"},
+                                       {7, "no block is named 'slidr'"},
+                                       {11, "'friction_angle_deg' in [joint.default] is 95"},
+                                       {11, "'joint.fault.cohesion' names no joint of the scene"},
+                                       {11, "a stage cannot set 'run.scheme'"},
+                                       {11, "no block is named 'b'"},
+                                       {12, "stage 'x' gives neither duration nor limit"},
+                                       {13, "two stages are named 'x'"},
+                                       {15, "stage 'stage5' changes nothing"}};
+  ASSERT_EQ(reading.diagnostics.size(), expected.size()) << ::testing::PrintToString(messages(reading));
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_EQ(reading.diagnostics[k].where.line, first + expected[k].line)
+        << to_string(reading.diagnostics[k]);
+    EXPECT_EQ(reading.diagnostics[k].what, expected[k].said);
+  }
 }
 
 TEST(SceneReader, EveryKeyHasASentenceAndAnExample) {

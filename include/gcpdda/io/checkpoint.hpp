@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,10 @@ struct RunFacts {
   double max_overlap = 0.0;
   double max_overlap_share = 0.0;
   double fastest_turn = 0.0;
+  std::vector<double> ledger; ///< of the energies, what stages changed at once (simulation/energy_ledger.hpp)
+  std::int64_t more_mobile = 0;           ///< mobile blocks now, beyond those of the scene; not written
+  std::vector<std::int64_t> stage_counts; ///< where the run stands in its stages (simulation/stages.hpp)
+  std::vector<double> stage_numbers;
   std::vector<double> frame_times; ///< of the frames written, s
 };
 
@@ -75,9 +80,12 @@ struct Restored {
 /// @param directory  the result folder
 /// @param blocks  owned: the mobile ones of this rank's slab of ids (result_files.hpp), ascending; shapes and
 ///                constants as the scene says
+/// @param prepare  what these rows need to be those of a checkpoint with these facts; called before each one
+///                 is tried
 /// @throws FileError with every file that was tried and why it was rejected
 Restored restore_newest_checkpoint(const Communicator &communicator, const std::filesystem::path &directory,
-                                   const SceneIdentity &scene, BlockSystem &blocks);
+                                   const SceneIdentity &scene, BlockSystem &blocks,
+                                   const std::function<void(const RunFacts &)> &prepare = {});
 
 /// Reads a checkpoint again and compares its checksum: not every file system tells of a write that failed.
 /// Collective.

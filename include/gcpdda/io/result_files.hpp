@@ -27,7 +27,8 @@ struct FrameRow {
   std::array<double, 3> contact_force{}; ///< N/m, N/m, N
 };
 
-/// Rows of this rank in any order, ascending ids cost least; vertices are current positions, concatenated in the order of `rows`.
+/// Rows of this rank in any order, ascending ids cost least; vertices are current positions, concatenated in
+/// the order of `rows`.
 struct FrameData {
   std::vector<FrameRow> rows;
   std::vector<Vec2> vertices;
@@ -64,7 +65,8 @@ public:
   /// @param times  of frames 0, 1, ... that stay, s
   void continue_behind(const std::vector<double> &times);
 
-  /// Frame number `index` (0, 1, ...); every block is in exactly one rank's data.
+  /// Frame number `index` (0, 1, ...); every block is in exactly one rank's data. From one frame to the next
+  /// blocks may go, none may come.
   void write(int index, double time, FrameData data);
   /// The same for frames/contacts_<index>.hdf; every region is on exactly one rank.
   void write_contacts(int index, double time, std::vector<ContactRow> rows);
@@ -79,8 +81,16 @@ private:
   Communicator communicator_;
   std::filesystem::path directory_;
   std::int64_t num_blocks_;
-  std::int64_t num_points_ = 0; ///< vertices of all blocks; known from the first frame on
-  std::string topology_;        ///< name of the file that holds what never changes
+  /// What stays the same from one frame on, until blocks go.
+  struct Topology {
+    int first_frame = 0; ///< which its file is named after
+    std::int64_t num_cells = 0;
+    std::int64_t num_points = 0;
+  };
+  [[nodiscard]] const Topology &topology_of(int frame) const;
+  void write_topology(int index, const FrameData &slab);
+
+  std::vector<Topology> topologies_; ///< by first frame
   bool all_writes_collective_ = true;
   std::vector<std::pair<int, double>> frames_;
 };
@@ -162,6 +172,12 @@ struct RunSummary {
   std::vector<std::pair<std::string, double>> counters;
   double restarted_at = -1.0; ///< s, negative for a run from t = 0; times and counters "of the run" then are
                               ///< of all of it, wall and CPU times, evaluations and messages of this part
+  struct StageLine {
+    std::string name;
+    std::string verdict;
+    StageResult result;
+  };
+  std::vector<StageLine> stages; ///< those that have begun; none in a scene without stages
   std::string verdict;
   std::string message;
 };

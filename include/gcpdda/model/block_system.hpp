@@ -52,12 +52,15 @@ struct BlockProperties {
   double area = 0.0;            ///< m2
   double mass = 0.0;            ///< kg per metre; infinite for a fixed or driven block
   double inertia = 0.0;         ///< about the centroid, kg m2 per metre; infinite for a fixed or driven block
+  double mass_scaling = 1.0;    ///< of mass and inertia against inertial forces alone, a power of two
   double radius = 0.0;          ///< largest centroid-to-vertex distance, m
   double width = 0.0;           ///< narrowest width, m
   Vec2 centroid;                ///< at t = 0, m
 
   /// Whatever acts on it.
   [[nodiscard]] bool keeps_its_velocity() const { return std::isinf(mass); }
+  /// What gravity acts on, kg per metre.
+  [[nodiscard]] double heavy_mass() const { return mass / mass_scaling; }
 };
 
 /// Everything a deformable block has beyond a rigid one. Its points are x = x_c + F X, X in its reference
@@ -117,6 +120,12 @@ struct BlockLedger {
   double gravity_work = 0.0;
 };
 
+/// Where a block was (x - x_0) when a stage began and when its motion was last looked at.
+struct BlockMark {
+  RigidDof stage;
+  RigidDof look;
+};
+
 /// The state of all blocks this rank sees, as arrays by field.
 ///
 /// Rows: [0, num_owned) owned, then num_ghosts ghosts (exact copies of other ranks' blocks), then num_fixed
@@ -136,6 +145,7 @@ struct BlockSystem {
   std::vector<RigidDof> trial_previous; ///< x*_{n-1} - x_0
   std::vector<RigidDof> refreshed;      ///< x - x_0 at the last refresh of the neighbourhood
   std::vector<BlockLedger> ledger;
+  std::vector<BlockMark> mark;
 
   // Shape in the block's own axes, flat; row i owns [vertex_begin[i], vertex_begin[i + 1]). Edge k runs from
   // vertex k to the next one; its outward unit normal is stored, never recomputed from cut edges.
@@ -207,7 +217,7 @@ struct BlockSystem {
   static constexpr auto row_fields() {
     return std::make_tuple(&BlockSystem::properties, &BlockSystem::displacement, &BlockSystem::velocity,
                            &BlockSystem::acceleration, &BlockSystem::trial, &BlockSystem::trial_previous,
-                           &BlockSystem::refreshed, &BlockSystem::ledger);
+                           &BlockSystem::refreshed, &BlockSystem::ledger, &BlockSystem::mark);
   }
   /// Every field with any number of entries a row that cannot be derived: the offsets, then the fields that
   /// share them.
@@ -220,6 +230,9 @@ struct BlockSystem {
                            std::make_tuple(&BlockSystem::anchor_begin, &BlockSystem::anchor));
   }
 };
+
+/// Stiffness of a block of that area (m2) and material.
+void set_elasticity(Deformation &deformation, double area, const Material &material, bool plane_strain);
 
 /// Append the row of a scene's block in its initial configuration. A deformable kind needs the material's
 /// elastic constants. Its own matrix, where it has one, is made later (dynamics/deformable.hpp); the ranges'

@@ -4,6 +4,7 @@
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/joint_law.hpp"
 #include "gcpdda/model/rock_region.hpp"
+#include "gcpdda/model/stage.hpp"
 
 #include <array>
 #include <cstdint>
@@ -143,7 +144,8 @@ struct Scene {
   std::vector<BlockGroup> groups;                   ///< one of each opening once the region has been cut
   OutputSettings output;
   std::vector<Monitor> monitors;
-  std::string resolved; ///< the scene after --set, as TOML text
+  std::vector<Stage> stages; ///< in their order; none for one run of run.duration
+  std::string resolved;      ///< the scene after --set, as TOML text
 };
 
 } // namespace gcpdda

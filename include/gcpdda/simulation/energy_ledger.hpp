@@ -18,6 +18,9 @@
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 
+#include <array>
+#include <vector>
+
 namespace gcpdda {
 
 class EnergyLedger {
@@ -26,10 +29,19 @@ public:
   explicit EnergyLedger(Simulation &simulation);
   /// Of a run that goes on: what the first one found.
   explicit EnergyLedger(const RunFacts &facts)
-      : total_at_start_(facts.total_at_start), stick_at_start_(facts.stick_at_start) {}
+      : total_at_start_(facts.total_at_start), stick_at_start_(facts.stick_at_start) {
+    const auto middle = facts.ledger.begin() + std::ssize(facts.ledger) / 2;
+    before_.assign(facts.ledger.begin(), middle);
+    at_end_.assign(middle, facts.ledger.end());
+  }
 
-  [[nodiscard]] double total_at_start() const { return total_at_start_; }
-  [[nodiscard]] double stick_at_start() const { return stick_at_start_; }
+  /// A stage has ended. Collective.
+  void note_end(Simulation &simulation);
+  /// The state has been changed at once since: what was lost and worked so far stays, and the residual goes
+  /// on from where it was. Collective.
+  void step_over(Simulation &simulation);
+  /// Into what a checkpoint holds.
+  void tell(RunFacts &facts) const;
 
   /// The row of the current state, which stays as it is. Collective.
   [[nodiscard]] EnergyRow row(Simulation &simulation) const;
@@ -37,6 +49,12 @@ public:
 private:
   double total_at_start_ = 0.0;
   double stick_at_start_ = 0.0;
+  /// Columns that go on through such changes.
+  static constexpr std::array<double EnergyRow::*, 5> carried{
+      &EnergyRow::gravity, &EnergyRow::friction_loss, &EnergyRow::damping_loss, &EnergyRow::boundary_work,
+      &EnergyRow::residual};
+  std::vector<double> before_; ///< what these leave out since then; empty before the first change
+  std::vector<double> at_end_; ///< of the last stage that has ended
 };
 
 } // namespace gcpdda

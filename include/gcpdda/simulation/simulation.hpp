@@ -11,6 +11,7 @@
 #include "gcpdda/parallel/ghosts.hpp"
 #include "gcpdda/partition/domain_map.hpp"
 #include "gcpdda/simulation/balance.hpp"
+#include "gcpdda/simulation/stages.hpp"
 #include "gcpdda/simulation/time_plan.hpp"
 
 #include <cstdint>
@@ -58,6 +59,7 @@ struct StepBound {
   double omega_max = 0.0; ///< rad/s, 0 where nothing can touch
   double limit = 2.0;     ///< stable W of scheme and damping; 2 stands in where every W is unstable
   bool always_unstable = false;
+  double safety = 0.0;        ///< of run.safety, or longer steps where a stage settles
   double time_step = 0.0;     ///< safety * limit / omega_max, s
   double damping_ratio = 0.0; ///< modal ratio the limit was computed with
   std::int64_t block = -1;    ///< the one that sets omega_max; the first of several
@@ -85,9 +87,29 @@ public:
   /// Advance all blocks from t_n to t_{n+1}.
   void step();
 
-  [[nodiscard]] bool finished() const { return step_count_ >= plan_.num_steps || fault_.has_value(); }
-  [[nodiscard]] double time() const { return plan_.time(step_count_); }
+  [[nodiscard]] bool finished() const;
+  [[nodiscard]] double time() const {
+    return stage_.ended ? stage_.end_time : stage_.start_time + plan_.time(stage_step());
+  }
   [[nodiscard]] std::int64_t step_count() const { return step_count_; }
+
+  /// The scene has stages; else all of the run is one stage.
+  [[nodiscard]] bool is_staged() const { return is_staged_; }
+  [[nodiscard]] const std::vector<Stage> &stages() const { return stages_; }
+  [[nodiscard]] const StageState &stage() const { return stage_; }
+  /// Steps since the stage began: what plan() counts.
+  [[nodiscard]] std::int64_t stage_step() const { return step_count_ - stage_.first_step; }
+  [[nodiscard]] bool stage_is_over() const {
+    return stage_.ended || stage_step() >= plan_.num_steps || fault_.has_value();
+  }
+  /// A stage that is over gets its result. A settled pile is set to rest, under its own masses.
+  void end_stage();
+  /// Go over to the next stage and do what it does at once. On return the contact forces are those of the
+  /// new state. Remarks go into notes().
+  void begin_next_stage();
+  /// Of the stages that are over, and of this one as far as it has come.
+  [[nodiscard]] std::vector<StageResult> stage_results() const;
+  [[nodiscard]] bool is_removed(std::int64_t block) const;
   /// This rank wants the run to stop after the next step; one rank is enough.
   void ask_to_stop() { stop_asked_ = true; }
   /// Some rank asked before the last step; the same on all ranks.
@@ -142,6 +164,24 @@ public:
   }
 
 private:
+  void begin_as_restored(const Scene &start, const BlockSystem &rows, const RunFacts &facts);
+  void plan_all_stages();
+  void plan_stage();
+  void scale_masses();
+  void unscale_masses();
+  void set_to_rest();
+  void look_at_stage();
+  void mark_stage();
+  void evaluate_still();
+  void adopt(const Scene &after);
+  void adopt_materials(const std::vector<Material> &before);
+  void adopt_block(std::int64_t id, const SceneBlock &before, const SceneBlock &after);
+  void free_block(std::int64_t id, const SceneBlock &block);
+  [[nodiscard]] std::vector<std::int64_t> select_blocks(const BlockSelection &selection) const;
+  void excavate(const Stage &stage);
+  void unload(const Stage &stage, const std::vector<std::int64_t> &removed);
+  void remove_blocks(const std::vector<std::int64_t> &ids);
+  [[nodiscard]] Unloading unloading_of(BlockId block) const;
   void distribute(const std::filesystem::path &restart_from);
   void identify(std::span<const SceneBlock> slab);
   void go_on();
@@ -200,8 +240,12 @@ private:
   StepBound bound_;
   TimePlan plan_;
   std::int64_t step_count_ = 0;
-  double load_time_ = 0.0; ///< when loads were last evaluated, s
-  double thinnest_ = 0.0;  ///< narrowest width of any block, m
+  std::vector<Stage> stages_; ///< at least one
+  StageState stage_;
+  bool is_staged_ = false;
+  double local_damping_ = 0.0; ///< of this stage
+  double load_time_ = 0.0;     ///< when loads were last evaluated, s
+  double thinnest_ = 0.0;      ///< narrowest width of any block, m
   double base_skin_ = 0.0;
   double skin_ = 0.0;
   bool stale_ = true;

@@ -1,0 +1,64 @@
+#pragma once
+
+// A run is a list of stages: each changes something at once (removes blocks, sets parameters), takes steps
+// for a while or until the blocks have come to rest or have failed, or both.
+
+#include "gcpdda/base/diagnostic.hpp"
+#include "gcpdda/geometry/vec2.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gcpdda {
+
+struct Scene;
+
+enum class StageKind { run, settle, excavate, change };
+
+/// What became of a stage.
+enum class Verdict : std::int64_t {
+  undecided, ///< neither of the next two yet
+  settled,   ///< at rest
+  failed,    ///< blocks have moved far and go on moving
+  done       ///< of a stage that takes no steps
+};
+
+/// Blocks by name and by place; where both are given, those of either.
+struct BlockSelection {
+  std::vector<std::int64_t> blocks; ///< ids, ascending
+  std::vector<Vec2> region;         ///< polygon that holds their centroids; empty for none
+};
+
+struct Stage {
+  std::string name;
+  StageKind kind = StageKind::run;
+  double duration = 0.0;       ///< s; of a stage with a limit, the limit
+  bool until_verdict = false;  ///< ends when it has settled or failed
+  double tolerance = 1e-5;     ///< unbalanced-force ratio at rest
+  double failure_motion = 0.5; ///< share of its size that a block moves when it fails
+  double local_damping = -1.0; ///< in place of that of the run; negative for none
+  bool mass_scaling = false;
+  BlockSelection excavated;
+  double relax = 0.0; ///< s over which the forces of excavated blocks fall to zero
+  /// The scene from here on where the stage changes it; without stages of its own.
+  std::shared_ptr<const Scene> after;
+  SourcePosition where;
+
+  [[nodiscard]] bool takes_steps() const { return kind == StageKind::run || kind == StageKind::settle; }
+};
+
+/// What is written of a stage that has ended.
+struct StageResult {
+  Verdict verdict = Verdict::undecided;
+  double time = 0.0; ///< at its end, s
+  std::int64_t steps = 0;
+  std::int64_t contact_steps = 0;
+  double unbalanced_ratio = 0.0;
+  double kinetic = 0.0;     ///< J/m
+  double moved = 0.0;       ///< largest motion of a block in the stage, in sizes of that block
+  std::int64_t removed = 0; ///< blocks
+};
+
+} // namespace gcpdda

@@ -1,0 +1,330 @@
+// What stages do at once: blocks go, parameters change. Every change is made in the same order by a run and
+// by a restart into a later stage, so that both have the same bits.
+
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/dynamics/deformable.hpp"
+#include "gcpdda/dynamics/frequency_bound.hpp"
+#include "gcpdda/geometry/holds_point.hpp"
+#include "gcpdda/geometry/polygon.hpp"
+#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/model/fidelity.hpp"
+#include "gcpdda/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace gcpdda {
+
+namespace {
+
+bool holds(const std::vector<std::int64_t> &ids, std::int64_t id) {
+  return std::binary_search(ids.begin(), ids.end(), id);
+}
+
+/// Owned rows that stay, with those that are added, and fixed rows that stay; ghosts are dropped.
+void rebuild(BlockSystem &system, const std::function<bool(std::size_t)> &stays, const BlockSystem &added) {
+  BlockSystem next;
+  std::size_t add = 0;
+  const auto add_below = [&](std::int64_t id) {
+    for (; add < added.num_rows() && added.properties[add].id.value < id; ++add) {
+      append_row(next, added, add);
+    }
+  };
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    add_below(system.properties[row].id.value);
+    if (stays(row)) {
+      append_row(next, system, row);
+    }
+  }
+  add_below(std::numeric_limits<std::int64_t>::max());
+  next.num_owned = next.num_rows();
+  for (std::size_t row = system.first_fixed(); row < system.num_rows(); ++row) {
+    if (stays(row)) {
+      append_row(next, system, row);
+    }
+  }
+  next.num_fixed = next.num_rows() - next.num_owned;
+  system = std::move(next);
+}
+
+void replace_loads(BlockSystem &system, std::size_t row, const std::vector<PointLoad> &loads) {
+  std::vector<MaterialLoad> own;
+  for (const PointLoad &load : loads) {
+    own.push_back({load.point - system.properties[row].centroid, load.force});
+  }
+  const auto begin = system.load.begin() + system.load_begin[row];
+  const auto place = system.load.erase(begin, system.load.begin() + system.load_begin[row + 1]);
+  system.load.insert(place, own.begin(), own.end());
+  const std::uint32_t before = system.load_begin[row + 1] - system.load_begin[row];
+  for (std::size_t later = row + 1; later < system.load_begin.size(); ++later) {
+    system.load_begin[later] += static_cast<std::uint32_t>(own.size()) - before;
+  }
+}
+
+bool same_loads(const std::vector<PointLoad> &a, const std::vector<PointLoad> &b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const PointLoad &x, const PointLoad &y) {
+    return x.point == y.point && x.force == y.force;
+  });
+}
+
+void hold(BlockSystem &system, std::size_t row) {
+  system.properties[row].mass = std::numeric_limits<double>::infinity();
+  system.properties[row].inertia = std::numeric_limits<double>::infinity();
+  system.velocity[row] = {};
+  system.acceleration[row] = {};
+  if (system.is_deformable(row)) {
+    system.deformation_of(row).rate = {};
+    system.deformation_of(row).acceleration = {};
+  }
+}
+
+void let_go(BlockSystem &system, std::size_t row, double density) {
+  const std::span<const Vec2> shape = system.of_row(system.reference_vertex, row);
+  const Moments moments = polygon_moments(std::vector<Vec2>(shape.begin(), shape.end()));
+  system.properties[row].mass = density * system.properties[row].area;
+  system.properties[row].inertia = density * (moments.xx + moments.yy);
+}
+
+std::optional<std::size_t> row_of(const BlockSystem &system, std::int64_t id) {
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (system.properties[row].id.value == id) {
+      return row;
+    }
+  }
+  return std::nullopt;
+}
+
+} // namespace
+
+// Each block is made as heavy as its joints need it to be to swing no faster than the slowest block: the step
+// is then as long as for that one. By powers of two, which can be taken back without rounding.
+void Simulation::scale_masses() {
+  const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
+  if (!stage.mass_scaling || stage_.ended) {
+    return;
+  }
+  std::vector<double> squared(blocks_.num_owned);
+  double minus_slowest = -std::numeric_limits<double>::infinity();
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    const StiffnessBound stiffness = stiffness_bound(scene_.joints, blocks_.properties[row].material);
+    squared[row] = contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential,
+                                           elasticity_of(scheme_, scene_.run.elasticity));
+    if (squared[row] > 0.0) {
+      minus_slowest = std::max(minus_slowest, -squared[row]);
+    }
+  }
+  communicator_.max(std::span(&minus_slowest, 1));
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    BlockProperties &block = blocks_.properties[row];
+    if (squared[row] > 0.0) {
+      const double scaling = std::exp2(std::ceil(std::log2(squared[row] / -minus_slowest) - 1e-9));
+      block.mass_scaling = scaling;
+      block.mass *= scaling;
+      block.inertia *= scaling;
+      if (blocks_.is_deformable(row)) {
+        blocks_.deformation_of(row).second_moment = scaling * blocks_.deformation_of(row).second_moment;
+      }
+    }
+  }
+}
+
+void Simulation::unscale_masses() {
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    BlockProperties &block = blocks_.properties[row];
+    const double back = 1.0 / block.mass_scaling;
+    block.mass *= back;
+    block.inertia *= back;
+    block.mass_scaling = 1.0;
+    if (blocks_.is_deformable(row)) {
+      blocks_.deformation_of(row).second_moment = back * blocks_.deformation_of(row).second_moment;
+    }
+  }
+}
+
+void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, const RunFacts &facts) {
+  scene_ = start;
+  blocks_ = rows;
+  stage_ = {};
+  const StageState saved = to_state({facts.stage_counts, facts.stage_numbers});
+  if (saved.index >= std::ssize(stages_)) {
+    throw FileError("its stage is not in the scene");
+  }
+  for (std::int64_t k = 0; k <= saved.index; ++k) {
+    if (const auto &after = stages_[static_cast<std::size_t>(k)].after) {
+      adopt(*after);
+    }
+  }
+  remove_blocks(saved.removed);
+  stage_ = saved;
+}
+
+bool Simulation::is_removed(std::int64_t block) const {
+  return holds(stage_.removed, block);
+}
+
+// Laws keep their order and number, and so do materials and blocks: the scene's reader has seen to that.
+void Simulation::adopt(const Scene &after) {
+  const std::vector<JointLaw> laws = std::exchange(scene_.joints, after.joints).laws;
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    JointLaw &law = scene_.joints.laws[i];
+    if (law.allowed_overlap > 0.0) { // it has been resolved for the start
+      law.normal_stiffness = laws[i].normal_stiffness;
+    }
+  }
+  scene_.run = after.run;
+  contacts_ = ContactForces({scene_.joints, scene_.run.contact_damping, scene_.run.potential});
+  adopt_materials(std::exchange(scene_.materials, after.materials));
+  for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
+    const auto id = static_cast<std::int64_t>(i);
+    if (!is_removed(id)) {
+      adopt_block(id, scene_.blocks[i], after.blocks[i]);
+    }
+  }
+  scene_.blocks = after.blocks;
+}
+
+void Simulation::adopt_materials(const std::vector<Material> &before) {
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    BlockProperties &block = blocks_.properties[row];
+    const Material &old = before[static_cast<std::size_t>(block.material)];
+    const Material &now = scene_.materials[static_cast<std::size_t>(block.material)];
+    if (old.density != now.density) {
+      const double ratio = now.density / old.density;
+      if (!block.keeps_its_velocity()) {
+        block.mass = now.density * block.area;
+        block.inertia *= ratio;
+      }
+      if (blocks_.is_deformable(row)) {
+        blocks_.deformation_of(row).second_moment = ratio * blocks_.deformation_of(row).second_moment;
+      }
+    }
+    if (blocks_.is_deformable(row) &&
+        (old.youngs_modulus != now.youngs_modulus || old.poissons_ratio != now.poissons_ratio)) {
+      set_elasticity(blocks_.deformation_of(row), block.area, now, scene_.run.plane_strain);
+    }
+  }
+}
+
+void Simulation::adopt_block(std::int64_t id, const SceneBlock &before, const SceneBlock &after) {
+  if (before.fixed && !after.fixed) {
+    free_block(id, after);
+    return;
+  }
+  const auto row = row_of(blocks_, id);
+  if (!row) {
+    return;
+  }
+  if (!before.driven && after.driven) {
+    hold(blocks_, *row);
+  } else if (before.driven && !after.driven) {
+    let_go(blocks_, *row, scene_.materials[static_cast<std::size_t>(after.material)].density);
+  }
+  if (!same_loads(before.loads, after.loads)) {
+    replace_loads(blocks_, *row, after.loads);
+  }
+}
+
+// It belongs to nobody yet: the owner of its slab takes it, and the next refresh brings it where it lies.
+void Simulation::free_block(std::int64_t id, const SceneBlock &block) {
+  BlockSystem freed;
+  if (slab_owner(num_blocks(), communicator_.size(), id) == communicator_.rank()) {
+    const Material &material = scene_.materials[static_cast<std::size_t>(block.material)];
+    const FidelityChoice choice =
+        choose_fidelity(block, signed_area(block.vertices), material,
+                        stiffness_bound(scene_.joints, block.material).normal, scene_.run);
+    append_block(freed, BlockId{id}, block, material, choice.kind, scene_.run.plane_strain);
+  }
+  rebuild(
+      blocks_, [&](std::size_t row) { return blocks_.properties[row].id.value != id; }, freed);
+  ++stage_.more_mobile;
+}
+
+std::vector<std::int64_t> Simulation::select_blocks(const BlockSelection &selection) const {
+  std::vector<std::int64_t> mine;
+  for (std::size_t row = 0; row < blocks_.num_rows(); ++row) {
+    const std::int64_t id = blocks_.properties[row].id.value;
+    const bool inside = !selection.region.empty() && holds_point(selection.region, blocks_.centroid(row));
+    if ((row < blocks_.num_owned || blocks_.is_fixed(row)) && (inside || holds(selection.blocks, id))) {
+      mine.push_back(id);
+    }
+  }
+  std::vector<std::int64_t> all;
+  for (const auto &from_rank : communicator_.all_gather(mine)) {
+    all.insert(all.end(), from_rank.begin(), from_rank.end());
+  }
+  std::sort(all.begin(), all.end()); // everybody has told of the fixed ones
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+void Simulation::excavate(const Stage &stage) {
+  const std::vector<std::int64_t> ids = select_blocks(stage.excavated);
+  if (stage.relax > 0.0) {
+    unload(stage, ids);
+  }
+  stage_.removed.insert(stage_.removed.end(), ids.begin(), ids.end());
+  std::sort(stage_.removed.begin(), stage_.removed.end());
+}
+
+// What the excavated blocks put on each of the others, summed in the order of their ids.
+void Simulation::unload(const Stage &stage, const std::vector<std::int64_t> &removed) {
+  std::vector<Unloading> mine;
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    const BlockProperties &block = blocks_.properties[row];
+    Unloading load{block.id.value, {}, {}, time(), stage.relax};
+    bool touches = false;
+    for (std::uint32_t c = candidates_.contact_begin[row]; c < candidates_.contact_begin[row + 1]; ++c) {
+      const auto [number, is_lower] = candidates_.block_contacts[c];
+      const CandidatePair &pair = candidates_.pairs[number];
+      const std::size_t other = (is_lower ? pair.higher : pair.lower).value;
+      if (!holds(removed, blocks_.properties[other].id.value)) {
+        continue;
+      }
+      for (const RegionForce &force : contacts_.of_pair(number)) {
+        const ContactPart part = contact_part(force, is_lower, blocks_.trial_centroid[row]);
+        load.rigid += {part.force, part.dyad.xy - part.dyad.yx};
+        if (blocks_.is_deformable(row)) {
+          load.gradient += transposed(blocks_.trial_inverse[blocks_.deformation_begin[row]] * part.dyad);
+        }
+        touches = true;
+      }
+    }
+    if (touches && !holds(removed, block.id.value)) {
+      mine.push_back(load);
+    }
+  }
+  for (const auto &from_rank : communicator_.all_gather(mine)) {
+    stage_.unloading.insert(stage_.unloading.end(), from_rank.begin(), from_rank.end());
+  }
+  std::stable_sort(stage_.unloading.begin(), stage_.unloading.end(),
+                   [](const Unloading &a, const Unloading &b) {
+                     return std::pair(a.block, a.begin) < std::pair(b.block, b.begin);
+                   });
+}
+
+Unloading Simulation::unloading_of(BlockId block) const {
+  Unloading sum;
+  if (stage_.unloading.empty()) {
+    return sum;
+  }
+  const auto below = [](const Unloading &load, std::int64_t id) { return load.block < id; };
+  auto load = std::lower_bound(stage_.unloading.begin(), stage_.unloading.end(), block.value, below);
+  for (; load != stage_.unloading.end() && load->block == block.value; ++load) {
+    const double share = std::max(0.0, 1.0 - (load_time_ - load->begin) / load->duration);
+    sum.rigid += share * load->rigid;
+    sum.gradient += share * load->gradient;
+  }
+  return sum;
+}
+
+void Simulation::remove_blocks(const std::vector<std::int64_t> &ids) {
+  const auto before = static_cast<std::int64_t>(blocks_.num_owned);
+  rebuild(blocks_, [&](std::size_t row) { return !holds(ids, blocks_.properties[row].id.value); }, {});
+  std::int64_t gone = before - static_cast<std::int64_t>(blocks_.num_owned);
+  communicator_.sum(std::span(&gone, 1));
+  stage_.more_mobile -= gone;
+}
+
+} // namespace gcpdda

@@ -1,0 +1,246 @@
+// Stages of a Simulation: their plan, the looks at them, how one ends and the next begins.
+
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/base/exact_sum.hpp"
+#include "gcpdda/dynamics/deformable.hpp"
+#include "gcpdda/dynamics/frequency_bound.hpp"
+#include "gcpdda/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace gcpdda {
+
+namespace {
+
+/// A component of a force before local damping took its share: f (1 - share sign(f) sign(v)).
+double undamped(double force, double velocity, double share) {
+  const double sign = force * velocity > 0.0 ? 1.0 : force * velocity < 0.0 ? -1.0 : 0.0;
+  return force / (1.0 - share * sign);
+}
+
+double kinetic_energy_of(const BlockSystem &blocks, std::size_t row) {
+  const BlockProperties &block = blocks.properties[row];
+  const RigidDof &v = blocks.velocity[row];
+  const double turning = blocks.is_deformable(row)
+                             ? kinetic_energy(blocks.deformation_of(row), blocks.deformation_of(row).rate)
+                             : 0.5 * block.inertia * v.r * v.r;
+  return 0.5 * block.mass * dot(v.u, v.u) + turning;
+}
+
+/// Largest distance a point of the block has moved.
+double motion_between(const BlockProperties &block, const RigidDof &from, const RigidDof &to) {
+  return norm(to.u - from.u) + block.radius * std::abs(to.r - from.r);
+}
+
+} // namespace
+
+// What cannot be run is told before anything is.
+void Simulation::plan_all_stages() {
+  for (const Stage &stage : stages_) {
+    if (is_staged_ && stage.takes_steps()) {
+      RunSettings run = scene_.run;
+      run.duration = stage.duration;
+      Diagnostics found;
+      plan_time(run, scene_.output, std::numeric_limits<double>::infinity(), found);
+      for (Diagnostic &d : found) {
+        if (d.severity == Severity::error) {
+          d.where = stage.where;
+          notes_.push_back(std::move(d));
+        }
+      }
+    }
+  }
+}
+
+void Simulation::plan_stage() {
+  const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
+  RunSettings run = scene_.run;
+  run.duration = stage.takes_steps() ? stage.duration : scene_.output.interval;
+  plan_ = plan_time(run, scene_.output, bound_.time_step, notes_);
+  if (!stage.takes_steps()) {
+    plan_.duration = 0.0;
+    plan_.num_steps = 0;
+  }
+  local_damping_ = stage.local_damping >= 0.0 ? stage.local_damping : scene_.run.local_damping;
+}
+
+bool Simulation::finished() const {
+  if (fault_) {
+    return true;
+  }
+  if (!stage_is_over()) {
+    return false;
+  }
+  const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
+  const bool goes_on = !stage.until_verdict || stage_.verdict == Verdict::settled;
+  return stage_.index + 1 == std::ssize(stages_) || !goes_on;
+}
+
+void Simulation::mark_stage() {
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    blocks_.mark[row] = {blocks_.displacement[row], blocks_.displacement[row]};
+  }
+}
+
+// Two reductions, now and then; both are exact.
+void Simulation::look_at_stage() {
+  ExactSum kinetic;
+  std::array<double, 5> largest{};
+  auto &[unbalanced, acting, motion, moved, overlap] = largest;
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    const BlockProperties &block = blocks_.properties[row];
+    if (block.keeps_its_velocity()) {
+      continue;
+    }
+    const BlockLedger &ledger = blocks_.ledger[row];
+    const RigidDof &v = blocks_.velocity[row];
+    const RigidDof force = forces_.rigid[row] + ledger.anchor_force;
+    const double along_x = undamped(force.u.x, v.u.x, local_damping_);
+    const double along_y = undamped(force.u.y, v.u.y, local_damping_);
+    const double turning =
+        blocks_.is_deformable(row)
+            ? norm(forces_.gradient[blocks_.deformation_begin[row]] - blocks_.deformation_of(row).internal +
+                   blocks_.deformation_of(row).anchor_force)
+            : std::abs(undamped(force.r, v.r, local_damping_));
+    unbalanced = std::max({unbalanced, norm(Vec2{along_x, along_y}), turning / block.radius});
+    acting = std::max({acting, block.heavy_mass() * norm(scene_.run.gravity), norm(ledger.load_force.u)});
+    BlockMark &mark = blocks_.mark[row];
+    const RigidDof &now = blocks_.displacement[row];
+    motion = std::max(motion, motion_between(block, mark.look, now));
+    moved = std::max(moved, motion_between(block, mark.stage, now) / std::sqrt(block.area));
+    mark.look = now;
+    kinetic.add(kinetic_energy_of(blocks_, row));
+  }
+  for (const RegionForce &force : contacts_.regions()) {
+    acting = std::max(acting, norm(force.force));
+  }
+  overlap = force_report_.max_overlap;
+  communicator_.max(largest);
+  communicator_.sum(kinetic.limbs());
+  const StageLook look{
+      acting > 0.0 ? unbalanced / acting : 0.0, motion, overlap, acting, kinetic.value(), moved};
+  const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
+  stage_.verdict = judge(stage, look, stage_.memory);
+  const bool unloads = std::any_of(stage_.unloading.begin(), stage_.unloading.end(),
+                                   [&](const Unloading &u) { return time() < u.begin + u.duration; });
+  if (unloads || time() < scene_.run.gravity_ramp) { // the loads are not there yet
+    stage_.verdict = Verdict::undecided;
+  }
+  stage_.end_time = time();
+  stage_.ended = stage.until_verdict && stage_.verdict != Verdict::undecided;
+}
+
+std::vector<StageResult> Simulation::stage_results() const {
+  std::vector<StageResult> results = stage_.results;
+  if (std::ssize(results) == stage_.index) {
+    std::int64_t contact_steps = counters_.contact_steps;
+    communicator_.sum(std::span(&contact_steps, 1));
+    const StageLook &last = stage_.memory.last;
+    results.push_back({stage_.verdict, time(), stage_step(), contact_steps - stage_.contact_steps_before,
+                       last.unbalanced_ratio, last.kinetic, last.moved, 0});
+  }
+  return results;
+}
+
+// A stage that reached its limit undecided stays as it is: with a longer limit a restart goes on with it.
+void Simulation::end_stage() {
+  const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
+  if (!is_staged_ || !stage_is_over() || fault_ || std::ssize(stage_.results) > stage_.index ||
+      (stage.until_verdict && !stage_.ended)) {
+    return;
+  }
+  stage_.results = stage_results();
+  stage_.end_time = time();
+  stage_.ended = true;
+  if (stage.kind == StageKind::settle) {
+    unscale_masses();
+    if (stage_.verdict == Verdict::settled) {
+      set_to_rest();
+    }
+  }
+}
+
+// Stick springs keep their stretch: they go on from the last trial configuration.
+void Simulation::set_to_rest() {
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    if (blocks_.properties[row].keeps_its_velocity()) {
+      continue;
+    }
+    blocks_.velocity[row] = {};
+    blocks_.acceleration[row] = {};
+    if (blocks_.is_deformable(row)) {
+      blocks_.deformation_of(row).rate = {};
+      blocks_.deformation_of(row).acceleration = {};
+    }
+  }
+}
+
+// The contact forces of the present trial configuration once more: nothing has moved since.
+void Simulation::evaluate_still() {
+  blocks_.trial_previous = blocks_.trial;
+  for (Deformation &d : blocks_.deformation) {
+    d.trial_previous = d.trial;
+  }
+  take(contacts_.evaluate(blocks_, candidates_, history_));
+}
+
+void Simulation::begin_next_stage() {
+  expect(stage_is_over() && !finished(), "a stage begins when the one before is over");
+  stage_.start_time = time();
+  stage_.first_step = step_count_;
+  ++stage_.index;
+  stage_.ended = false;
+  stage_.verdict = Verdict::undecided;
+  stage_.memory = {};
+  stage_.contact_steps_before = counters_.contact_steps;
+  communicator_.sum(std::span(&stage_.contact_steps_before, 1));
+  std::erase_if(stage_.unloading, [&](const Unloading &u) { return time() >= u.begin + u.duration; });
+  plan_.duration = 0.0; // so that time() is the beginning of the stage
+  plan_.num_steps = 0;
+
+  const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
+  if (stage.kind == StageKind::excavate) {
+    refresh(remembered_contacts());
+    evaluate_still();
+    excavate(stage);
+  }
+  std::vector<RegionRecord> memory = remembered_contacts();
+  std::erase_if(memory, [&](const RegionRecord &record) {
+    return is_removed(record.lower.value) || is_removed(record.higher.value);
+  });
+  if (stage.kind == StageKind::excavate) {
+    remove_blocks(stage_.removed);
+  }
+  if (stage.after) {
+    adopt(*stage.after);
+  }
+  scale_masses();
+  find_bound();
+  plan_stage();
+  make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity,
+                      stiffest_joint(scene_.joints));
+  refresh(std::move(memory));
+  evaluate_still();
+  load_time_ = time();
+  accelerate_owned();
+  mark_stage();
+  if (!stage.takes_steps()) {
+    stage_.verdict = Verdict::done;
+    StageResult result;
+    result.verdict = Verdict::done;
+    result.time = time();
+    const std::int64_t before =
+        std::accumulate(stage_.results.begin(), stage_.results.end(), std::int64_t{0},
+                        [](std::int64_t sum, const StageResult &earlier) { return sum + earlier.removed; });
+    result.removed = std::ssize(stage_.removed) - before;
+    stage_.results.push_back(result);
+    stage_.end_time = time();
+    stage_.ended = true;
+  }
+}
+
+} // namespace gcpdda

@@ -1,0 +1,93 @@
+#include "gcpdda/simulation/stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gcpdda {
+
+Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory) {
+  constexpr double motion_at_rest = 1e-3;  // of the largest overlap
+  constexpr double energy_at_rest = 1e-12; // of what the largest contact holds
+  const StageLook last = memory.last;
+  memory.most_kinetic = std::max(memory.most_kinetic, look.kinetic);
+  memory.last = look;
+
+  const bool calm =
+      look.unbalanced_ratio <= stage.tolerance && look.motion <= motion_at_rest * look.overlap &&
+      (look.kinetic <= last.kinetic || look.kinetic <= energy_at_rest * look.force * look.overlap);
+  memory.calm_looks = calm ? memory.calm_looks + 1 : 0;
+  if (memory.calm_looks >= 2) {
+    return Verdict::settled;
+  }
+  const bool goes_on = look.motion >= 0.5 * last.motion && look.kinetic >= 0.25 * memory.most_kinetic;
+  return look.moved >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
+}
+
+// Long enough to see a pile sway: its slowest period grows with its height in blocks.
+std::int64_t steps_between_looks(std::int64_t num_blocks) {
+  return 50 + static_cast<std::int64_t>(4.0 * std::sqrt(static_cast<double>(num_blocks)));
+}
+
+namespace {
+
+/// The same list of fields for both ways.
+template <class State, class Count, class Real> void visit_state(State &state, Count &&count, Real &&real) {
+  count(state.index), count(state.first_step), count(state.ended), count(state.contact_steps_before);
+  count(state.more_mobile), count(state.verdict), count(state.memory.calm_looks);
+  real(state.start_time), real(state.end_time), real(state.memory.most_kinetic);
+  auto &last = state.memory.last;
+  real(last.unbalanced_ratio), real(last.motion), real(last.overlap), real(last.force), real(last.kinetic);
+  real(last.moved);
+}
+template <class Result, class Count, class Real>
+void visit_result(Result &result, Count &&count, Real &&real) {
+  count(result.verdict), count(result.steps), count(result.contact_steps), count(result.removed);
+  real(result.time), real(result.unbalanced_ratio), real(result.kinetic), real(result.moved);
+}
+template <class Load, class Count, class Real> void visit_unloading(Load &u, Count &&count, Real &&real) {
+  count(u.block);
+  real(u.rigid.u.x), real(u.rigid.u.y), real(u.rigid.r), real(u.gradient.xx), real(u.gradient.xy);
+  real(u.gradient.yx), real(u.gradient.yy), real(u.begin), real(u.duration);
+}
+
+template <class State, class Count, class Real> void visit_all(State &state, Count &&count, Real &&real) {
+  visit_state(state, count, real);
+  for (auto &result : state.results) {
+    visit_result(result, count, real);
+  }
+  for (auto &load : state.unloading) {
+    visit_unloading(load, count, real);
+  }
+  for (auto &id : state.removed) {
+    count(id);
+  }
+}
+
+} // namespace
+
+StageNumbers to_numbers(const StageState &state) {
+  StageNumbers numbers;
+  numbers.counts = {std::ssize(state.results), std::ssize(state.unloading), std::ssize(state.removed)};
+  visit_all(
+      state, [&](const auto &x) { numbers.counts.push_back(static_cast<std::int64_t>(x)); },
+      [&](double x) { numbers.reals.push_back(x); });
+  return numbers;
+}
+
+StageState to_state(const StageNumbers &numbers) {
+  StageState state;
+  state.results.resize(static_cast<std::size_t>(numbers.counts.at(0)));
+  state.unloading.resize(static_cast<std::size_t>(numbers.counts.at(1)));
+  state.removed.resize(static_cast<std::size_t>(numbers.counts.at(2)));
+  std::size_t next_count = 3;
+  std::size_t next_real = 0;
+  visit_all(
+      state,
+      [&](auto &x) {
+        x = static_cast<std::remove_reference_t<decltype(x)>>(numbers.counts.at(next_count++));
+      },
+      [&](double &x) { x = numbers.reals.at(next_real++); });
+  return state;
+}
+
+} // namespace gcpdda

@@ -1,0 +1,122 @@
+// A run in stages: what it writes, that a restart from any of them goes on with the same bits, its exit
+// codes.
+
+#include "gcpdda/io/run_comparison.hpp"
+
+#include "child_process.hpp"
+#include "support/run_facts.hpp"
+#include "support/scenes.hpp"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+
+namespace gcpdda {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::count_of;
+using testing::file_text;
+using testing::Outcome;
+using testing::run_gcpdda;
+using testing::summary_text;
+using testing::WorkFolder;
+
+const std::vector<std::string> none;
+
+const std::string wall = R"([run]
+fidelity = "rigid"
+[material.rock]
+density = 2600.0
+[joint.default]
+normal_stiffness = 1e9
+friction_angle_deg = 35.0
+[output]
+interval = 0.03
+checkpoint_interval = 0.03
+[[block]]
+name = "floor"
+material = "rock"
+fixed = true
+vertices = [[-1, -1], [9, -1], [9, 0], [-1, 0]]
+[[wall]]
+name = "w"
+material = "rock"
+origin = [0.0, 0.0]
+rows = 8
+columns = 8
+block_size = [1.0, 0.5]
+[[monitor]]
+block = "w.1.5"
+)";
+
+const std::vector<std::string> stages{
+    "[[stage]]\nname = \"gravity\"\nkind = \"settle\"\nlimit = 2.0\n",
+    "[[stage]]\nname = \"opening\"\nkind = \"excavate\"\nregion = [[3, 0], [5, 0], [5, 1], [3, 1]]\nrelax = "
+    "0.03\n",
+    "[[stage]]\nkind = \"run\"\nduration = 0.06\n",
+    "[[stage]]\nkind = \"change\"\nset = { \"joint.default.friction_angle_deg\" = 20.0, "
+    "\"joint.default.normal_stiffness\" = 5e8 }\n",
+    "[[stage]]\nname = \"weak\"\nkind = \"run\"\nduration = 0.06\n"};
+
+std::string scene_of_stages(std::size_t count) {
+  std::string text = wall;
+  for (std::size_t k = 0; k < count; ++k) {
+    text += stages[k];
+  }
+  return text;
+}
+
+std::vector<fs::path> checkpoints(const fs::path &run) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry &entry : fs::directory_iterator(run / "checkpoints")) {
+    found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+TEST(StagedRun, GoesOnFromAnyStageOnAnyNumberOfRanks) {
+  const WorkFolder folder;
+  folder.write("scene.toml", scene_of_stages(stages.size()));
+  const Outcome whole = run_gcpdda(1, {"run", "scene.toml", "--out", "whole"}, folder);
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_EQ(summary_text(folder / "whole", "verdict"), "\"completed\"");
+  EXPECT_EQ(count_of(whole.err, "stage 'opening'"), 1) << whole.err;
+  EXPECT_EQ(count_of(whole.err, "stage 'gravity' settled"), 1) << whole.err;
+  for (const std::size_t count : {1U, 2U, 3U}) {
+    const std::string name = fmt::format("first{}", count);
+    folder.write("first.toml", scene_of_stages(count));
+    const Outcome first =
+        run_gcpdda(1 + static_cast<int>(count % 3), {"run", "first.toml", "--out", name}, folder);
+    ASSERT_EQ(first.exit_code, 0) << first.err;
+    if (count == 3) { // into the middle of its last stage that takes time
+      fs::remove(checkpoints(folder / name).back());
+    }
+    std::ofstream(folder / name / "scene.toml") << scene_of_stages(stages.size());
+    const Outcome rest = run_gcpdda(static_cast<int>(count), {"restart", name}, folder);
+    EXPECT_EQ(rest.exit_code, 0) << rest.err;
+    EXPECT_EQ(compare_runs(folder / "whole", folder / name), none);
+    EXPECT_EQ(summary_text(folder / name, "stages"), summary_text(folder / "whole", "stages"));
+  }
+}
+
+// Exit code 7; the state is kept, and a longer limit finds the verdict.
+TEST(StagedRun, WithoutAVerdictEndsWithSeven) {
+  const WorkFolder folder;
+  folder.write("scene.toml", scene_of_stages(1));
+  const Outcome whole = run_gcpdda(0, {"run", "scene.toml", "--out", "whole"}, folder);
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_EQ(summary_text(folder / "whole", "verdict"), "\"settled\"");
+  const Outcome brief =
+      run_gcpdda(2, {"run", "scene.toml", "--out", "brief", "--set", "stage.gravity.limit=0.06"}, folder);
+  EXPECT_EQ(brief.exit_code, 7) << brief.err;
+  EXPECT_EQ(summary_text(folder / "brief", "verdict"), "\"undecided\"");
+  EXPECT_EQ(run_gcpdda(0, {"restart", "brief"}, folder).exit_code, 7);
+  const Outcome rest = run_gcpdda(3, {"restart", "brief", "--set", "stage.gravity.limit=2.0"}, folder);
+  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_EQ(compare_runs(folder / "whole", folder / "brief"), none);
+}
+
+} // namespace
+} // namespace gcpdda
