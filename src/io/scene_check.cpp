@@ -125,8 +125,8 @@ private:
       return check_array(row, node, who, 3);
     case Kind::velocity_table:
       return check_velocity_table(row, node, who);
-    case Kind::names:
-      return check_names(row, node, who);
+    case Kind::names_or_blanks:
+      return check_names_or_blanks(row, node, who);
     case Kind::points:
     case Kind::polygon:
       return check_points(row, node, who);
@@ -328,7 +328,7 @@ private:
     return sound;
   }
 
-  bool check_names(const Key &row, const toml::node &node, const std::string &who) {
+  bool check_names_or_blanks(const Key &row, const toml::node &node, const std::string &who) {
     const toml::array *names = node.as_array();
     if (names == nullptr) {
       return wrong_type(row, node, who, "an array of names");

@@ -73,7 +73,7 @@ constexpr Key all_keys[] = {
   {"block[].name", Kind::name, optional, any, "", "<b and the position of the block, from 0>", "\"slider\"", "Name, unique in the scene."},
   {"block[].material", Kind::name, required, any, "", "", "\"granite\"", "One of the materials."},
   {"block[].vertices", Kind::polygon, required, from_to(-1e9, 1e9), "", "", "[[0, 0], [1, 0], [1, 1], [0, 1]]", "[m] Corners in order around the block, either way round."},
-  {"block[].edge_joints", Kind::names, optional, any, "", "<by the materials>", "[\"bedding\", \"\", \"fault\", \"\"]", "Contact laws [joint.NAME] of the edges, one a vertex: the edge from each vertex to the next one; \"\" for the law of the materials. Where two edges with a law meet, the weaker one holds: smaller friction angle, then smaller cohesion, then first in the scene."},
+  {"block[].edge_joints", Kind::names_or_blanks, optional, any, "", "<by the materials>", "[\"bedding\", \"\", \"fault\", \"\"]", "Contact laws [joint.NAME] of the edges, one a vertex: the edge from each vertex to the next one; \"\" for the law of the materials. Where two edges with a law meet, the weaker one holds: smaller friction angle, then smaller cohesion, then first in the scene."},
   {"block[].velocity", Kind::vector3, optional, from_to(-1e9, 1e9), "", "[0.0, 0.0, 0.0]", "[0.0, 0.0, 0.0]", "[m/s, m/s, rad/s] Initial velocity of the centroid and angular velocity, counter-clockwise positive."},
   {"block[].fixed", Kind::boolean, optional, any, "", "false", "true", "A fixed block never moves."},
   {"block[].fidelity", Kind::choice, optional, any, "auto rigid deformable", "<run.fidelity>", "\"rigid\"", "How this block deforms; auto is as run.fidelity says."},

@@ -55,6 +55,7 @@ std::string_view type_of(const Key &key) {
   case Kind::pair_of_names:
     return "two names";
   case Kind::names:
+  case Kind::names_or_blanks:
     return "list of names";
   case Kind::vector2:
     return "two numbers";
@@ -68,8 +69,6 @@ std::string_view type_of(const Key &key) {
     return "list of rows of four numbers";
   case Kind::count:
     return "integer";
-  case Kind::names:
-    return "list of names";
   case Kind::assignments:
     return "table of paths and values";
   }
