@@ -1,5 +1,7 @@
 #pragma once
 
+#include "pair_motion.hpp"
+
 #include "gcpdda/contact/bonds.hpp"
 #include "gcpdda/contact/contact_forces.hpp"
 
@@ -14,6 +16,8 @@ struct ContactForces::BondAtWork {
   double cap = 0.0;         ///< strength in shear, N/m
   bool broken = false;
 
+  /// Of the dashpots along the normal, on the lower block, at points begin + s along.
+  [[nodiscard]] TractionIntegral drag(const RelativeVelocity &velocity, Vec2 along) const;
   [[nodiscard]] Vec2 middle() const { return 0.5 * (stretched.end[0] + stretched.end[1]); }
   [[nodiscard]] std::int32_t lower_edge() const { return -1 - memory.lower_stretch; }
   [[nodiscard]] std::int32_t higher_edge() const { return -1 - memory.higher_stretch; }

@@ -112,6 +112,7 @@ BondOpening opening_of(const BlockSystem &system, const CandidatePair &pair, con
     const Vec2 apart = higher.at(shared->higher_ends[k]) - moved + shared->gap[k] * shared->normal;
     // Closed to begin with: a gap of rounding does not pull.
     opening.opening[k] = dot(apart, opening.normal) - std::max(0.0, shared->gap[k]);
+    opening.slide += 0.5 * dot(apart, perp(opening.normal));
     opening.end[k] =
         system.properties[pair.lower.value].centroid + shared->lower_ends[k] + moved + 0.5 * apart;
   }
@@ -183,10 +184,9 @@ void ContactForces::find_bonds(const BlockSystem &system, const CandidatePair &p
     }
     const double push = bond.constants.half_stiffness * pressure;
     bond.cap = std::max(0.0, law.cohesion * bond.stretched.length + (push - bond.pull) * law.tan_friction);
-    const Vec2 tangent = -perp(bond.stretched.normal);
-    const Vec2 slide =
-        slide_at(system, pair, bond.middle(), increments_[pair.lower.value], increments_[pair.higher.value]);
-    bond.memory.shear += bond.constants.tangential_stiffness * bond.memory.longest * dot(slide, tangent);
+    bond.memory.shear +=
+        bond.constants.tangential_stiffness * known.longest * (bond.stretched.slide - known.slip);
+    bond.memory.slip = bond.stretched.slide;
     bond.broken =
         law.normal_stiffness * std::max(o0, o1) > law.tension || std::abs(bond.memory.shear) > bond.cap;
   }
@@ -204,6 +204,18 @@ ContactForces::BondShare ContactForces::share_of_bonds(const CandidatePair &pair
     share.shear += here && bond.broken ? bond.memory.shear : 0.0;
   }
   return share;
+}
+
+// The dashpot of both sides' pieces, where the joint is open.
+TractionIntegral ContactForces::BondAtWork::drag(const RelativeVelocity &velocity, Vec2 along) const {
+  const auto [first, last] = positive_part(stretched.opening[0], stretched.opening[1]);
+  const auto at = [&](double share) {
+    const Vec2 arm = (share - 0.5) * stretched.length * along;
+    return -2.0 * constants.damping * dot(velocity.at(arm), stretched.normal);
+  };
+  TractionIntegral sum;
+  sum.add_linear(first * stretched.length, at(first), last * stretched.length, at(last));
+  return sum;
 }
 
 void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number) {
@@ -234,19 +246,11 @@ void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair 
     force.dyad = pull_dyad;
 
     const RelativeVelocity velocity(system, pair, force.origin);
-    if (bond.constants.damping > 0.0) { // the dashpot of both sides' pieces, where the joint is open
-      const auto [first, last] = positive_part(stretched.opening[0], stretched.opening[1]);
-      const auto drag_at = [&](double share) {
-        const Vec2 arm = (share - 0.5) * stretched.length * along;
-        return -2.0 * bond.constants.damping * dot(velocity.at(arm), stretched.normal);
-      };
-      TractionIntegral drag;
-      drag.add_linear(first * stretched.length, drag_at(first), last * stretched.length, drag_at(last));
-      const Vec2 moment = moment_of(drag.total, drag.along);
-      force.force += drag.total * stretched.normal;
-      force.dyad += outer(moment, stretched.normal);
-      add_damping(force, drag.total * stretched.normal, moment, stretched.normal);
-    }
+    const TractionIntegral drag = bond.drag(velocity, along);
+    const Vec2 drag_moment = moment_of(drag.total, drag.along);
+    force.force += drag.total * stretched.normal;
+    force.dyad += outer(drag_moment, stretched.normal);
+    add_damping(force, drag.total * stretched.normal, drag_moment, stretched.normal);
     double viscous = 0.0;
     if (parameters_.damping_ratio > 0.0) {
       viscous = 2.0 * parameters_.damping_ratio *

@@ -111,7 +111,10 @@ void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
     const double stiffness = constants.tangential_stiffness * memory.longest;
     double next = memory.shear;
     if (moment == Moment::middle && memory.state != ContactState::slip) {
-      next += stiffness * coming_slide(simulation.blocks(), pair, force);
+      next += stiffness *
+              (memory.is_bond()
+                   ? opening_of(simulation.blocks(), pair, memory, Configuration::trial).slide - memory.slip
+                   : coming_slide(simulation.blocks(), pair, force));
     }
     sum.add(0.5 * memory.shear * next / stiffness);
   }

@@ -53,14 +53,14 @@ std::string glued_wall_toml(int rows, int columns, double duration) {
                                  "[joint.bedding]\ncohesion = 1e6\ntension = 5e5\n"
                                  "[joint.upright]\nnormal_stiffness = 4e8\ncohesion = 2e6\ntension = 1e6\n"
                                  "residual_friction_angle_deg = 20.0\n"
-                                 "[output]\ninterval = 0.015\ncheckpoint_interval = 0.015\n",
+                                 "[output]\ninterval = 0.01\ncheckpoint_interval = 0.01\n",
                                  duration);
   std::mt19937 random(4);
   const auto speed = [&](double most) { return most * (static_cast<double>(random()) / 2147483648.0 - 1.0); };
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const Vec2 low{column + 0.5 * (row % 2), 0.5 * row};
-      const double vx = 20.0 + speed(2.0);
+      const double vx = 50.0 + speed(2.0);
       const double vy = 2.0 + speed(2.0);
       toml += testing::block_toml(
           fmt::format("brick{}_{}", row, column), testing::rectangle(low, low + Vec2{1.0, 0.5}),
@@ -162,14 +162,14 @@ std::int64_t num_bonds(const fs::path &folder, int frame) {
 // Bricks glued to each other, thrown and torn apart: bonds of two families break while they migrate. A run
 // that stops in the middle and goes on is the same.
 TEST(Identity, OfAWallThatTearsApart) {
-  const std::string toml = glued_wall_toml(20, 12, 0.03);
+  const std::string toml = glued_wall_toml(12, 8, 0.02);
   const Scene scene = testing::scene_of(toml);
   const TwoRuns runs(scene);
   if (runs.world().size() > 1) {
     EXPECT_GE(runs.counted("migrations"), 1);
-    EXPECT_GE(runs.counted("cross_rank_contacts"), 25);
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 12);
   }
-  const Scene half = testing::scene_of(toml, {"run.duration=0.015"});
+  const Scene half = testing::scene_of(toml, {"run.duration=0.01"});
   const testing::SharedFolder folder(runs.world());
   const testing::CapturedLog log;
   EXPECT_EQ(run_scene(runs.world(), half, {folder.path("run"), false}), 0);
@@ -181,9 +181,9 @@ TEST(Identity, OfAWallThatTearsApart) {
     }
     const std::int64_t at_start = num_bonds(runs.alone(), 0);
     const std::int64_t at_end = num_bonds(runs.alone(), 2);
-    EXPECT_GE(at_start, 600);
-    EXPECT_LE(at_end, at_start - 50);
-    EXPECT_GE(at_end, 50);
+    EXPECT_GE(at_start, 200);
+    EXPECT_LE(at_end, at_start - 20);
+    EXPECT_GE(at_end, 20);
   }
 }
 

@@ -27,11 +27,14 @@
 // normal of either block alone, or forces at X_A and X_B, one of the three is lost.) Deformable blocks: up to
 // the opening times their rate of strain.
 //
-// Shear. While a bond holds it carries the shear of its stretch: the stick spring of contact_forces.hpp with
-// k_t = ratio k_n times the length of the stretch, at the middle of the stretch, from the same increments of
-// the trial configurations; regions on the same edges have no friction of their own meanwhile, or k_t would
-// be there twice. The stiffness of bond and overlap together is never above that of a closed joint, so the
-// bound of the time step (dynamics/frequency_bound.hpp) covers both.
+// Shear. While a bond holds it carries the shear of its stretch, by a stick spring with k_t = ratio k_n times
+// the length of the stretch, in the middle of the stretch: F_t follows s = -d.t_r there, t_r = -perp(n), by
+// the differences of s since the last evaluation, which is the initial stick force plus k_t s. For the same
+// reason as above (t_r turns with n) it conserves energy exactly, where a spring that adds up increments of
+// the motion drifts with the first order of the step when an open joint turns. Regions on the same edges have
+// no friction of their own meanwhile, or k_t would be there twice. The stiffness of bond and overlap together
+// is never above that of a closed joint, so the bound of the time step (dynamics/frequency_bound.hpp) covers
+// both.
 //
 // Strength. With N the push on the bonded edges and T the pull of the bond, it breaks as a whole when
 //     k_n max(o) > tension              somewhere on the stretch (at one of its ends), or
@@ -42,8 +45,8 @@
 // with the loss by friction (simulation/energy_ledger.hpp), since it is what the work of the bonds lacks.
 //
 // State. Where a stretch lies follows from the shapes of both blocks, which every rank that sees them has.
-// What a bond remembers, F_t and that it is there, is a RegionMemory behind those of the pair's regions,
-// named by the two edges: it migrates, becomes a ghost and is saved as they are.
+// What a bond remembers, F_t, s (as its slip) and that it is there, is a RegionMemory behind those of the
+// pair's regions, named by the two edges: it migrates, becomes a ghost and is saved as they are.
 
 #include "gcpdda/contact/candidates.hpp"
 
@@ -75,6 +78,7 @@ enum class Configuration { trial, trial_previous };
 struct BondOpening {
   Vec2 normal;
   std::array<double, 2> opening{}; ///< at its ends, m
+  double slide = 0.0;              ///< of the lower block along t_r, in the middle, m
   std::array<Vec2, 2> end;         ///< middle of the two material points; only for Configuration::trial
   double length = 0.0;
 };

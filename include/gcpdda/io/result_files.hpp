@@ -40,7 +40,7 @@ struct ContactRow {
   std::int64_t higher = 0;
   std::int32_t position = 0; ///< order of the region within its pair
   std::int32_t joint = 0;    ///< index of its law
-  std::uint8_t state = 0;    ///< 1 stick, 2 slip
+  std::uint8_t state = 0;    ///< 1 stick, 2 slip, 3 a bond, whose normal_force is minus its tension
   Vec2 begin;
   Vec2 end;
   double normal_force = 0.0; ///< N/m
