@@ -53,8 +53,13 @@ class Frame:
             self.time = float(grid.attrs["time"])
             self.points = grid["Points"][:, :2]
             self.offsets = grid["Offsets"][:]
+            self.blocks = grid["CellData/block"][:]
             self.fixed = grid["CellData/kind"][:] == 0
             self.values = FIELDS[field][0](grid["CellData"])
+
+    def points_of(self, blocks):
+        """Points of those blocks alone: later frames may have lost some."""
+        return self.points[np.repeat(np.isin(self.blocks, blocks), np.diff(self.offsets))]
 
     def polygons(self, of_blocks):
         return [self.points[self.offsets[b] : self.offsets[b + 1]] for b in np.flatnonzero(of_blocks)]
@@ -219,7 +224,8 @@ def main():
     frames = [Frame(path, arguments.field) for path in chosen_frames(arguments.directory, arguments.frame)]
     first = Frame(chosen_frames(arguments.directory, "first")[0], arguments.field)
     for frame in frames:
-        frame.points = first.points + arguments.scale * (frame.points - first.points)
+        start = first.points_of(frame.blocks)
+        frame.points = start + arguments.scale * (frame.points - start)
     colours = Colours(arguments.field, frames)
     save = save_movie if arguments.out.suffix == ".gif" else save_picture
     save(frames, colours, arguments, first if arguments.compare else None)

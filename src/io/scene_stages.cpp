@@ -31,6 +31,7 @@ const std::vector<Belongs> &belongings() {
       {"tolerance", {run, settle}},
       {"failure_motion", {run, settle}},
       {"local_damping", {run, settle}},
+      {"kinetic_damping", {settle}},
       {"mass_scaling", {settle}},
       {"blocks", {excavate}},
       {"region", {excavate}},
@@ -72,7 +73,8 @@ public:
     stage.until_verdict = section.given("limit") != nullptr;
     section.read("tolerance", stage.tolerance);
     section.read("failure_motion", stage.failure_motion);
-    stage.local_damping = stage.kind == StageKind::settle ? 0.8 : -1.0;
+    section.read("kinetic_damping", stage.kinetic_damping);
+    stage.local_damping = stage.kind != StageKind::settle ? -1.0 : stage.kinetic_damping ? 0.0 : 0.8;
     section.read("local_damping", stage.local_damping);
     section.read("mass_scaling", stage.mass_scaling);
     section.read("relax", stage.relax);

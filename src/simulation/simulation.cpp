@@ -267,6 +267,9 @@ void Simulation::add_half_works(std::size_t row) {
 // this rank counts. It cannot run on into the next step: how far a block may go in two steps depends on
 // contacts that nobody has evaluated yet, so a flag one step late is no bound.
 void Simulation::report() {
+  if (stages_[static_cast<std::size_t>(stage_.index)].kinetic_damping && stage_step() > 0) {
+    stop_at_energy_peak();
+  }
   if (is_staged_ && stage_step() > 0 && stage_step() % steps_between_looks(num_blocks()) == 0) {
     look_at_stage();
   }

@@ -134,6 +134,24 @@ void Simulation::look_at_stage() {
   stage_.ended = stage.until_verdict && stage_.verdict != Verdict::undecided;
 }
 
+// Where the energy of motion has just been greatest the pile passes through the balance of the slowest mode
+// that moves: from rest there it has less far to go. An exact sum, so that every number of ranks stops alike.
+void Simulation::stop_at_energy_peak() {
+  ExactSum kinetic;
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    if (!blocks_.properties[row].keeps_its_velocity()) {
+      kinetic.add(kinetic_energy_of(blocks_, row));
+    }
+  }
+  communicator_.sum(kinetic.limbs());
+  const double now = kinetic.value();
+  const bool passed = now < stage_.memory.kinetic_before;
+  stage_.memory.kinetic_before = passed ? 0.0 : now;
+  if (passed) {
+    set_to_rest();
+  }
+}
+
 std::vector<StageResult> Simulation::stage_results() const {
   std::vector<StageResult> results = stage_.results;
   if (std::ssize(results) == stage_.index) {

@@ -34,7 +34,8 @@ namespace {
 template <class State, class Count, class Real> void visit_state(State &state, Count &&count, Real &&real) {
   count(state.index), count(state.first_step), count(state.ended), count(state.contact_steps_before);
   count(state.more_mobile), count(state.verdict), count(state.memory.calm_looks);
-  real(state.start_time), real(state.end_time), real(state.memory.most_kinetic);
+  real(state.start_time), real(state.end_time), real(state.memory.most_kinetic),
+      real(state.memory.kinetic_before);
   auto &last = state.memory.last;
   real(last.unbalanced_ratio), real(last.motion), real(last.overlap), real(last.force), real(last.kinetic);
   real(last.moved);

@@ -40,6 +40,7 @@ struct Stage {
   double failure_motion = 0.5; ///< share of its size that a block moves when it fails
   double local_damping = -1.0; ///< in place of that of the run; negative for none
   bool mass_scaling = false;
+  bool kinetic_damping = false; ///< velocities are set to zero whenever the kinetic energy has passed a peak
   BlockSelection excavated;
   double relax = 0.0; ///< s over which the forces of excavated blocks fall to zero
   /// The scene from here on where the stage changes it; without stages of its own.

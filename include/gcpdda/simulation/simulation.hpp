@@ -171,6 +171,7 @@ private:
   void unscale_masses();
   void set_to_rest();
   void look_at_stage();
+  void stop_at_energy_peak();
   void mark_stage();
   void evaluate_still();
   void adopt(const Scene &after);

@@ -38,6 +38,7 @@ struct StageLook {
 struct LookMemory {
   StageLook last;
   double most_kinetic = 0.0;
+  double kinetic_before = 0.0; ///< one step ago, of a stage with kinetic damping
   std::int64_t calm_looks = 0;
 };
 
