@@ -10,6 +10,7 @@
 #include "gcpdda/blockgen/quality.hpp"
 #include "gcpdda/blockgen/region_cutter.hpp"
 #include "gcpdda/geometry/polygon.hpp"
+#include "gcpdda/io/block_file.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/model/generators.hpp"
 #include "gcpdda/simulation/region_slabs.hpp"
@@ -302,6 +303,9 @@ int cut_blocks(const Communicator &world, const Scene &scene, const BlocksOption
   }
   if (!options.json.empty()) {
     write_on_root(world, options.json, json_of(report, scene), "the report");
+  }
+  if (!options.out.empty()) {
+    write_block_file(world, options.out, made.blocks);
   }
   if (!options.svg.empty()) {
     draw(world, scene, made.blocks, report, options.svg);

@@ -1,5 +1,7 @@
 #include "gcpdda/contact/candidates.hpp"
 
+#include "gcpdda/contact/region_law.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,20 +86,9 @@ CandidatePair make_pair(const BlockSystem &system, BlockIndex lower, BlockIndex 
   CandidatePair pair;
   pair.lower = lower;
   pair.higher = higher;
-  pair.law = parameters.joints.between(a.material, b.material);
-  const JointLaw &law = parameters.joints.laws[static_cast<std::size_t>(pair.law)];
-  pair.half_stiffness = 0.5 * law.normal_stiffness;
-  pair.tangential_stiffness = law.tangential_ratio * law.normal_stiffness;
-  pair.tan_friction = law.tan_friction;
-  pair.cohesion = law.cohesion;
-  // A fixed or driven block counts as infinitely heavy and sets no length.
-  const bool a_fixed = a.keeps_its_velocity();
-  const bool b_fixed = b.keeps_its_velocity();
-  pair.mass = a_fixed ? b.mass : b_fixed ? a.mass : a.mass * b.mass / (a.mass + b.mass);
-  const double smaller_area = a_fixed ? b.area : b_fixed ? a.area : std::min(a.area, b.area);
-  // c' = 2 xi sqrt(k_n m_eff / L_ref), half of it for each side's pieces.
-  pair.damping =
-      parameters.damping_ratio * std::sqrt(law.normal_stiffness * pair.mass / std::sqrt(smaller_area));
+  const auto only = only_law(system, parameters.joints, pair);
+  pair.is_mixed = !only.has_value();
+  take_law(system, parameters, only.value_or(parameters.joints.between(a.material, b.material)), pair);
   pair.allowed_overlap = 0.5 * std::min(a.width, b.width);
   pair.is_convex = a.is_convex && b.is_convex;
   return pair;
@@ -137,7 +128,7 @@ public:
     }
   }
 
-  /// Is a pair plain?
+  /// Do the shapes of a pair allow it to be plain?
   [[nodiscard]] bool is_plain(std::size_t lower, std::size_t higher) const {
     return has_few_edges(lower) && has_few_edges(higher);
   }
@@ -365,13 +356,14 @@ Candidates make_candidates(const BlockSystem &system,
   for (const auto &[lower, higher] : pairs) {
     EdgeChain lower_chain;
     EdgeChain higher_chain;
-    const bool is_plain =
-        parameters.potential == PotentialKind::exact && finder.is_plain(lower.value, higher.value);
+    CandidatePair candidate = make_pair(system, lower, higher, parameters);
+    const bool is_plain = parameters.potential == PotentialKind::exact && !candidate.is_mixed &&
+                          finder.is_plain(lower.value, higher.value);
     if (is_plain && !finder.find(lower.value, higher.value, lower_chain, higher_chain)) {
       continue;
     }
-    candidates.pairs.push_back(make_pair(system, lower, higher, parameters));
-    candidates.pairs.back().is_plain = is_plain;
+    candidate.is_plain = is_plain;
+    candidates.pairs.push_back(candidate);
     if (is_plain) {
       candidates.plain.push_back({static_cast<std::uint32_t>(candidates.pairs.size() - 1), lower, higher,
                                   static_cast<std::uint32_t>(candidates.chain_vertices.size()),
@@ -401,14 +393,34 @@ Candidates make_candidates(const BlockSystem &system,
   return candidates;
 }
 
-StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material) {
+StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material,
+                               std::span<const std::int32_t> edge_joint) {
   StiffnessBound bound;
-  for (std::int32_t other = 0; other < joints.num_materials; ++other) {
-    const JointLaw &law = joints.laws[static_cast<std::size_t>(joints.between(material, other))];
+  const auto include = [&](std::int32_t index) {
+    const JointLaw &law = joints.laws[static_cast<std::size_t>(index)];
     bound.normal = std::max(bound.normal, law.normal_stiffness);
     if (law.has_friction()) {
       bound.tangential = std::max(bound.tangential, law.tangential_ratio * law.normal_stiffness);
     }
+  };
+  const auto include_partners = [&](std::int32_t own) {
+    for (std::int32_t other = 0; other < std::ssize(joints.laws); ++other) {
+      if (joints.laws[static_cast<std::size_t>(other)].is_on_edges) {
+        include(joints.of_edges(own, other, other));
+      }
+    }
+  };
+  for (const std::int32_t own : edge_joint) {
+    if (own >= 0) {
+      include(own);
+      include_partners(own);
+    }
+  }
+  if (edge_joint.empty() || std::find(edge_joint.begin(), edge_joint.end(), -1) != edge_joint.end()) {
+    for (std::int32_t other = 0; other < joints.num_materials; ++other) {
+      include(joints.between(material, other));
+    }
+    include_partners(-1);
   }
   return bound;
 }

@@ -1,40 +1,13 @@
 #include "gcpdda/contact/contact_forces.hpp"
 
+#include "pair_motion.hpp"
 #include "plain_batch.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace gcpdda {
-
-/// Relative velocity of two blocks as a field: v(x) = at_origin + gradient (x - origin).
-struct ContactForces::RelativeVelocity {
-  Vec2 at_origin;
-  Mat2 gradient;
-
-  RelativeVelocity(const BlockSystem &system, const CandidatePair &pair, Vec2 origin) {
-    add(system, pair.lower.value, origin, 1.0);
-    add(system, pair.higher.value, origin, -1.0);
-  }
-  [[nodiscard]] Vec2 at(Vec2 from_origin) const { return at_origin + gradient(from_origin); }
-
-private:
-  void add(const BlockSystem &system, std::size_t row, Vec2 origin, double sign) {
-    const RigidDof &v = system.velocity[row];
-    const Vec2 arm = origin - system.trial_centroid[row];
-    if (system.is_deformable(row)) {
-      const Mat2 own = system.deformation_of(row).rate * system.trial_inverse[system.deformation_begin[row]];
-      at_origin += sign * (v.u + own(arm));
-      gradient += sign * own;
-    } else {
-      at_origin += sign * (v.u + v.r * perp(arm));
-      gradient.xy -= sign * v.r;
-      gradient.yx += sign * v.r;
-    }
-  }
-};
 
 namespace {
 
@@ -53,91 +26,6 @@ TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
   return {step.u, {turn.versine, -turn.sine, turn.sine, turn.versine}};
 }
 
-/// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
-Vec2 increment_at(const TrialIncrement &step, Vec2 r) {
-  return step.u + step.turn(r);
-}
-
-/// Motion of the lower block's material point now at x relative to the higher one's.
-Vec2 slide_at(const BlockSystem &system, const CandidatePair &pair, Vec2 x, const TrialIncrement &lower,
-              const TrialIncrement &higher) {
-  return increment_at(lower, x - system.trial_centroid[pair.lower.value]) -
-         increment_at(higher, x - system.trial_centroid[pair.higher.value]);
-}
-
-/// int q ds and int q s ds of q = max(-p, d) over [0, length], p >= 0 and d linear with the given end values.
-struct TractionIntegral {
-  double total = 0.0;
-  double along = 0.0;
-
-  void add_linear(double s0, double q0, double s1, double q1) {
-    const double length = s1 - s0;
-    const double stretch = 0.5 * length * (q0 + q1);
-    total += stretch;
-    along += s0 * stretch + length * length * (q0 + 2.0 * q1) / 6.0;
-  }
-};
-
-TractionIntegral integrate_without_tension(double length, double p0, double p1, double d0, double d1) {
-  TractionIntegral q;
-  const double sum0 = p0 + d0;
-  const double sum1 = p1 + d1;
-  if (sum0 >= 0.0 && sum1 >= 0.0) {
-    q.add_linear(0.0, d0, length, d1);
-  } else if (sum0 <= 0.0 && sum1 <= 0.0) {
-    q.add_linear(0.0, -p0, length, -p1);
-  } else {
-    const double share = sum0 / (sum0 - sum1);
-    const double cut = share * length;
-    const double p_cut = p0 + share * (p1 - p0);
-    q.add_linear(0.0, std::max(-p0, d0), cut, -p_cut);
-    q.add_linear(cut, -p_cut, length, std::max(-p1, d1));
-  }
-  return q;
-}
-
-double deepest(std::span<const Piece> pieces) {
-  double depth = 0.0;
-  for (const Piece &piece : pieces) {
-    depth = std::max({depth, piece.depth_begin, piece.depth_end});
-  }
-  return depth;
-}
-
-/// Thickness along n_r and extent along t_r of the pieces, relative to x_r.
-void measure_region(std::span<const Piece> pieces, RegionForce &force) {
-  const Vec2 tangent = perp(force.normal);
-  double low_n = std::numeric_limits<double>::infinity();
-  double low_t = low_n;
-  double high_n = -low_n;
-  double high_t = -low_n;
-  for (const Piece &piece : pieces) {
-    for (const Vec2 x : {piece.begin - force.point, piece.end() - force.point}) {
-      const double along_n = dot(x, force.normal);
-      const double along_t = dot(x, tangent);
-      low_n = std::min(low_n, along_n);
-      high_n = std::max(high_n, along_n);
-      low_t = std::min(low_t, along_t);
-      high_t = std::max(high_t, along_t);
-    }
-  }
-  // Faces that coincide up to rounding leave only their ends to set n_r, which then lies along the joint: the
-  // deepest point, never far below the thickness of a real overlap, keeps its length out.
-  force.overlap = std::min(high_n - low_n, 4.0 * deepest(pieces));
-  force.extent_begin = low_t;
-  force.extent_end = high_t;
-}
-
-void add_force(RegionForce &force, Vec2 at, Vec2 f) {
-  force.force += f;
-  force.dyad += outer(at - force.origin, f);
-}
-
-/// u.n of a piece: how far it faces the other block along n_r.
-double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
-  return is_lower ? -dot(normal, piece.normal) : dot(normal, piece.normal);
-}
-
 } // namespace
 
 ContactForces::ContactForces(ContactParameters parameters, Instructions instructions)
@@ -145,70 +33,6 @@ ContactForces::ContactForces(ContactParameters parameters, Instructions instruct
 ContactForces::~ContactForces() = default;
 ContactForces::ContactForces(ContactForces &&) noexcept = default;
 ContactForces &ContactForces::operator=(ContactForces &&) noexcept = default;
-
-void ContactForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
-                                       const Region &region, RegionForce &force) {
-  const Vec2 n = force.normal;
-  // Closing speed (v_own - v_other).u at an offset from the origin, the same for both blocks' pieces.
-  const double closing_at_origin = -dot(velocity.at_origin, n);
-  const Vec2 closing_gradient = -transposed(velocity.gradient)(n);
-  const std::span<const Piece> pieces = overlap_.pieces();
-
-  // Share of the facing pieces' pressure along n_r that the resultant keeps: what may be taken away.
-  facing_.resize(pieces.size());
-  double facing_pressure = 0.0;
-  for (std::uint32_t i = region.begin; i < region.end; ++i) {
-    const Piece &piece = pieces[i];
-    facing_[i] = std::max(0.0, facing_of(piece, i < region.middle, n));
-    facing_pressure += facing_[i] * 0.5 * piece.length * (piece.depth_begin + piece.depth_end);
-  }
-  const double share = std::min(1.0, force.normal_force / pair.half_stiffness / facing_pressure);
-
-  double total = 0.0;
-  Vec2 moment;
-  for (std::uint32_t i = region.begin; i < region.end; ++i) {
-    const Piece &piece = pieces[i];
-    if (facing_[i] <= 0.0) {
-      continue;
-    }
-    const Vec2 begin = piece.begin - force.origin;
-    const Vec2 tangent = perp(piece.normal);
-    const double rate = pair.damping * facing_[i];
-    const double releasable = share * facing_[i] * pair.half_stiffness;
-    const double closing = closing_at_origin + dot(closing_gradient, begin);
-    const double closing_end = closing + piece.length * dot(closing_gradient, tangent);
-    const std::array<double, 2> depth = overlap_.depth_floor(piece);
-    const TractionIntegral q = integrate_without_tension(
-        piece.length, releasable * depth[0], releasable * depth[1], rate * closing, rate * closing_end);
-    total += q.total;
-    moment += q.total * begin + q.along * tangent;
-  }
-  force.force += total * n;
-  force.dyad += outer(moment, n);
-  add_damping(force, total * n, moment, n);
-}
-
-void ContactForces::add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction) {
-  force.damping_force += f;
-  damping_dyad_ += outer(moment, direction);
-}
-
-void ContactForces::finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force) {
-  for (const bool is_lower : {true, false}) {
-    const std::size_t row = (is_lower ? pair.lower : pair.higher).value;
-    const double sign = is_lower ? 1.0 : -1.0;
-    const std::size_t k = is_lower ? 0 : 1;
-    const Vec2 arm = force.origin - system.trial_centroid[row];
-    const auto torque = [&](const Mat2 &dyad, Vec2 f) { return sign * (dyad.xy - dyad.yx + cross(arm, f)); };
-    force.torque[k] = torque(force.dyad, force.force);
-    force.shear_torque[k] = sign * cross(force.point - system.trial_centroid[row], force.shear_force);
-    force.damping_torque[k] = torque(damping_dyad_, force.damping_force);
-    if (system.is_deformable(row)) {
-      damping_dyads_.resize(forces_.size());
-      damping_dyads_.back() = damping_dyad_;
-    }
-  }
-}
 
 BlockView view_of(const BlockSystem &system, std::size_t row) {
   BlockView view{system.of_row(system.vertex, row),      system.of_row(system.normal, row),
@@ -226,15 +50,6 @@ Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x) {
   const Vec2 arm = x - system.trial_centroid[row];
   return system.is_deformable(row) ? system.trial_inverse[system.deformation_begin[row]](arm)
                                    : Rotation::of(-system.trial[row].r)(arm);
-}
-
-void ContactForces::add_shear(RegionForce &force, double elastic, double viscous) {
-  const Vec2 tangent = perp(force.normal);
-  force.shear = elastic + viscous;
-  force.shear_force = -elastic * tangent;
-  const Vec2 drag = -viscous * tangent;
-  add_damping(force, drag, force.point - force.origin, drag);
-  add_force(force, force.point, -force.shear * tangent);
 }
 
 void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm) {
@@ -257,133 +72,6 @@ void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, 
   force.shear_force = -shear * tangent;
   force.shear_torque = {};
   add_torques(force.shear_torque, force.shear_force);
-}
-
-bool ContactForces::measure(const CandidatePair &pair, const Region &region, RegionForce &force) const {
-  const RegionIntegrals sum = overlap_.integrate(region);
-  if (!(sum.pressure > 0.0)) {
-    return false;
-  }
-  force.origin = sum.origin;
-  force.force = pair.half_stiffness * sum.force;
-  force.dyad = pair.half_stiffness * Mat2{sum.dyad[0], sum.dyad[1], sum.dyad[2], sum.dyad[3]};
-  // Divided, not multiplied by the inverse: faces that just touch leave pressures whose inverse overflows.
-  force.point = sum.origin + Vec2{sum.pressure_moment.x / sum.pressure, sum.pressure_moment.y / sum.pressure};
-  const double resultant = norm(sum.force);
-  force.normal_force = pair.half_stiffness * resultant;
-  const auto pieces = overlap_.pieces().subspan(region.begin, region.end - region.begin);
-  if (resultant <= least_resultant * sum.pressure) { // of denormals both sides are 0
-    force.normal_undefined = true;
-    // No direction to measure along: twice the deepest point stands for the thickness.
-    force.overlap = 2.0 * deepest(pieces);
-  } else {
-    force.normal = (1.0 / resultant) * sum.force;
-    measure_region(pieces, force);
-  }
-  return true;
-}
-
-void ContactForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
-                                 const RelativeVelocity &velocity, RegionMemory &memory, RegionForce &force) {
-  const double extent = force.extent_end - force.extent_begin;
-  memory.longest = std::max(memory.longest, extent);
-  force.cap = force.normal_force * pair.tan_friction + pair.cohesion * extent;
-  memory.state = force.cap > 0.0 ? ContactState::stick : ContactState::slip;
-  if (force.cap <= 0.0) {
-    memory.shear = 0.0;
-    return;
-  }
-  const Vec2 tangent = perp(force.normal);
-  const double stiffness = pair.tangential_stiffness * memory.longest;
-  if (!force.born) {
-    const Vec2 slide =
-        slide_at(system, pair, force.point, increments_[pair.lower.value], increments_[pair.higher.value]);
-    memory.shear += stiffness * dot(slide, tangent);
-  }
-  if (std::abs(memory.shear) > force.cap) {
-    memory.slip += (std::abs(memory.shear) - force.cap) / stiffness;
-    memory.shear = std::copysign(force.cap, memory.shear);
-    memory.state = ContactState::slip;
-  }
-  double viscous = 0.0;
-  if (parameters_.damping_ratio > 0.0) {
-    const double drag = 2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) *
-                        dot(velocity.at(force.point - force.origin), tangent);
-    viscous = std::clamp(memory.shear + drag, -force.cap, force.cap) - memory.shear;
-  }
-  add_shear(force, memory.shear, viscous);
-}
-
-namespace {
-
-/// The memory of a region among those its pair had: the nearest between the same stretches that can be the
-/// same patch; null for a new region.
-RegionMemory *find_memory(std::span<RegionMemory> old, const Region &region, Vec2 position, double extent) {
-  RegionMemory *nearest = nullptr;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (RegionMemory &memory : old) {
-    const double distance = norm(memory.position - position);
-    if (memory.lower_stretch == region.faces.first && memory.higher_stretch == region.faces.second &&
-        distance <= memory.longest + extent && distance < smallest) {
-      smallest = distance;
-      nearest = &memory;
-    }
-  }
-  return nearest;
-}
-
-} // namespace
-
-void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &candidates,
-                                  std::uint32_t number, std::span<RegionMemory> old) {
-  const CandidatePair &pair = candidates.pairs[number];
-  if (!overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
-                     parameters_.potential)) {
-    return;
-  }
-  for (const Region &region : overlap_.regions()) {
-    RegionForce &force = forces_.emplace_back();
-    if (!measure(pair, region, force)) {
-      forces_.pop_back();
-      continue;
-    }
-    force.pair = number;
-    damping_dyad_ = {};
-    RegionMemory &memory = next_.regions.emplace_back();
-    if (pair.is_convex) {
-      force.born = old.empty();
-      memory = force.born ? memory : old.front();
-    } else {
-      recall(system, pair, region, old, memory, force);
-    }
-    if (force.normal_undefined) {
-      memory.shear = 0.0;
-      memory.state = ContactState::slip;
-    } else {
-      const RelativeVelocity velocity(system, pair, force.origin);
-      add_friction(system, pair, velocity, memory, force);
-      if (pair.damping > 0.0) {
-        add_normal_dashpot(pair, velocity, region, force);
-      }
-    }
-    finish_region(system, pair, force);
-    note(system, pair, force);
-  }
-}
-
-// Which of the pair's old regions goes on in this one.
-void ContactForces::recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-                           std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const {
-  const Vec2 position = reference_point(system, pair.lower.value, force.point);
-  RegionMemory *known = find_memory(old, region, position, force.extent_end - force.extent_begin);
-  force.born = known == nullptr;
-  if (known != nullptr) {
-    memory = *known;
-    known->longest = -std::numeric_limits<double>::infinity(); // out of reach for the next region
-  }
-  memory.position = position;
-  memory.lower_stretch = region.faces.first;
-  memory.higher_stretch = region.faces.second;
 }
 
 void ContactForces::find_increments(const BlockSystem &system, std::size_t first, std::size_t last) {

@@ -141,8 +141,8 @@ struct Rows {
 class BlockMaker {
 public:
   BlockMaker(const Scene &scene, std::int64_t first, const Rows &rows, Collector &faults)
-      : num_materials_(static_cast<std::int64_t>(scene.materials.size())), first_(first), rows_(&rows),
-        faults_(&faults) {}
+      : num_materials_(static_cast<std::int64_t>(scene.materials.size())), joints_(&scene.joints.laws),
+        first_(first), rows_(&rows), faults_(&faults) {}
 
   /// False where no points can be read for them.
   bool check_offsets(std::int64_t num_blocks, std::int64_t num_points) {
@@ -190,14 +190,19 @@ public:
     return block;
   }
 
-  /// @param points  x and y of all points of this rank
-  void add_outline(std::size_t i, const std::vector<double> &points, SceneBlock &block) {
+  /// @param points      x and y of all points of this rank
+  /// @param edge_joint  laws of all edges of this rank, or none
+  void add_outline(std::size_t i, const std::vector<double> &points,
+                   const std::vector<std::int32_t> &edge_joint, SceneBlock &block) {
     const std::int64_t number = first_ + static_cast<std::int64_t>(i);
     const auto begin = static_cast<std::size_t>(rows_->offsets[i] - rows_->offsets.front());
     const auto end = static_cast<std::size_t>(rows_->offsets[i + 1] - rows_->offsets.front());
     block.vertices.reserve(end - begin);
     for (std::size_t k = begin; k < end; ++k) {
       block.vertices.push_back({points[2 * k], points[2 * k + 1]});
+    }
+    if (!edge_joint.empty()) {
+      read_edge_joints(number, std::span(edge_joint).subspan(begin, end - begin), block);
     }
     bool finite = true;
     for (std::size_t k = 0; k < block.vertices.size(); ++k) {
@@ -211,7 +216,8 @@ public:
     if (!finite) {
       return;
     }
-    for (const scene_text::OutlineFault &f : scene_text::check_outline(block.vertices, "the outline")) {
+    for (const scene_text::OutlineFault &f :
+         scene_text::check_outline(block.vertices, block.edge_joint, "the outline")) {
       faults_->add(number, f.what, f.why, f.hint);
     }
   }
@@ -245,6 +251,19 @@ private:
     }
   }
 
+  void read_edge_joints(std::int64_t number, std::span<const std::int32_t> joints, SceneBlock &block) {
+    block.edge_joint.assign(joints.begin(), joints.end());
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      if (joints[k] < -1 || joints[k] >= std::ssize(*joints_)) {
+        faults_->add(number, fmt::format("edge_joint of edge {} is {}", k, joints[k]),
+                     fmt::format("the scene has joints 0 to {}, in the order of its file but default first",
+                                 joints_->size() - 1),
+                     "give one of these numbers, or -1 for the law of the materials");
+        block.edge_joint[k] = -1;
+      }
+    }
+  }
+
   // Velocities have the bounds of coordinates, as in the scene file.
   void read_velocity(std::int64_t number, std::size_t i, SceneBlock &block) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -261,6 +280,7 @@ private:
   }
 
   std::int64_t num_materials_;
+  const std::vector<JointLaw> *joints_;
   std::int64_t first_;
   const Rows *rows_;
   Collector *faults_;
@@ -343,6 +363,7 @@ Diagnostics read_block_file(const Communicator &communicator, const Scene &scene
   const std::int64_t count = last - first;
   Rows rows;
   std::vector<double> points;
+  std::vector<std::int32_t> edge_joint;
   Collector faults(path);
   BlockMaker maker(scene, first, rows, faults);
   {
@@ -360,13 +381,16 @@ Diagnostics read_block_file(const Communicator &communicator, const Scene &scene
       const std::int64_t begin = count == 0 ? 0 : rows.offsets.front();
       const std::int64_t end = count == 0 ? 0 : rows.offsets.back();
       points = input.rows<double>("points", begin, end - begin, 2);
+      if (input.num_rows("edge_joint") > 0) {
+        edge_joint = input.rows<std::int32_t>("edge_joint", begin, end - begin);
+      }
     }
   }
   blocks.reserve(blocks.size() + static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     blocks.push_back(maker.make(i));
     if (!points.empty()) {
-      maker.add_outline(i, points, blocks.back());
+      maker.add_outline(i, points, edge_joint, blocks.back());
     }
   }
   return faults.gather(communicator);

@@ -187,6 +187,11 @@ private:
     }
     if (const auto found = rows_.find(points); found != rows_.end()) {
       overview_.num_points = found->second;
+      if (const auto edges = rows_.find(edge_joint); edges != rows_.end() && edges->second != found->second) {
+        fault(fmt::format("'/edge_joint' has {} rows", edges->second),
+              fmt::format("'/points' has {}, and each begins an edge", found->second),
+              "write one row for each point");
+      }
     }
   }
 
@@ -209,6 +214,9 @@ std::string_view words_of(Number number) {
 std::string_view shape_of(const DatasetRule &rule) {
   if (rule.rows == Rows::points) {
     return "(n, 2)";
+  }
+  if (rule.rows == Rows::edges) {
+    return "(n)";
   }
   if (rule.rows == Rows::blocks_and_one) {
     return "(nb + 1)";

@@ -12,7 +12,7 @@ namespace gcpdda::block_file {
 
 enum class Number { real64, integer64, integer32, unsigned8 };
 /// How many rows a dataset has.
-enum class Rows { points, blocks, blocks_and_one };
+enum class Rows { points, edges, blocks, blocks_and_one };
 
 struct DatasetRule {
   std::string_view name;
@@ -23,7 +23,7 @@ struct DatasetRule {
   std::string_view doc; ///< one sentence; starts with the unit in brackets if there is one
 };
 
-enum Dataset : std::size_t { points, offsets, material, fixed, velocity, count };
+enum Dataset : std::size_t { points, offsets, material, fixed, velocity, edge_joint, count };
 
 /// The datasets of a block file, by Dataset.
 inline constexpr std::array<DatasetRule, count> layout{{
@@ -37,6 +37,9 @@ inline constexpr std::array<DatasetRule, count> layout{{
     {"fixed", Number::unsigned8, Rows::blocks, 1, true, "1 for a block that never moves, else 0."},
     {"velocity", Number::real64, Rows::blocks, 3, false,
      "[m/s, m/s, rad/s] Initial velocity of the centroid and angular velocity, counter-clockwise positive."},
+    {"edge_joint", Number::integer32, Rows::edges, 1, false,
+     "Number of the contact law of the edge from each point to the next one of its block: 0 for default, the "
+     "others from 1 in the order of the scene file; -1 for the law of the materials."},
 }};
 
 /// "64-bit reals".

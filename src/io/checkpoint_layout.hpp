@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 inline constexpr const char *format = "gcpdda checkpoint";
-inline constexpr std::int64_t version = 1;
+inline constexpr std::int64_t version = 2; ///< since 2 regions have laws
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -163,6 +163,7 @@ inline constexpr const char *region_blocks = "/region/blocks"; ///< i64 (n, 2): 
 inline constexpr const char *region_stretches =
     "/region/stretches";                                      ///< i32 (n, 2): of the lower, of the higher
 inline constexpr const char *region_states = "/region/state"; ///< u8
+inline constexpr const char *region_laws = "/region/law";     ///< i32
 
 // A field that is added to the state must join one of the lists above, or the words over them.
 static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 8);

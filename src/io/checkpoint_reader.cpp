@@ -211,6 +211,7 @@ private:
     const auto blocks = input_.rows<std::int64_t>(checkpoint::region_blocks, range, 2);
     const auto stretches = input_.rows<std::int32_t>(checkpoint::region_stretches, range, 2);
     const auto states = input_.rows<std::uint8_t>(checkpoint::region_states, range);
+    const auto laws = input_.rows<std::int32_t>(checkpoint::region_laws, range);
     std::vector<RegionRecord> records(states.size());
     bool sound = true;
     for (std::size_t k = 0; k < records.size(); ++k) {
@@ -220,6 +221,7 @@ private:
       record.memory.lower_stretch = stretches[2 * k];
       record.memory.higher_stretch = stretches[2 * k + 1];
       record.memory.state = static_cast<ContactState>(states[k]);
+      record.memory.law = laws[k];
       sound = sound && 0 <= record.lower.value && record.lower < record.higher &&
               record.higher.value < found_.facts.scene.num_blocks;
     }
@@ -355,6 +357,7 @@ void expect_readable_checkpoint(const Communicator &communicator, const fs::path
   input.rows<std::int64_t>(checkpoint::region_blocks, input.share_of(checkpoint::region_blocks), 2);
   input.rows<std::int32_t>(checkpoint::region_stretches, input.share_of(checkpoint::region_blocks), 2);
   input.rows<std::uint8_t>(checkpoint::region_states, input.share_of(checkpoint::region_blocks));
+  input.rows<std::int32_t>(checkpoint::region_laws, input.share_of(checkpoint::region_blocks));
   const auto fields = [&](const auto &table, const char *ids) {
     for (const auto &field : table) {
       input.rows<double>(field.name, input.share_of(ids), field.columns);

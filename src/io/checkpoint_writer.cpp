@@ -174,15 +174,18 @@ private:
     std::vector<std::int64_t> blocks;
     std::vector<std::int32_t> stretches;
     std::vector<std::uint8_t> states;
+    std::vector<std::int32_t> laws;
     for (const RegionRecord &record : records) {
       blocks.insert(blocks.end(), {record.lower.value, record.higher.value});
       stretches.insert(stretches.end(), {record.memory.lower_stretch, record.memory.higher_stretch});
       states.push_back(static_cast<std::uint8_t>(record.memory.state));
+      laws.push_back(record.memory.law);
     }
     const RowRange rows = rows_in_rank_order(communicator_, std::ssize(records));
     dataset(checkpoint::region_blocks, rows, blocks, 2);
     dataset(checkpoint::region_stretches, rows, stretches, 2);
     dataset(checkpoint::region_states, rows, states);
+    dataset(checkpoint::region_laws, rows, laws);
     for (const auto &field : checkpoint::region_fields) {
       std::vector<double> values(records.size() * field.columns);
       for (std::size_t row = 0; row < records.size(); ++row) {

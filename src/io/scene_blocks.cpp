@@ -1,3 +1,4 @@
+#include "edit_distance.hpp"
 #include "scene_outline.hpp"
 #include "scene_parts.hpp"
 
@@ -14,8 +15,9 @@ namespace {
 
 class BlockReader {
 public:
-  BlockReader(const SceneSource &source, Materials &materials, Names &names, Fidelity of_run)
-      : source_(source), materials_(&materials), names_(&names), of_run_(of_run) {}
+  BlockReader(const SceneSource &source, Materials &materials, Names &names, Fidelity of_run,
+              const JointLaws &joints)
+      : source_(source), materials_(&materials), names_(&names), of_run_(of_run), joints_(&joints) {}
 
   SceneBlock read(const Section &section, const std::string &name) {
     SceneBlock block;
@@ -151,11 +153,47 @@ private:
     if (node == nullptr) {
       return false;
     }
-    const std::vector<OutlineFault> faults = check_outline(block.vertices, section.label());
+    read_edge_joints(section, block);
+    const std::vector<OutlineFault> faults = check_outline(block.vertices, block.edge_joint, section.label());
     for (const OutlineFault &f : faults) {
       fault(f.vertex ? (*node->as_array())[*f.vertex] : *node, f.what, f.why, f.hint);
     }
     return faults.empty();
+  }
+
+  void read_edge_joints(const Section &section, SceneBlock &block) {
+    const toml::node *node = section.sound("edge_joints");
+    if (node == nullptr) {
+      return;
+    }
+    const toml::array &names = *node->as_array();
+    if (names.size() != block.vertices.size()) {
+      fault(*node, fmt::format("{} has {} entries", section.subject("edge_joints"), names.size()),
+            fmt::format("the block has {} edges", block.vertices.size()),
+            "write one name for each edge, \"\" for the law of the materials");
+      return;
+    }
+    for (const toml::node &name : names) {
+      block.edge_joint.push_back(find_joint(name));
+    }
+  }
+
+  /// -1 for an empty name, and for an unknown one.
+  std::int32_t find_joint(const toml::node &node) {
+    const std::string &name = node.as_string()->get();
+    std::vector<std::string> known;
+    for (const JointLaw &law : joints_->laws) {
+      known.push_back(law.name);
+    }
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (name.empty() || found != known.end()) {
+      return name.empty() ? -1 : static_cast<std::int32_t>(found - known.begin());
+    }
+    const std::string near = nearest_word(name, known);
+    fault(node, fmt::format("no joint is named '{}'", name), "",
+          near.empty() ? fmt::format("add a table [joint.{}]", name)
+                       : fmt::format("did you mean '{}'?", near));
+    return -1;
   }
 
   void read_load(const Section &section, SceneBlock &block, bool has_outline) {
@@ -180,6 +218,7 @@ private:
   Materials *materials_;
   Names *names_;
   Fidelity of_run_;
+  const JointLaws *joints_;
 };
 
 } // namespace
@@ -201,9 +240,9 @@ void Names::add(const Section &section, const std::string &label, const std::str
 }
 
 std::vector<SceneBlock> read_blocks(const SceneSource &source, Materials &materials, Names &names,
-                                    Fidelity of_run) {
+                                    Fidelity of_run, const JointLaws &joints) {
   const std::vector<Section> sections = listed_sections(source.root, "block", source.faulty);
-  BlockReader reader(source, materials, names, of_run);
+  BlockReader reader(source, materials, names, of_run, joints);
   std::vector<SceneBlock> blocks;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const toml::node &node = (*source.root["block"].as_array())[i];

@@ -125,6 +125,8 @@ private:
       return check_array(row, node, who, 3);
     case Kind::velocity_table:
       return check_velocity_table(row, node, who);
+    case Kind::names:
+      return check_names(row, node, who);
     case Kind::points:
     case Kind::polygon:
       return check_points(row, node, who);
@@ -305,6 +307,20 @@ private:
     bool sound = true;
     for (std::size_t i = 0; i < rows->size(); ++i) {
       sound &= check_array(row, (*rows)[i], fmt::format("row {} of {}", i, who), 4);
+    }
+    return sound;
+  }
+
+  bool check_names(const Key &row, const toml::node &node, const std::string &who) {
+    const toml::array *names = node.as_array();
+    if (names == nullptr) {
+      return wrong_type(row, node, who, "an array of names");
+    }
+    bool sound = true;
+    for (std::size_t i = 0; i < names->size(); ++i) {
+      const toml::node &element = (*names)[i];
+      const bool is_empty = element.is_string() && element.as_string()->get().empty();
+      sound &= is_empty || check_name(row, element, fmt::format("entry {} of {}", i, who));
     }
     return sound;
   }

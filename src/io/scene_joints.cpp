@@ -75,10 +75,31 @@ private:
     read_values(law, laws_.laws.back());
     if (const toml::node *materials = law.sound("materials")) {
       assign(law, *materials->as_array(), index);
-    } else if (law.given("materials") == nullptr && law.is_table() && !source_.root.contains("region")) {
+    } else if (law.given("materials") == nullptr && law.is_table() && !may_be_on_edges(named.name)) {
       fault(law.source(), law.subject("materials") + " is missing",
-            "a law other than default is for one pair", "for example materials = [\"granite\", \"clay\"]");
+            "a law other than default is for one pair of materials, or for edges that name it",
+            "for example materials = [\"granite\", \"clay\"]");
     }
+  }
+
+  /// Blocks that are not written out here may name any law.
+  [[nodiscard]] bool may_be_on_edges(const std::string &name) const {
+    for (const char *source : {"blocks", "region"}) {
+      if (source_.root.contains(source)) {
+        return true;
+      }
+    }
+    const toml::array *blocks = source_.root["block"].as_array();
+    for (std::size_t i = 0; blocks != nullptr && i < blocks->size(); ++i) {
+      const toml::table *block = (*blocks)[i].as_table();
+      const toml::array *edges = block == nullptr ? nullptr : (*block)["edge_joints"].as_array();
+      for (std::size_t k = 0; edges != nullptr && k < edges->size(); ++k) {
+        if ((*edges)[k].value<std::string>() == name) {
+          return true;
+        }
+      }
+    }
+    return false;
   }
 
   void read_values(const Section &law, JointLaw &values) {

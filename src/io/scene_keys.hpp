@@ -23,6 +23,7 @@ enum class Kind {
   name,
   text, ///< any one line
   pair_of_names,
+  names, ///< list of names or empty texts
   vector2,
   vector3,
   points,         ///< list of [x, y]

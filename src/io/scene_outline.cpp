@@ -72,7 +72,8 @@ double coordinate_rounding(double largest) {
   return 4.0 * std::numeric_limits<double>::epsilon() * largest;
 }
 
-std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, const std::string &who) {
+std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, std::vector<std::int32_t> &edge_joint,
+                                        const std::string &who) {
   std::vector<OutlineFault> faults = find_equal_neighbours(vertices, who);
   if (!faults.empty()) {
     return faults;
@@ -83,6 +84,7 @@ std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, const std::
   }
   if (signed_area(vertices) < 0.0) {
     std::reverse(vertices.begin() + 1, vertices.end());
+    std::reverse(edge_joint.begin(), edge_joint.end()); // the last edge ends at vertex 0
   }
   if (!turns_left_once(vertices) && !is_simple(vertices)) {
     faults.push_back({{},

@@ -3,6 +3,7 @@
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,8 +19,10 @@ struct OutlineFault {
 };
 
 /// Faults of an outline of at least three finite vertices; one without faults is left counter-clockwise.
-/// @param who  how messages call the block
-std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, const std::string &who);
+/// @param edge_joint  laws of the edges, which turn round with the vertices, or none
+/// @param who         how messages call the block
+std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, std::vector<std::int32_t> &edge_joint,
+                                        const std::string &who);
 
 /// Rounding of coordinates up to `largest`, as a length: what is shorter is no edge.
 double coordinate_rounding(double largest);

@@ -72,7 +72,7 @@ JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materi
 
 /// One SceneBlock per [[block]]; the faulty ones lack their faulty parts.
 std::vector<SceneBlock> read_blocks(const SceneSource &source, Materials &materials, Names &names,
-                                    Fidelity of_run);
+                                    Fidelity of_run, const JointLaws &joints);
 
 /// Walls and pyramids that can be built, in the order of the file. Blocks whose name is that of a brick are
 /// faults, and more blocks than ids.

@@ -36,7 +36,7 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.materials = materials.all();
   scene.joints = read_joint_laws(source, materials.index());
   expect_blocks(source);
-  scene.blocks = read_blocks(source, materials, names, fidelity);
+  scene.blocks = read_blocks(source, materials, names, fidelity, scene.joints);
   scene.generators = read_generators(source, materials, names, fidelity, scene.blocks);
   scene.block_file = read_block_file_table(source, materials, fidelity, file);
   scene.region = read_region(source, materials, scene.joints, file);

@@ -54,6 +54,8 @@ std::string_view type_of(const Key &key) {
     return "text";
   case Kind::pair_of_names:
     return "two names";
+  case Kind::names:
+    return "list of names";
   case Kind::vector2:
     return "two numbers";
   case Kind::vector3:

@@ -89,11 +89,22 @@ void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, cons
     append_deformation(system, moments, material, system.velocity.back(), plane_strain);
   }
   append_shape(system, block.vertices, moments.centroid);
+  p.has_edge_joints = std::any_of(block.edge_joint.begin(), block.edge_joint.end(),
+                                  [](std::int32_t joint) { return joint >= 0; });
+  append_edge_joints(system, p.has_edge_joints ? block.edge_joint : std::span<const std::int32_t>());
   close_lists(system);
 }
 
 void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material) {
   append_block(system, id, block, material, block.fixed ? BlockKind::fixed : BlockKind::rigid);
+}
+
+void append_edge_joints(BlockSystem &system, std::span<const std::int32_t> joints) {
+  if (joints.empty() && system.edge_joint.empty()) {
+    return;
+  }
+  system.edge_joint.resize(system.reference_vertex.size() - joints.size(), -1);
+  system.edge_joint.insert(system.edge_joint.end(), joints.begin(), joints.end());
 }
 
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
@@ -106,6 +117,7 @@ void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
      ...);
   };
   std::apply([&](auto... list) { (std::apply(append_list, list), ...); }, BlockSystem::lists());
+  append_edge_joints(to, from.edge_joints(row));
   close_lists(to);
 }
 
@@ -116,6 +128,9 @@ void keep_rows(BlockSystem &system, std::size_t count) {
     ((system.*fields).resize((system.*begins).back()), ...);
   };
   std::apply([&](auto... list) { (std::apply(keep_list, list), ...); }, BlockSystem::lists());
+  if (!system.edge_joint.empty()) {
+    system.edge_joint.resize(system.reference_vertex.size());
+  }
 }
 
 namespace {

@@ -43,6 +43,9 @@ std::uint64_t fingerprint(std::int64_t id, const SceneBlock &block) {
   chain.add(std::uint64_t{block.fixed});
   chain.add(std::uint64_t{block.driven});
   chain.add(block.vertices);
+  for (const std::int32_t joint : block.edge_joint) {
+    chain.add(static_cast<std::uint64_t>(joint));
+  }
   chain.add(block.velocity);
   chain.add(block.velocity_table);
   chain.add(block.fixed_points);

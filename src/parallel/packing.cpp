@@ -36,6 +36,8 @@ void pack_row(const BlockSystem &system, std::size_t row, Bytes &message) {
     (put(message, (system.*fields).data() + begin, count), ...);
   };
   std::apply([&](auto... list) { (std::apply(put_list, list), ...); }, BlockSystem::lists());
+  const std::span<const std::int32_t> joints = system.edge_joints(row);
+  put(message, joints.data(), joints.size());
 }
 
 void unpack_rows(std::span<const std::byte> message, BlockSystem &system) {
@@ -49,6 +51,10 @@ void unpack_rows(std::span<const std::byte> message, BlockSystem &system) {
   while (!message.empty()) {
     std::apply([&](auto... field) { (take(message, system.*field, 1), ...); }, BlockSystem::row_fields());
     std::apply([&](auto... list) { (std::apply(take_list, list), ...); }, BlockSystem::lists());
+    const std::size_t row = system.num_rows() - 1;
+    std::vector<std::int32_t> joints;
+    take(message, joints, system.properties[row].has_edge_joints ? system.num_vertices(row) : 0);
+    append_edge_joints(system, joints);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "gcpdda/simulation/energy_ledger.hpp"
 
 #include "gcpdda/base/exact_sum.hpp"
+#include "gcpdda/contact/region_law.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/simulation/half_works.hpp"
 
@@ -41,13 +42,46 @@ double kinetic_energy(const BlockSystem &blocks, std::size_t row, const RigidDof
   return 0.5 * block.mass * dot(velocity.u, velocity.u) + turning;
 }
 
+/// k_n/2 of a mixed pair: that of its regions in the ratio of their energies, which to first order is that of
+/// int d^2 ds; of a region that nobody has evaluated yet that of the law it would be born with.
+double mean_stiffness(const Simulation &simulation, std::size_t number, const BlockView &first,
+                      const BlockView &second) {
+  const CandidatePair &pair = simulation.candidates().pairs[number];
+  const ContactParameters &parameters = simulation.contacts().parameters();
+  const std::span<const RegionMemory> known = simulation.history().of_pair(number);
+  Overlap overlap;
+  overlap.find(first, second, parameters.potential);
+  double weights = 0.0;
+  double weighted = 0.0;
+  for (const Region &region : overlap.regions()) {
+    std::int32_t law = law_at_birth(simulation.blocks(), parameters.joints, pair, overlap.pieces(), region);
+    for (const RegionMemory &memory : known) {
+      const bool same =
+          memory.lower_stretch == region.faces.first && memory.higher_stretch == region.faces.second;
+      law = same ? memory.law : law;
+    }
+    for (const Piece &piece : overlap.pieces().subspan(region.begin, region.end - region.begin)) {
+      const double depth = piece.depth_begin + piece.depth_end;
+      const double weight = piece.length * depth * depth;
+      weights += weight;
+      weighted += weight * 0.5 * parameters.joints.laws[static_cast<std::size_t>(law)].normal_stiffness;
+    }
+  }
+  return weights > 0.0 ? weighted / weights : pair.half_stiffness;
+}
+
 void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
   const BlockSystem &blocks = simulation.blocks();
-  for (const CandidatePair &pair : simulation.candidates().pairs) {
+  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
+    const CandidatePair &pair = simulation.candidates().pairs[k];
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
     if (simulation.counts_here(pair) && blocks.box[a].meets(blocks.box[b])) {
-      sum.add(share * pair.half_stiffness * overlap_energy(view_of(blocks, a), view_of(blocks, b)));
+      const BlockView first = view_of(blocks, a);
+      const BlockView second = view_of(blocks, b);
+      const double half_stiffness =
+          pair.is_mixed ? mean_stiffness(simulation, k, first, second) : pair.half_stiffness;
+      sum.add(share * half_stiffness * overlap_energy(first, second));
     }
   }
 }
@@ -64,7 +98,10 @@ void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
     if (memory.shear == 0.0 || !simulation.counts_here(pair)) {
       continue;
     }
-    const double stiffness = pair.tangential_stiffness * memory.longest;
+    const double stiffness =
+        constants_of(simulation.blocks(), simulation.contacts().parameters(), pair, memory.law)
+            .tangential_stiffness *
+        memory.longest;
     double next = memory.shear;
     if (moment == Moment::middle && memory.state == ContactState::stick) {
       next += stiffness * coming_slide(simulation.blocks(), pair, force);

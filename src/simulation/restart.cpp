@@ -60,6 +60,20 @@ void compare_materials(const std::vector<Material> &before, const std::vector<Ma
   }
 }
 
+/// Where edges have laws, they and the regions know them by their numbers.
+void compare_joints(const JointLaws &before, const JointLaws &after, Diagnostics &faults) {
+  bool on_edges = false;
+  for (std::int32_t law = 1; law < std::ssize(before.laws); ++law) {
+    on_edges = on_edges || std::find(before.of_material.begin(), before.of_material.end(), law) ==
+                               before.of_material.end();
+  }
+  const auto same_name = [](const JointLaw &a, const JointLaw &b) { return a.name == b.name; };
+  if (on_edges &&
+      !std::equal(before.laws.begin(), before.laws.end(), after.laws.begin(), after.laws.end(), same_name)) {
+    faults.push_back(refused({}, "the list of joints", "the contacts in the checkpoint name them by number"));
+  }
+}
+
 bool same_generator(const BrickGenerator &a, const BrickGenerator &b) {
   const auto key = [](const BrickGenerator &g) {
     return std::tuple(g.kind, g.material, g.origin.x, g.origin.y, g.rows, g.columns, g.block_size.x,
@@ -109,6 +123,7 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
   Diagnostics faults;
   compare_settings(before.run, after.run, faults);
   compare_materials(before.materials, after.materials, faults);
+  compare_joints(before.joints, after.joints, faults);
   compare_blocks(before, after, faults);
   return faults;
 }

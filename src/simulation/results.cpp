@@ -149,7 +149,7 @@ std::vector<ContactRow> collect_contacts(const Simulation &simulation) {
     row.lower = blocks.properties[pair.lower.value].id.value;
     row.higher = blocks.properties[pair.higher.value].id.value;
     row.position = static_cast<std::int32_t>(k - first_of_pair);
-    row.joint = pair.law;
+    row.joint = memory.law >= 0 ? memory.law : pair.law;
     row.state = static_cast<std::uint8_t>(memory.state);
     row.begin = force.point + force.extent_begin * tangent;
     row.end = force.point + force.extent_end * tangent;

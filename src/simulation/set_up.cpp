@@ -210,6 +210,7 @@ void Simulation::survey(std::span<const SceneBlock> slab) {
   std::array<double, 6> largest{-region.low.x, -region.low.y,    region.high.x,
                                 region.high.y, -smallest_mobile, -thinnest_};
   communicator_.max(largest);
+  find_laws_on_edges(slab);
   smallest_mobile = -largest[4];
   thinnest_ = -largest[5];
   num_mobile = agreed_sum(communicator_, num_mobile);
@@ -219,6 +220,22 @@ void Simulation::survey(std::span<const SceneBlock> slab) {
     const double farthest = *std::max_element(largest.begin(), largest.begin() + 4,
                                               [](double a, double b) { return std::abs(a) < std::abs(b); });
     warn_of_rounding(std::sqrt(smallest_mobile), std::abs(farthest));
+  }
+}
+
+void Simulation::find_laws_on_edges(std::span<const SceneBlock> slab) {
+  std::vector<JointLaw> &laws = scene_.joints.laws;
+  std::vector<std::int64_t> named(laws.size(), 0);
+  for (const SceneBlock &block : slab) {
+    for (const std::int32_t law : block.edge_joint) {
+      if (law >= 0) {
+        named[static_cast<std::size_t>(law)] = 1;
+      }
+    }
+  }
+  communicator_.max(named);
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    laws[i].is_on_edges = named[i] > 0;
   }
 }
 
@@ -268,7 +285,7 @@ void Simulation::take_blocks(std::vector<SceneBlock> slab) {
     const Material &material = scene_.materials[static_cast<std::size_t>(block.material)];
     const FidelityChoice choice =
         choose_fidelity(block, signed_area(block.vertices), material,
-                        stiffness_bound(scene_.joints, block.material).normal, scene_.run);
+                        stiffness_bound(scene_.joints, block.material, block.edge_joint).normal, scene_.run);
     const bool asked = block.fidelity != Fidelity::automatic || scene_.run.fidelity != Fidelity::automatic;
     fidelity_.num_asked += asked && !block.fixed ? 1 : 0;
     fidelity_.num_rigid += choice.kind == BlockKind::rigid ? 1 : 0;
@@ -316,7 +333,8 @@ void Simulation::find_bound() {
   double omega_squared = 0.0;
   std::int64_t limiting = std::numeric_limits<std::int64_t>::max();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    const StiffnessBound stiffness = stiffness_bound(scene_.joints, blocks_.properties[row].material);
+    const StiffnessBound stiffness =
+        stiffness_bound(scene_.joints, blocks_.properties[row].material, blocks_.edge_joints(row));
     const double own = contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential,
                                                elasticity_of(scheme_, scene_.run.elasticity));
     if (own > omega_squared) {

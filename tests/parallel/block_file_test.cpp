@@ -91,6 +91,7 @@ protected:
 
 void expect_same(const SceneBlock &read, const SceneBlock &written) {
   EXPECT_EQ(read.vertices, written.vertices);
+  EXPECT_EQ(read.edge_joint, written.edge_joint);
   EXPECT_EQ(read.material, written.material);
   EXPECT_EQ(read.fixed, written.fixed);
   EXPECT_EQ(read.velocity, written.velocity);
@@ -148,6 +149,41 @@ TEST_F(BlockFiles, NeedNoVelocityAndMayBeCompressedAndTurnedEitherWay) {
   for (std::size_t i = 0; i < mine.size(); ++i) {
     expect_same(mine[i], written[static_cast<std::size_t>(first()) + i]);
   }
+}
+
+TEST_F(BlockFiles, MayGiveLawsOfEdgesThatTurnRoundWithTheOutline) {
+  scene_.joints.laws.resize(3);
+  std::vector<SceneBlock> written = some_blocks(13);
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    for (std::size_t k = 0; k < written[i].vertices.size(); ++k) {
+      written[i].edge_joint.push_back(static_cast<std::int32_t>((i + k * k) % 4) - 1);
+    }
+  }
+  std::vector<SceneBlock> given = written;
+  for (std::size_t i = 0; i < given.size(); i += 2) {
+    std::reverse(given[i].vertices.begin() + 1, given[i].vertices.end());
+    std::reverse(given[i].edge_joint.begin(), given[i].edge_joint.end());
+  }
+  BlockFileWriter writer(given);
+  write(writer);
+  ASSERT_EQ(texts(open_block_file(world_, scene_)), std::vector<std::string>());
+  std::vector<SceneBlock> mine;
+  EXPECT_EQ(texts(read_block_file(world_, scene_, first(), last(), mine)), std::vector<std::string>());
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    expect_same(mine[i], written[static_cast<std::size_t>(first()) + i]);
+  }
+  writer.put("edge_joint", 4, std::int32_t{3});
+  write(writer);
+  EXPECT_EQ(faults_of_file(),
+            std::vector<std::string>{
+                "FILE: error: block 1: edge_joint of edge 1 is 3, the scene has joints 0 to 2, in "
+                "the order of its file but default first, give one of these numbers, or -1 for "
+                "the law of the materials"});
+  writer.set("edge_joint", std::vector<std::int32_t>(5));
+  write(writer);
+  EXPECT_EQ(faults_of_file(),
+            std::vector<std::string>{"FILE: error: '/edge_joint' has 5 rows, '/points' has "
+                                     "71, and each begins an edge, write one row for each point"});
 }
 
 TEST_F(BlockFiles, AreNotLookedForWhereTheSceneNamesNone) {

@@ -166,6 +166,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
         record.higher = BlockId{b};
         record.memory.shear = static_cast<double>(count * a + b);
         record.memory.lower_stretch = static_cast<std::int32_t>(10 - k); // not in the order of their numbers
+        record.memory.law = static_cast<std::int32_t>(k) - 1;
       }
     }
   }
@@ -201,6 +202,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
         EXPECT_EQ(record->higher.value, b);
         EXPECT_EQ(record->memory.shear, static_cast<double>(count * a + b));
         EXPECT_EQ(record->memory.lower_stretch, 10 - k);
+        EXPECT_EQ(record->memory.law, k - 1);
       }
     }
   }

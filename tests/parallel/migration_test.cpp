@@ -49,13 +49,14 @@ RegionMemory evaluated(RegionMemory memory, const Pair &pair, int step) {
   memory.slip += 1e-3 * memory.longest;
   memory.position = {hashed(step, pair.first, 1), hashed(step, pair.second, 2)};
   memory.higher_stretch = step % 3;
+  memory.law = memory.law < 0 ? static_cast<std::int32_t>(pair.first % 5) : memory.law;
   memory.state = hashed(pair.first, step, 9) < 0.5 ? ContactState::stick : ContactState::slip;
   return memory;
 }
 
 bool operator==(const RegionMemory &a, const RegionMemory &b) {
   return a.shear == b.shear && a.longest == b.longest && a.slip == b.slip && a.state == b.state &&
-         a.is_same_region(b);
+         a.law == b.law && a.is_same_region(b);
 }
 
 using Memories = std::map<Pair, RegionMemory>;

@@ -19,8 +19,8 @@ template <class T> void put_words(std::vector<std::uint64_t> &words, const T &va
 // By field: it has padding. A new field must be added here, which the size reminds of.
 void put_words(std::vector<std::uint64_t> &words, const BlockProperties &p) {
   static_assert(sizeof(BlockProperties) == 72);
-  for (const std::int64_t whole :
-       {p.id.value, std::int64_t{p.material}, static_cast<std::int64_t>(p.kind), std::int64_t{p.is_convex}}) {
+  for (const std::int64_t whole : {p.id.value, std::int64_t{p.material}, static_cast<std::int64_t>(p.kind),
+                                   std::int64_t{p.is_convex}, std::int64_t{p.has_edge_joints}}) {
     words.push_back(static_cast<std::uint64_t>(whole));
   }
   for (const double real : {p.area, p.mass, p.inertia, p.radius, p.width, p.centroid.x, p.centroid.y}) {
@@ -54,6 +54,9 @@ std::vector<std::uint64_t> bits_of_row(const BlockSystem &system, std::size_t ro
     }
   };
   std::apply([&](auto... list) { (std::apply(put_list, list), ...); }, BlockSystem::lists());
+  for (const std::int32_t joint : system.edge_joints(row)) {
+    words.push_back(static_cast<std::uint64_t>(joint));
+  }
   return words;
 }
 
@@ -80,6 +83,9 @@ BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double r
     }
     for (int i = 0; i < k % 5 - 2; ++i) {
       block.fixed_points.push_back(block.vertices[static_cast<std::size_t>(i)]);
+    }
+    for (int i = 0; k % 4 == 1 && i < num_vertices; ++i) {
+      block.edge_joint.push_back(static_cast<int>(random() % 4) - 1);
     }
     const BlockKind kind = block.fixed  ? BlockKind::fixed
                            : k % 3 == 1 ? BlockKind::deformable

@@ -320,7 +320,7 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
        {"materials", "normal_stiffness", "allowed_overlap", "tangential_ratio", "friction_angle_deg",
         "cohesion"}},
       {"[[block]]",
-       {"name", "material", "vertices", "velocity", "fixed", "fidelity", "fixed_points",
+       {"name", "material", "vertices", "edge_joints", "velocity", "fixed", "fidelity", "fixed_points",
         "prescribed_velocity", "velocity_table", "load"}},
       {"[[block.load]]", {"point", "force"}},
       {"[[wall]]", {"name", "material", "origin", "rows", "columns", "block_size", "bond", "gap"}},

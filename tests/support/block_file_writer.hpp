@@ -32,6 +32,7 @@ public:
     std::vector<std::int32_t> material;
     std::vector<std::uint8_t> fixed;
     std::vector<double> velocity;
+    std::vector<std::int32_t> edge_joint;
     for (const SceneBlock &block : blocks) {
       for (const Vec2 p : block.vertices) {
         points.insert(points.end(), {p.x, p.y});
@@ -40,12 +41,16 @@ public:
       material.push_back(block.material);
       fixed.push_back(block.fixed ? 1 : 0);
       velocity.insert(velocity.end(), block.velocity.begin(), block.velocity.end());
+      edge_joint.insert(edge_joint.end(), block.edge_joint.begin(), block.edge_joint.end());
     }
     set("points", points, 2);
     set("offsets", offsets);
     set("material", material);
     set("fixed", fixed);
     set("velocity", velocity, 3);
+    if (!edge_joint.empty()) { // of all blocks or of none
+      set("edge_joint", edge_joint);
+    }
   }
 
   template <class T> void set(const std::string &name, const std::vector<T> &values, hsize_t columns = 1) {

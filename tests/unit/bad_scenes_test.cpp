@@ -105,7 +105,7 @@ velocty = [0, 0, 0])",
      {R"(14:1: error: 'vertices' in block 'slider' is missing, it is required, for example vertices = [[0, 0], [1, 0], [1, 1], [0, 1]])"}},
     {"MissingDefaultLaw", 7, R"([joint.soft])",
      {R"(7:1: error: 'default' in [joint] is missing, pairs of materials without a law of their own take it, write [joint.default])",
-      R"(7:1: error: 'materials' in [joint.soft] is missing, a law other than default is for one pair, for example materials = ["granite", "clay"])"}},
+      R"(7:1: error: 'materials' in [joint.soft] is missing, a law other than default is for one pair of materials, or for edges that name it, for example materials = ["granite", "clay"])"}},
     {"DurationString", 2, R"(duration = "2 s")",
      {R"(2:12: error: 'duration' in [run] is a string, it must be a number, for example duration = 2.0)"}},
     {"DurationZero", 2, R"(duration = 0)",
@@ -231,7 +231,16 @@ materials = ["granite", "clay"])",
     {"LawWithoutMaterials", 8, R"(normal_stiffness = 1e9
 [joint.fault]
 cohesion = 0)",
-     {R"(9:1: error: 'materials' in [joint.fault] is missing, a law other than default is for one pair, for example materials = ["granite", "clay"])"}},
+     {R"(9:1: error: 'materials' in [joint.fault] is missing, a law other than default is for one pair of materials, or for edges that name it, for example materials = ["granite", "clay"])"}},
+    {"UnknownJointOfAnEdge", 17, R"(vertices = [[1, 1], [2, 1], [2, 2], [1, 2]]
+edge_joints = ["", "defalt", "", "default"])",
+     {R"(18:20: error: no joint is named 'defalt', did you mean 'default'?)"}},
+    {"TooFewEdgeJoints", 17, R"(vertices = [[1, 1], [2, 1], [2, 2], [1, 2]]
+edge_joints = ["default"])",
+     {R"(18:15: error: 'edge_joints' in block 'slider' has 1 entries, the block has 4 edges, write one name for each edge, "" for the law of the materials)"}},
+    {"EdgeJointsOfNumbers", 17, R"(vertices = [[1, 1], [2, 1], [2, 2], [1, 2]]
+edge_joints = [1, "", "", ""])",
+     {R"(18:16: error: entry 0 of 'edge_joints' in block 'slider' is an integer, it must be a string, for example edge_joints = ["bedding", "", "fault", ""])"}},
     {"LawWithOneMaterial", 8, R"(normal_stiffness = 1e9
 [joint.fault]
 materials = ["clay"])",
@@ -304,7 +313,7 @@ block = "slider")",
     {"ControlCharacters", 15, R"(name = "a\u001bb"
 "x\ny" = 1)",
      {R"(15:8: error: 'name' in block 'b1' is 'a b', a name holds 1 to 100 letters, digits, _ . and -, for example name = "slider")",
-      R"(16:1: error: unknown key 'x y' in block 'b1', known here: name material vertices velocity fixed fidelity fixed_points prescribed_velocity velocity_table load)"}},
+      R"(16:1: error: unknown key 'x y' in block 'b1', known here: name material vertices edge_joints velocity fixed fidelity fixed_points prescribed_velocity velocity_table load)"}},
 };
 // clang-format on
 
@@ -391,7 +400,7 @@ local_damping = -0.1
       "= 0.02",
       "s.toml:7:12: error: no material is named 'chalk', add a table [material.chalk]",
       "s.toml:9:1: error: unknown key 'colour' in block 'slider', known here: name material vertices "
-      "velocity fixed "
+      "edge_joints velocity fixed "
       "fidelity fixed_points prescribed_velocity velocity_table load",
       "s.toml:11:8: error: two blocks are named 'slider', the first is at line 5, names are unique, and "
       "unnamed "

@@ -199,6 +199,7 @@ inline void expect_same(const Scene &a, const Scene &b) {
     EXPECT_EQ(a.blocks[i].name, b.blocks[i].name);
     EXPECT_EQ(a.blocks[i].material, b.blocks[i].material);
     EXPECT_EQ(a.blocks[i].vertices, b.blocks[i].vertices);
+    EXPECT_EQ(a.blocks[i].edge_joint, b.blocks[i].edge_joint);
     EXPECT_EQ(a.blocks[i].velocity, b.blocks[i].velocity);
     EXPECT_EQ(a.blocks[i].fixed, b.blocks[i].fixed);
     EXPECT_EQ(a.blocks[i].driven, b.blocks[i].driven);

@@ -24,12 +24,13 @@ struct CandidatePair {
   double mass = 0.0;            ///< m_A m_B/(m_A + m_B), kg per metre
   double allowed_overlap = 0.0; ///< half the narrowest width: deeper than this the force reverses, m
   bool is_convex = true;        ///< both blocks are: one region at most
-  bool is_plain = false;        ///< listed in Candidates::plain
+  bool is_mixed = false; ///< its regions take different laws, see region_law.hpp; above those by materials
+  bool is_plain = false; ///< listed in Candidates::plain
 };
 
 /// A pair of convex rigid blocks with few edges, and those neighbouring ones of each that can take part in
-/// the contact before the next refresh. Whether a pair is plain depends on its shapes alone, so that no bit
-/// of a run depends on when the neighbourhood is refreshed.
+/// the contact before the next refresh. Whether a pair is plain depends on its shapes and the laws of its
+/// edges alone, so that no bit of a run depends on when the neighbourhood is refreshed.
 struct PlainPair {
   std::uint32_t pair = 0;
   BlockIndex lower;
@@ -88,12 +89,14 @@ Candidates make_candidates(const BlockSystem &system,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
                            ContactHistory &history, double skin);
 
-/// Largest normal stiffness (Pa/m) and tangential stiffness a block of this material can meet.
+/// Largest normal stiffness (Pa/m) and tangential stiffness that a block of this material with these laws of
+/// edges (none: all by the materials) can meet.
 struct StiffnessBound {
   double normal = 0.0;
   double tangential = 0.0;
 };
-StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material);
+StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material,
+                               std::span<const std::int32_t> edge_joint = {});
 
 /// Largest normal stiffness of all laws, Pa/m.
 double stiffest_joint(const JointLaws &joints);

@@ -166,8 +166,11 @@ private:
                             const ContactHistory &history, std::size_t first, std::size_t last);
   void recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
               std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const;
-  /// Normal force, direction and size of a region; false if it carries nothing.
-  bool measure(const CandidatePair &pair, const Region &region, RegionForce &force) const;
+  /// Normal force for k_n/2 = 1, direction and size of a region; false if it carries nothing.
+  bool measure(const Region &region, RegionForce &force) const;
+  /// The same for the pair's law, with friction and dashpots.
+  void load_region(const BlockSystem &system, const CandidatePair &pair, const Region &region,
+                   RegionMemory &memory, RegionForce &force);
   void add_friction(const BlockSystem &system, const CandidatePair &pair, const RelativeVelocity &velocity,
                     RegionMemory &memory, RegionForce &force);
   void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity, const Region &region,

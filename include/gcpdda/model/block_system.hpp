@@ -48,12 +48,13 @@ struct BlockProperties {
   std::int32_t material = 0;
   BlockKind kind = BlockKind::rigid;
   bool is_convex = true;
-  double area = 0.0;    ///< m2
-  double mass = 0.0;    ///< kg per metre; infinite for a fixed or driven block
-  double inertia = 0.0; ///< about the centroid, kg m2 per metre; infinite for a fixed or driven block
-  double radius = 0.0;  ///< largest centroid-to-vertex distance, m
-  double width = 0.0;   ///< narrowest width, m
-  Vec2 centroid;        ///< at t = 0, m
+  bool has_edge_joints = false; ///< some of its edges have a law of their own
+  double area = 0.0;            ///< m2
+  double mass = 0.0;            ///< kg per metre; infinite for a fixed or driven block
+  double inertia = 0.0;         ///< about the centroid, kg m2 per metre; infinite for a fixed or driven block
+  double radius = 0.0;          ///< largest centroid-to-vertex distance, m
+  double width = 0.0;           ///< narrowest width, m
+  Vec2 centroid;                ///< at t = 0, m
 
   /// Whatever acts on it.
   [[nodiscard]] bool keeps_its_velocity() const { return std::isinf(mass); }
@@ -142,6 +143,9 @@ struct BlockSystem {
   std::vector<Vec2> reference_vertex; ///< relative to the centroid
   std::vector<Vec2> reference_normal;
   std::vector<double> edge_length; ///< current; pose() changes that of deformable blocks only
+  /// Law of each edge, index into JointLaws::laws, -1: by the materials. Empty until a row has one; then as
+  /// long as the lists above. It is packed for rows with such edges alone.
+  std::vector<std::int32_t> edge_joint;
 
   // What only some blocks have, flat in the same way: row i owns [begin[i], begin[i + 1]).
   std::vector<std::uint32_t> deformation_begin{0}; ///< one entry for a deformable block, none for others
@@ -189,6 +193,11 @@ struct BlockSystem {
     return {per_vertex.data() + vertex_begin[row], num_vertices(row)};
   }
 
+  /// Laws of a row's edges; empty where all are by the materials.
+  [[nodiscard]] std::span<const std::int32_t> edge_joints(std::size_t row) const {
+    return properties[row].has_edge_joints ? of_row(edge_joint, row) : std::span<const std::int32_t>();
+  }
+
   /// Position of the centroid at t_n.
   [[nodiscard]] Vec2 centroid(std::size_t row) const {
     return properties[row].centroid + displacement[row].u;
@@ -219,6 +228,9 @@ void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, cons
                   BlockKind kind, bool plane_strain = true);
 /// The same, fixed or rigid as the block says.
 void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material);
+
+/// The laws of the last row's edges, once its vertices stand in the system; none where it has none.
+void append_edge_joints(BlockSystem &system, std::span<const std::int32_t> joints);
 
 /// Append a copy of another system's row. The ranges' counts are the caller's.
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row);

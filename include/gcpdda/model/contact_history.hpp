@@ -20,6 +20,7 @@ struct RegionMemory {
   Vec2 position;        ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
   std::int32_t lower_stretch = 0;  ///< stretches of the outlines between re-entrant vertices that face each
   std::int32_t higher_stretch = 0; ///< other; 0 for a convex block
+  std::int32_t law = -1;           ///< that the region was born with; -1: the only one its pair can have
   ContactState state = ContactState::stick;
 
   /// Two copies of one region, not two regions of a pair.

@@ -150,6 +150,7 @@ private:
   void note_groups(std::span<const SceneBlock> slab);
   void resolve_stiffness(std::span<const SceneBlock> slab);
   void survey(std::span<const SceneBlock> slab);
+  void find_laws_on_edges(std::span<const SceneBlock> slab);
   void warn_of_rounding(double size, double farthest);
   void warn_of_lively_impacts();
   void take_blocks(std::vector<SceneBlock> slab);
