@@ -64,7 +64,11 @@ double agreed_median(const Communicator &world, const std::vector<double> &sizes
     const auto below = std::count_if(sizes.begin(), sizes.end(), [&](double size) {
       return std::bit_cast<std::uint64_t>(size) <= middle;
     });
-    agreed_sum(world, below) > wanted ? high = middle : low = middle + 1;
+    if (agreed_sum(world, below) > wanted) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
   }
   return std::bit_cast<double>(low);
 }
