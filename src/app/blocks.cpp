@@ -10,6 +10,7 @@
 #include "gcpdda/blockgen/quality.hpp"
 #include "gcpdda/blockgen/region_cutter.hpp"
 #include "gcpdda/geometry/polygon.hpp"
+#include "gcpdda/io/block_file.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/model/generators.hpp"
 #include "gcpdda/simulation/region_slabs.hpp"
@@ -63,7 +64,11 @@ double agreed_median(const Communicator &world, const std::vector<double> &sizes
     const auto below = std::count_if(sizes.begin(), sizes.end(), [&](double size) {
       return std::bit_cast<std::uint64_t>(size) <= middle;
     });
-    agreed_sum(world, below) > wanted ? high = middle : low = middle + 1;
+    if (agreed_sum(world, below) > wanted) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
   }
   return std::bit_cast<double>(low);
 }
@@ -302,6 +307,9 @@ int cut_blocks(const Communicator &world, const Scene &scene, const BlocksOption
   }
   if (!options.json.empty()) {
     write_on_root(world, options.json, json_of(report, scene), "the report");
+  }
+  if (!options.out.empty()) {
+    write_block_file(world, options.out, made.blocks);
   }
   if (!options.svg.empty()) {
     draw(world, scene, made.blocks, report, options.svg);

@@ -11,6 +11,7 @@ namespace gcpdda {
 struct BlocksOptions {
   std::string svg;  ///< picture; empty for none, as below
   std::string json; ///< report for programs
+  std::string out;  ///< block file, for [blocks] of another scene
 };
 
 /// Reads what the region of a valid scene needs and gives the scene what cuts it. Without a region nothing

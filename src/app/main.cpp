@@ -115,7 +115,7 @@ int inspect(const Communicator &world, const Arguments &arguments) {
 
 int blocks(const Communicator &world, const Arguments &arguments) {
   return with_scene(world, arguments, [&](const Scene &scene) {
-    return cut_blocks(world, scene, {arguments.svg, arguments.json});
+    return cut_blocks(world, scene, {arguments.svg, arguments.json, arguments.directory});
   });
 }
 
@@ -149,6 +149,7 @@ int dispatch(const Communicator &world, int argc, char **argv) {
       "blocks", "cut the region of a scene into blocks, check and draw them without a run");
   takes_scene(blocks_command);
   blocks_command->add_option("--svg", arguments.svg, "draw the blocks into this file");
+  blocks_command->add_option("--out", arguments.directory, "write the blocks into this block file (HDF5)");
   blocks_command->add_option("--json", arguments.json, "write the report for programs into this file");
   const CLI::App *reference_command =
       app.add_subcommand("reference", "print all scene keys as a Markdown page");

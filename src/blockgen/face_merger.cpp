@@ -82,6 +82,29 @@ private:
   std::vector<std::size_t> leader_;
 };
 
+using Members = std::map<std::size_t, std::vector<std::size_t>>; ///< faces of a group by its smallest
+
+void unite(const PlanarGraph &graph, const SliverSizes &sizes, const Members &members,
+           std::vector<RockFace> &faces) {
+  for (const auto &[leader, group] : members) {
+    std::vector<const PlaneFace *> shapes;
+    RockFace one = faces[leader];
+    for (const std::size_t i : group) {
+      shapes.push_back(&faces[i].shape);
+      one.is_certain = one.is_certain && faces[i].is_certain;
+      one.box.include(faces[i].box);
+      one.area += i == leader ? 0.0 : faces[i].area;
+    }
+    one.shape = graph.unite(shapes);
+    one.is_sliver = is_sliver(one, sizes);
+    for (const std::size_t i : group) {
+      faces[i].shape.outer.clear(); // gone
+    }
+    faces[leader] = std::move(one);
+  }
+  std::erase_if(faces, [](const RockFace &face) { return face.shape.outer.empty(); });
+}
+
 bool merge_once(const PlanarGraph &graph, const SliverSizes &sizes, std::vector<RockFace> &faces) {
   const EdgeMap edges(faces);
   Groups groups(faces.size());
@@ -108,30 +131,14 @@ bool merge_once(const PlanarGraph &graph, const SliverSizes &sizes, std::vector<
       joins[i] = joins[other] = true;
     }
   }
-  std::map<std::size_t, std::vector<std::size_t>> members;
+  Members members;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     faces[i].is_certain = is_certain[i];
     if (joins[i]) {
       members[groups.of(i)].push_back(i);
     }
   }
-  for (const auto &[leader, group] : members) {
-    std::vector<const PlaneFace *> shapes;
-    RockFace one = faces[leader];
-    for (const std::size_t i : group) {
-      shapes.push_back(&faces[i].shape);
-      one.is_certain = one.is_certain && faces[i].is_certain;
-      one.box.include(faces[i].box);
-      one.area += i == leader ? 0.0 : faces[i].area;
-    }
-    one.shape = graph.unite(shapes);
-    one.is_sliver = is_sliver(one, sizes);
-    for (const std::size_t i : group) {
-      faces[i].shape.outer.clear(); // gone
-    }
-    faces[leader] = std::move(one);
-  }
-  std::erase_if(faces, [](const RockFace &face) { return face.shape.outer.empty(); });
+  unite(graph, sizes, members, faces);
   return !members.empty();
 }
 

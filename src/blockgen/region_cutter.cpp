@@ -108,8 +108,9 @@ RegionCutter::Made RegionCutter::make(std::int64_t first, std::int64_t last, Cut
 
 Aabb RegionCutter::tile_box(std::int64_t tile) const {
   const Vec2 extent = around_.extent();
+  const std::int64_t row_number = tile / num_columns_;
   const auto column = static_cast<double>(tile % num_columns_);
-  const auto row = static_cast<double>(tile / num_columns_);
+  const auto row = static_cast<double>(row_number);
   const double width = extent.x / static_cast<double>(num_columns_);
   const double height = extent.y / static_cast<double>(num_rows_);
   return {{around_.low.x + column * width, around_.low.y + row * height},

@@ -84,7 +84,7 @@ private:
 
   /// Blocks that are not written out here may name any law.
   [[nodiscard]] bool may_be_on_edges(const std::string &name) const {
-    for (const char *source : {"blocks", "region", "joint_set"}) {
+    for (const char *source : {"blocks", "region"}) {
       if (source_.root.contains(source)) {
         return true;
       }

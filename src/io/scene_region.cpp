@@ -81,7 +81,8 @@ private:
     }
     std::vector<Vec2> vertices;
     section.read(key, vertices);
-    const std::vector<OutlineFault> faults = check_outline(vertices, section.subject(key));
+    std::vector<std::int32_t> no_joints;
+    const std::vector<OutlineFault> faults = check_outline(vertices, no_joints, section.subject(key));
     for (const OutlineFault &f : faults) {
       fault(f.vertex ? (*node->as_array())[*f.vertex].source() : node->source(), f.what, f.why,
             f.vertex ? f.hint : "list the vertices in order around the polygon");

@@ -74,7 +74,11 @@ Diagnostics all_faults(const Communicator &communicator, const Diagnostics &mine
   for (const std::vector<char> &theirs : communicator.all_gather(text)) {
     std::vector<std::string> parts(1);
     for (const char c : theirs) {
-      c == '\0' ? static_cast<void>(parts.emplace_back()) : parts.back().push_back(c);
+      if (c == '\0') {
+        parts.emplace_back();
+      } else {
+        parts.back().push_back(c);
+      }
     }
     constexpr std::size_t num_parts = 6;
     for (std::size_t i = 0; i + num_parts < parts.size() && faults.size() < most_faults; i += num_parts) {

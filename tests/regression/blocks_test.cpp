@@ -100,6 +100,19 @@ TEST_F(Blocks, RunAndGoOnTheSameOnAnyNumberOfRanks) {
   EXPECT_EQ(compare_runs(folder_ / "one", folder_ / "half"), std::vector<std::string>());
 }
 
+// The same blocks with the same families, from the file instead of the region: the same motion.
+TEST_F(Blocks, MakeABlockFileThatRunsTheSame) {
+  const Outcome cut = run_gcpdda(2, {"blocks", "scene.toml", "--out", "cut.h5"}, folder_);
+  EXPECT_EQ(cut.exit_code, 0) << cut.err;
+  const std::string without_region = scene.substr(0, scene.find("[region]"));
+  const std::string rest = scene.substr(scene.find("[[monitor]]"));
+  folder_.write("file.toml", without_region + "[blocks]\nfile = \"cut.h5\"\n" + rest);
+  EXPECT_EQ(run_gcpdda(0, {"run", "scene.toml", "--out", "region"}, folder_).exit_code, 0);
+  const Outcome run = run_gcpdda(0, {"run", "file.toml", "--out", "file"}, folder_);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(compare_runs(folder_ / "region", folder_ / "file"), std::vector<std::string>());
+}
+
 TEST_F(Blocks, FaultsOfAMapHaveItsLines) {
   folder_.write("map.csv", "trace,x,y\na,1,1\na,2\nb,x,3\n");
   const std::vector<std::string> before = listing(folder_.path());

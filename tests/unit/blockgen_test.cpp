@@ -59,6 +59,7 @@ TEST(RegionCutter, OrthogonalSetsCutTheProductOfTheirNumbers) {
   expect_sound(blocks);
   for (const SceneBlock &block : blocks) {
     ASSERT_EQ(block.vertices.size(), 4U);
+    ASSERT_EQ(block.edge_joint.size(), 4U);
     for (std::size_t k = 0; k < 4; ++k) {
       const Vec2 from = block.vertices[k];
       const Vec2 to = block.vertices[(k + 1) % 4];
@@ -209,14 +210,16 @@ TEST(RegionCutter, TilesDoNotShow) {
   }
 }
 
-// Beds across the whole region: a tile sees its blocks whole only when it sees everything.
+// Beds across the whole region: a tile sees its blocks whole, and the joint that ends them, only when it sees
+// everything.
 TEST(RegionCutter, BlocksLongerThanManyTilesAreCutOnce) {
   Scene scene = region_scene(rectangle_of(100.0, 10.0));
   scene.region.joint_sets = {through_going(0.0, 0.5, 1, {0.0, 0.25})};
+  scene.region.faults = {{"end", 2, {{90.0, -1.0}, {90.0, 11.0}}, {}}};
   const RegionCutter cutter(scene, 1);
   EXPECT_GE(cutter.num_tiles(), 10);
   const std::vector<SceneBlock> blocks = cutter.make(0, cutter.num_tiles()).blocks;
-  EXPECT_EQ(blocks.size(), 21U);
+  EXPECT_EQ(blocks.size(), 2U * 21U);
   EXPECT_NEAR(total_area(blocks), 1000.0, 1000.0 * rounding);
 }
 

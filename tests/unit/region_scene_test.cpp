@@ -199,8 +199,9 @@ TEST(RegionScene, FaultsAreNamedWithTheirPlaces) {
       faults(head + "[[block]]\nmaterial = \"rock\"\nvertices = [[0, 0], [1, 0], [0, 1]]\n[[fault]]\npoints "
                     "= [[0, 0], [1, 1]]\njoint = \"bedding\"\n"),
       (Strings{
-          "9:1: error: 'materials' in [joint.bedding] is missing, a law other than default is for one pair, "
-          "for example materials = [\"granite\", \"clay\"]",
+          "9:1: error: 'materials' in [joint.bedding] is missing, a law other than default is for one pair "
+          "of "
+          "materials, or for edges that name it, for example materials = [\"granite\", \"clay\"]",
           "14:1: error: fault 'fault0' has nothing to lie in, the scene has no region, write [region]"}));
   EXPECT_EQ(
       faults(head + region +

@@ -5,6 +5,8 @@
 #include "gcpdda/parallel/communicator.hpp"
 
 #include <cstdint>
+#include <filesystem>
+#include <span>
 #include <vector>
 
 namespace gcpdda {
@@ -21,5 +23,10 @@ Diagnostics open_block_file(const Communicator &communicator, Scene &scene);
 /// faults. Collective; throws FileError on all ranks where the file cannot be read.
 Diagnostics read_block_file(const Communicator &communicator, const Scene &scene, std::int64_t first,
                             std::int64_t last, std::vector<SceneBlock> &blocks);
+
+/// Writes a block file: outlines, materials, what is fixed and the laws of edges of the blocks that the ranks
+/// hold, in the order of the ranks. Collective; throws FileError on all ranks.
+void write_block_file(const Communicator &communicator, const std::filesystem::path &path,
+                      std::span<const SceneBlock> mine);
 
 } // namespace gcpdda
