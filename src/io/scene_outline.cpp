@@ -95,4 +95,9 @@ std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, std::vector
   return faults;
 }
 
+std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, const std::string &who) {
+  std::vector<std::int32_t> no_laws;
+  return check_outline(vertices, no_laws, who);
+}
+
 } // namespace gcpdda::scene_text

@@ -23,6 +23,8 @@ struct OutlineFault {
 /// @param who         how messages call the block
 std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, std::vector<std::int32_t> &edge_joint,
                                         const std::string &who);
+/// The same of an outline whose edges have no laws.
+std::vector<OutlineFault> check_outline(std::vector<Vec2> &vertices, const std::string &who);
 
 /// Rounding of coordinates up to `largest`, as a length: what is shorter is no edge.
 double coordinate_rounding(double largest);
