@@ -95,11 +95,11 @@ public:
     lines.low -= slack;
     lines.high += slack;
     if (set.spacing.spread == Spread::none) {
-      const double first = std::ceil(lines.low / set.spacing.mean);
-      const double last = std::floor(lines.high / set.spacing.mean);
-      for (double k = first; k <= last; ++k) {
-        add_traces_of_line(set, number, static_cast<std::int64_t>(k),
-                           set.origin + (k * set.spacing.mean) * across);
+      const auto first = static_cast<std::int64_t>(std::ceil(lines.low / set.spacing.mean));
+      const auto last = static_cast<std::int64_t>(std::floor(lines.high / set.spacing.mean));
+      for (std::int64_t k = first; k <= last; ++k) {
+        const double offset = static_cast<double>(k) * set.spacing.mean;
+        add_traces_of_line(set, number, k, set.origin + offset * across);
       }
       return;
     }
@@ -141,16 +141,20 @@ private:
     const auto first = static_cast<std::int64_t>(skipped);
     const double begin = skipped * set.spacing.mean;
     double offset = begin;
-    for (std::int64_t k = first; offset <= lines.high; offset += spacing(k++)) {
+    std::int64_t k = first;
+    while (offset <= lines.high) {
       if (offset >= lines.low) {
         add_traces_of_line(set, number, k, set.origin + offset * across);
       }
+      offset += spacing(k++);
     }
-    offset = begin - spacing(first - 1);
-    for (std::int64_t k = first - 1; offset >= lines.low; offset -= spacing(--k)) {
+    k = first - 1;
+    offset = begin - spacing(k);
+    while (offset >= lines.low) {
       if (offset <= lines.high) {
         add_traces_of_line(set, number, k, set.origin + offset * across);
       }
+      offset -= spacing(--k);
     }
   }
 

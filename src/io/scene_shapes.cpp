@@ -15,7 +15,7 @@ void add_arc(Vec2 centre, double radius, double begin, double end, std::int64_t 
              std::vector<Vec2> &outline) {
   const double share = std::abs(end - begin) / (2.0 * pi);
   const double pieces = std::max(1.0, std::ceil(share * static_cast<double>(chords_of_circle) - 1e-9));
-  for (double k = 0.0; k < pieces; ++k) {
+  for (int k = 0; k < static_cast<int>(pieces); ++k) {
     const double angle = begin + (end - begin) * (k / pieces);
     outline.push_back(centre + radius * Vec2{std::cos(angle), std::sin(angle)});
   }
