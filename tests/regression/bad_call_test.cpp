@@ -139,7 +139,7 @@ const std::vector<BadCall> bad_calls{
      {"empty.toml:1:1: error: 'run' is missing, it is required, write [run]",
       "empty.toml:1:1: error: 'material' is missing, it is required, write [material.granite]",
       "empty.toml:1:1: error: 'joint' is missing, it is required, write [joint.default]",
-      "empty.toml:1:1: error: the scene has no blocks, at least one block, wall, pyramid or block file is required, write [[block]], [[wall]], [[pyramid]] or [blocks]"},
+      "empty.toml:1:1: error: the scene has no blocks, at least one block, wall, pyramid, block file or region is required, write [[block]], [[wall]], [[pyramid]], [blocks] or [region]"},
      [](const WorkFolder &folder) { folder.write("empty.toml", ""); }},
     {"NoBlockFile", {"run", "s.toml", "--set", "blocks.file=sub/nowhere.h5"}, 3,
      {"--set blocks.file=sub/nowhere.h5: error: cannot open the block file 'sub/nowhere.h5', no such file or no right to read it, check the path, which starts from the folder of the scene"}},

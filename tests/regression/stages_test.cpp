@@ -51,7 +51,7 @@ block = "w.1.5"
 )";
 
 const std::vector<std::string> stages{
-    "[[stage]]\nname = \"gravity\"\nkind = \"settle\"\nlimit = 2.0\n",
+    "[[stage]]\nname = \"gravity\"\nkind = \"settle\"\nlimit = 1.98\n",
     "[[stage]]\nname = \"opening\"\nkind = \"excavate\"\nregion = [[3, 0], [5, 0], [5, 1], [3, 1]]\nrelax = "
     "0.03\n",
     "[[stage]]\nkind = \"run\"\nduration = 0.06\n",
@@ -101,7 +101,8 @@ TEST(StagedRun, GoesOnFromAnyStageOnAnyNumberOfRanks) {
   }
 }
 
-// Exit code 7; the state is kept, and a longer limit finds the verdict.
+// Exit code 7; the state is kept, and a longer limit finds the verdict. Both limits are whole numbers of
+// intervals, so that the step is the same.
 TEST(StagedRun, WithoutAVerdictEndsWithSeven) {
   const WorkFolder folder;
   folder.write("scene.toml", scene_of_stages(1));
@@ -113,7 +114,7 @@ TEST(StagedRun, WithoutAVerdictEndsWithSeven) {
   EXPECT_EQ(brief.exit_code, 7) << brief.err;
   EXPECT_EQ(summary_text(folder / "brief", "verdict"), "\"undecided\"");
   EXPECT_EQ(run_gcpdda(0, {"restart", "brief"}, folder).exit_code, 7);
-  const Outcome rest = run_gcpdda(3, {"restart", "brief", "--set", "stage.gravity.limit=2.0"}, folder);
+  const Outcome rest = run_gcpdda(3, {"restart", "brief", "--set", "stage.gravity.limit=1.98"}, folder);
   EXPECT_EQ(rest.exit_code, 0) << rest.err;
   EXPECT_EQ(compare_runs(folder / "whole", folder / "brief"), none);
 }
