@@ -124,13 +124,13 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
     try {
       (void)toml::parse(fmt::format("value = {}", text));
     } catch (const toml::parse_error &) {
-      text = quoted(text);
+      text = scene_text::quoted(text);
     }
   }
   std::string keys;
   for (const std::string &segment : path) {
     keys += keys.empty() ? "" : ".";
-    keys += quoted(segment);
+    keys += scene_text::quoted(segment);
   }
   auto tree = parse(fmt::format("{} = {}", keys, text), label, faults);
   // A line break in the value could smuggle in a second assignment.
