@@ -35,6 +35,7 @@ const std::vector<Belongs> &belongings() {
       {"mass_scaling", {settle}},
       {"blocks", {excavate}},
       {"region", {excavate}},
+      {"openings", {excavate}},
       {"relax", {excavate}},
   };
   return table;
@@ -131,9 +132,10 @@ private:
 
   BlockSelection read_selection(const Section &section) {
     BlockSelection selection;
-    if (section.given("blocks") == nullptr && section.given("region") == nullptr) {
+    if (section.given("blocks") == nullptr && section.given("region") == nullptr &&
+        section.given("openings") == nullptr) {
       fault(section.source(), section.label() + " names no blocks",
-            "an excavation needs 'blocks', 'region' or both",
+            "an excavation needs 'blocks', 'region', 'openings' or several of them",
             "for example region = [[0, 0], [4, 0], [4, 3], [0, 3]]");
     }
     section.read("region", selection.region);
@@ -155,7 +157,29 @@ private:
       }
     }
     std::sort(selection.blocks.begin(), selection.blocks.end());
+    if (const toml::node *openings = section.sound("openings")) {
+      read_openings(*openings->as_array(), selection);
+    }
     return selection;
+  }
+
+  void read_openings(const toml::array &names, BlockSelection &selection) {
+    const std::vector<Opening> &openings = scene_->region.openings;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string &name = names[i].as_string()->get();
+      const auto found = std::find_if(openings.begin(), openings.end(),
+                                      [&](const Opening &opening) { return opening.name == name; });
+      if (found == openings.end()) {
+        fault(names[i].source(), fmt::format("no opening is named '{}'", name), "",
+              openings.empty() ? "the scene has no [[opening]]"
+                               : fmt::format("did you mean '{}'?", openings.front().name));
+      } else if (found->excavated) {
+        fault(names[i].source(), fmt::format("opening '{}' has no blocks", name),
+              "with 'excavated' they are not made at all", "leave 'excavated' out of the opening");
+      } else {
+        selection.openings.push_back(static_cast<std::size_t>(found - openings.begin()));
+      }
+    }
   }
 
   std::int64_t find(const std::string &name) const {

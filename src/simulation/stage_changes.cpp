@@ -246,7 +246,11 @@ std::vector<std::int64_t> Simulation::select_blocks(const BlockSelection &select
   for (std::size_t row = 0; row < blocks_.num_rows(); ++row) {
     const std::int64_t id = blocks_.properties[row].id.value;
     const bool inside = !selection.region.empty() && holds_point(selection.region, blocks_.centroid(row));
-    if ((row < blocks_.num_owned || blocks_.is_fixed(row)) && (inside || holds(selection.blocks, id))) {
+    const bool in_opening =
+        std::any_of(selection.openings.begin(), selection.openings.end(),
+                    [&](std::size_t opening) { return holds(scene_.groups[opening].blocks, id); });
+    if ((row < blocks_.num_owned || blocks_.is_fixed(row)) &&
+        (inside || in_opening || holds(selection.blocks, id))) {
       mine.push_back(id);
     }
   }

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace gcpdda {
 namespace {
 
@@ -73,6 +75,37 @@ TEST(Region, RunsTheSameOnAnyNumberOfRanks) {
                                                                                                         : 0;
   }
   EXPECT_GT(agreed_sum(world, touching), 300);
+}
+
+TEST(Region, OpeningsAreExcavatedByName) {
+  const Communicator world = Communicator::world();
+  Scene scene = jointed_slope();
+  scene.run.duration = 0.005;
+  scene.output.interval = scene.output.history_interval = 0.005;
+  scene.region_blocks = std::make_shared<RegionCutter>(scene, 40);
+  Stage opening;
+  opening.kind = StageKind::excavate;
+  opening.excavated.openings = {0};
+  Stage after;
+  after.duration = 0.005;
+  scene.stages = {opening, after};
+  Simulation simulation(world, scene);
+  const auto mobile = static_cast<std::int64_t>(simulation.blocks().num_owned);
+  const std::int64_t before = agreed_sum(world, mobile);
+  for (simulation.end_stage(); !simulation.finished(); simulation.end_stage()) {
+    if (simulation.stage_is_over()) {
+      simulation.begin_next_stage();
+    } else {
+      simulation.step();
+    }
+  }
+  const std::vector<std::int64_t> &gone = simulation.scene().groups.at(0).blocks;
+  EXPECT_EQ(agreed_sum(world, static_cast<std::int64_t>(simulation.blocks().num_owned)),
+            before - std::ssize(gone));
+  for (std::size_t row = 0; row < simulation.blocks().num_rows(); ++row) {
+    const std::int64_t id = simulation.blocks().properties[row].id.value;
+    EXPECT_FALSE(std::binary_search(gone.begin(), gone.end(), id)) << id;
+  }
 }
 
 TEST(Region, FaultsOfOneRankAreThoseOfAll) {

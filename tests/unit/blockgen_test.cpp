@@ -350,7 +350,7 @@ TEST(RegionCutter, AFarRegionKeepsItsVertices) {
   std::size_t corners = 0;
   for (const SceneBlock &block : blocks) {
     for (const Vec2 p : block.vertices) {
-      corners += std::count(outline.begin(), outline.end(), p);
+      corners += static_cast<std::size_t>(std::count(outline.begin(), outline.end(), p));
     }
   }
   EXPECT_GE(corners, 4U);

@@ -149,6 +149,27 @@ face_angle_deg = 45
 }
 
 // Areas of the shapes in closed form, approached from inside by n chords as 1 - (2 pi/n)^2/6.
+TEST(RegionScene, StagesExcavateOpeningsByName) {
+  const std::string openings =
+      "[[opening]]\nname = \"tunnel\"\nshape = \"circle\"\ncentre = [10, 5]\nwidth = 4\n"
+      "[[opening]]\nname = \"shaft\"\nshape = \"circle\"\ncentre = [3, 5]\nwidth = 2\n";
+  const auto stage = [](const std::string &names) {
+    return "[[stage]]\nkind = \"excavate\"\nopenings = " + names +
+           "\n[[stage]]\nkind = \"run\"\nduration = 1.0\n";
+  };
+  const std::string without_duration =
+      head.substr(0, head.find("duration")) + head.substr(head.find("[material"));
+  const Scene scene = good(without_duration + region + openings + stage("[\"shaft\"]"));
+  EXPECT_EQ(scene.stages.at(0).excavated.openings, std::vector<std::size_t>{1});
+  const auto said = messages(read_scene(without_duration + region + openings + "excavated = true\n" +
+                                            stage("[\"shaft\", \"tunel\"]"),
+                                        "s.toml", {}));
+  ASSERT_EQ(said.size(), 2U) << ::testing::PrintToString(said);
+  EXPECT_NE(said[0].find("opening 'shaft' has no blocks"), std::string::npos) << said[0];
+  EXPECT_NE(said[1].find("no opening is named 'tunel', did you mean 'tunnel'?"), std::string::npos)
+      << said[1];
+}
+
 TEST(RegionScene, OpeningsHaveTheirShapes) {
   const auto area = [](const std::string &shape) {
     return signed_area(

@@ -29,6 +29,8 @@ enum class Verdict : std::int64_t {
 struct BlockSelection {
   std::vector<std::int64_t> blocks; ///< ids, ascending
   std::vector<Vec2> region;         ///< polygon that holds their centroids; empty for none
+  std::vector<std::size_t>
+      openings; ///< numbers in RockRegion::openings: all blocks cut within their outlines
 };
 
 struct Stage {
