@@ -31,7 +31,8 @@ FrameData patches_of(const Communicator &world, std::int64_t num_blocks) {
     row.num_vertices = 4;
     row.rotation = 1e-3 * static_cast<double>(id);
     data.rows.push_back(row);
-    const Vec2 corner{static_cast<double>(id % 1000), static_cast<double>(id / 1000)};
+    const std::int64_t line = id / 1000;
+    const Vec2 corner{static_cast<double>(id % 1000), static_cast<double>(line)};
     for (const Vec2 offset : {Vec2{0.0, 0.0}, Vec2{1.0, 0.0}, Vec2{1.0, 1.0}, Vec2{0.0, 1.0}}) {
       data.vertices.push_back(corner + offset);
     }
@@ -100,7 +101,8 @@ int compare(const Communicator &world, const std::filesystem::path &folder, std:
   std::vector<double> plain;
   for (int k = 1; k <= repeats; ++k) {
     frames.push_back(seconds_of(world, [&] { writer.write(k, k, data); }));
-    plain.push_back(seconds_of(world, [&] { write_plain(world, folder / fmt::format("plain_{}.h5", k), mine); }));
+    plain.push_back(
+        seconds_of(world, [&] { write_plain(world, folder / fmt::format("plain_{}.h5", k), mine); }));
   }
   if (world.is_root()) {
     std::cout << fmt::format(
