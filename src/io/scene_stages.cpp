@@ -80,6 +80,11 @@ public:
     section.read("mass_scaling", stage.mass_scaling);
     section.read("relax", stage.relax);
     expect_end(section, stage.kind);
+    if (index == 0 && (!stage.takes_steps() || section.given("set") != nullptr)) {
+      fault(section.source(), section.label() + " changes the scene before anything has happened",
+            "the first stage starts from the scene as it is written",
+            "write the change into the scene itself, or let a stage of kind settle or run come first");
+    }
     if (stage.kind == StageKind::excavate) {
       stage.excavated = read_selection(section);
     }

@@ -80,15 +80,15 @@ TEST(Region, RunsTheSameOnAnyNumberOfRanks) {
 TEST(Region, OpeningsAreExcavatedByName) {
   const Communicator world = Communicator::world();
   Scene scene = jointed_slope();
-  scene.run.duration = 0.005;
+  scene.run.duration = 0.01;
   scene.output.interval = scene.output.history_interval = 0.005;
   scene.region_blocks = std::make_shared<RegionCutter>(scene, 40);
   Stage opening;
   opening.kind = StageKind::excavate;
   opening.excavated.openings = {0};
-  Stage after;
-  after.duration = 0.005;
-  scene.stages = {opening, after};
+  Stage run;
+  run.duration = 0.005;
+  scene.stages = {run, opening, run};
   Simulation simulation(world, scene);
   const auto mobile = static_cast<std::int64_t>(simulation.blocks().num_owned);
   const std::int64_t before = agreed_sum(world, mobile);

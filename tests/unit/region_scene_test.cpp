@@ -154,13 +154,13 @@ TEST(RegionScene, StagesExcavateOpeningsByName) {
       "[[opening]]\nname = \"tunnel\"\nshape = \"circle\"\ncentre = [10, 5]\nwidth = 4\n"
       "[[opening]]\nname = \"shaft\"\nshape = \"circle\"\ncentre = [3, 5]\nwidth = 2\n";
   const auto stage = [](const std::string &names) {
-    return "[[stage]]\nkind = \"excavate\"\nopenings = " + names +
+    return "[[stage]]\nkind = \"run\"\nduration = 1.0\n[[stage]]\nkind = \"excavate\"\nopenings = " + names +
            "\n[[stage]]\nkind = \"run\"\nduration = 1.0\n";
   };
   const std::string without_duration =
       head.substr(0, head.find("duration")) + head.substr(head.find("[material"));
   const Scene scene = good(without_duration + region + openings + stage("[\"shaft\"]"));
-  EXPECT_EQ(scene.stages.at(0).excavated.openings, std::vector<std::size_t>{1});
+  EXPECT_EQ(scene.stages.at(1).excavated.openings, std::vector<std::size_t>{1});
   const auto said = messages(read_scene(without_duration + region + openings + "excavated = true\n" +
                                             stage("[\"shaft\", \"tunel\"]"),
                                         "s.toml", {}));
