@@ -14,7 +14,7 @@ namespace {
 
 struct Point {
   Choice choice;
-  Outcome outcome;
+  Measured outcome;
 };
 
 std::vector<Choice> choices_of(const Problem &problem) {

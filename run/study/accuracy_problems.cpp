@@ -29,9 +29,9 @@ Setting setting_of(const Choice &choice, double height, double block_size, doubl
 }
 
 /// Run to the end and measure what is left.
-template <class Error> Outcome compute(const std::string &toml, Error &&error) {
+template <class Error> Measured compute(const std::string &toml, Error &&error) {
   Simulation simulation(Communicator::self(), scene_of(toml));
-  Outcome outcome;
+  Measured outcome;
   outcome.cost = advance(simulation, simulation.plan().duration);
   outcome.error = simulation.fault() ? std::numeric_limits<double>::infinity() : error(simulation);
   outcome.normal_stiffness = simulation.contacts().parameters().joints.laws.front().normal_stiffness;
@@ -39,7 +39,7 @@ template <class Error> Outcome compute(const std::string &toml, Error &&error) {
   return outcome;
 }
 
-Outcome slide(const Choice &choice, bool from_solved_start) {
+Measured slide(const Choice &choice, bool from_solved_start) {
   constexpr double duration = 2.0;
   Incline incline;
   incline.normal_stiffness = stiffness(1.0, 1.0, choice.allowed_overlap);
@@ -60,8 +60,8 @@ double kinetic_energy(const Simulation &simulation, int block) {
 
 /// Root mean square over gaps before the impact: where in the step it falls changes the error of a single
 /// one.
-Outcome collide(const Choice &choice, int phases) {
-  Outcome mean;
+Measured collide(const Choice &choice, int phases) {
+  Measured mean;
   for (int phase = 0; phase < phases; ++phase) {
     Setting setting = setting_of(choice, 1.0, 1.0, 0.4);
     setting.gravity = {};
@@ -70,7 +70,7 @@ Outcome collide(const Choice &choice, int phases) {
     const std::string toml =
         head(setting) + block_toml("left", rectangle({-1.0, 0.0}, {0.0, 1.0}), "velocity = [1.0, 0.2, 0.0]") +
         block_toml("right", rectangle({gap, 0.5}, {1.0 + gap, 1.5}), "velocity = [-1.0, 0.0, 0.0]");
-    const Outcome one = compute(toml, [](const Simulation &simulation) {
+    const Measured one = compute(toml, [](const Simulation &simulation) {
       const double before = 0.5 * rock_density * (1.0 + 0.04 + 1.0);
       return (kinetic_energy(simulation, 0) + kinetic_energy(simulation, 1)) / before - 1.0;
     });
@@ -104,7 +104,7 @@ double depth_of_corner(const std::vector<Vec2> &block, double width, const std::
   return low;
 }
 
-Outcome topple(const Choice &choice) {
+Measured topple(const Choice &choice) {
   constexpr double width = 0.5;
   constexpr double height = 1.0;
   constexpr double start = 5.0 * degree;
@@ -147,7 +147,7 @@ std::string abutment(double left, double right) {
                     "fixed = true");
 }
 
-Outcome compress(const Choice &choice) {
+Measured compress(const Choice &choice) {
   constexpr double load = 1e-6 * bar_stiffness;
   std::string toml =
       head(bar_setting(choice, bar_stiffness, 1.5, 0.1, "local_damping = 0.4\n")) + abutment(-2.0, 0.0);
@@ -174,7 +174,7 @@ Outcome compress(const Choice &choice) {
 
 /// The half wave of the compressed bar, from its motion after five half periods: in that time a frequency
 /// that is off by a share e shifts the phase by 5 pi e.
-Outcome ring(const Choice &choice) {
+Measured ring(const Choice &choice) {
   constexpr double squeeze = 1e-5; // keeps every joint closed
   constexpr double speed = 1e-4;
   const double shape = std::numbers::pi / (bar_blocks + 1);
@@ -203,7 +203,7 @@ Outcome ring(const Choice &choice) {
 }
 
 /// How far the top of a pile has sunk or moved, as a share of its height: rigid bodies would stay.
-Outcome pile(const Choice &choice, const std::string &bricks, int top, double height, double block_size) {
+Measured pile(const Choice &choice, const std::string &bricks, int top, double height, double block_size) {
   Setting setting = setting_of(choice, height, block_size, 2.0);
   setting.friction_deg = std::atan(0.6) / degree;
   const std::string toml =

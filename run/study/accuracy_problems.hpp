@@ -20,7 +20,7 @@ struct Choice {
   std::string fidelity = "fitting"; ///< fitting: rigid, but deformable where the problem has a modulus
 };
 
-struct Outcome {
+struct Measured {
   double error = 0.0; ///< infinite: the run failed
   Cost cost;
   double normal_stiffness = 0.0; ///< Pa/m
@@ -34,7 +34,7 @@ struct Problem {
   bool is_elastic;              ///< has a modulus
   double floor;                 ///< errors below are as good as none: round-off of the comparison
   std::vector<double> safeties; ///< of the curves
-  std::function<Outcome(const Choice &)> compute;
+  std::function<Measured(const Choice &)> compute;
 };
 
 /// @param quick  smaller models and fewer steps sizes, the same problems

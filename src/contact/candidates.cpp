@@ -79,6 +79,7 @@ CellLists fill_cells(const SearchGrid &grid, std::span<const Aabb> boxes) {
   return cells;
 }
 
+/// A pair, plain as far as its laws allow.
 CandidatePair make_pair(const BlockSystem &system, BlockIndex lower, BlockIndex higher,
                         const ContactParameters &parameters) {
   const BlockProperties &a = system.properties[lower.value];
@@ -86,9 +87,10 @@ CandidatePair make_pair(const BlockSystem &system, BlockIndex lower, BlockIndex 
   CandidatePair pair;
   pair.lower = lower;
   pair.higher = higher;
-  const auto only = only_law(system, parameters.joints, pair);
-  pair.is_mixed = !only.has_value();
-  take_law(system, parameters, only.value_or(parameters.joints.between(a.material, b.material)), pair);
+  const PossibleLaws laws = possible_laws(system, parameters.joints, pair);
+  pair.is_mixed = !laws.only.has_value();
+  pair.is_plain = laws.are_constant && parameters.potential == PotentialKind::exact;
+  take_law(system, parameters, laws.only.value_or(parameters.joints.between(a.material, b.material)), pair);
   pair.allowed_overlap = 0.5 * std::min(a.width, b.width);
   pair.is_convex = a.is_convex && b.is_convex;
   return pair;
@@ -364,9 +366,7 @@ Candidates make_candidates(const BlockSystem &system,
     EdgeChain lower_chain;
     EdgeChain higher_chain;
     CandidatePair candidate = make_pair(system, lower, higher, parameters);
-    const JointLaw &law = parameters.joints.laws[static_cast<std::size_t>(candidate.law)];
-    const bool is_plain = parameters.potential == PotentialKind::exact && !candidate.is_mixed &&
-                          law.is_constant() && finder.is_plain(lower.value, higher.value);
+    const bool is_plain = candidate.is_plain && finder.is_plain(lower.value, higher.value);
     if (is_plain && !finder.find(lower.value, higher.value, lower_chain, higher_chain)) {
       continue;
     }

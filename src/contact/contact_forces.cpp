@@ -4,7 +4,10 @@
 #include "pair_motion.hpp"
 #include "plain_batch.hpp"
 
+#include "gcpdda/contact/region_law.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -69,8 +72,52 @@ void ContactForces::find_increments(const BlockSystem &system, std::size_t first
   }
 }
 
+/// Up to as many entries of Candidates::plain as there are lanes.
+void ContactForces::evaluate_alike(const BlockSystem &system, const Candidates &candidates,
+                                   const ContactHistory &history, std::span<const std::uint32_t> entries) {
+  std::array<CandidatePair, PlainBatch::most_lanes> own;
+  std::array<const CandidatePair *, PlainBatch::most_lanes> constants;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::uint32_t number = candidates.plain[entries[i]].pair;
+    const CandidatePair &pair = candidates.pairs[number];
+    constants[i] = &pair;
+    if (pair.is_mixed && history.ranges[number].count > 0) {
+      own[i] = constants_of(system, parameters_, pair, history.of_pair(number).front().law);
+      constants[i] = &own[i];
+    }
+  }
+  const PlainScene scene{system, candidates, history, increments_, deforming_, parameters_.damping_ratio};
+  batch_->evaluate(scene, entries, std::span(constants).first(entries.size()));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!batch_->touches(i)) {
+      continue;
+    }
+    const std::uint32_t number = candidates.plain[entries[i]].pair;
+    const CandidatePair &pair = candidates.pairs[number];
+    const bool is_born = history.ranges[number].count == 0;
+    if (is_born && pair.is_mixed) {
+      births_.push_back(number);
+      continue;
+    }
+    ranges_[number] = {static_cast<std::uint32_t>(forces_.size()), 1};
+    RegionForce &force = forces_.emplace_back();
+    force.pair = number;
+    force.born = is_born;
+    RegionMemory &memory = next_.regions.emplace_back();
+    if (pair.is_mixed) {
+      memory.law = constants[i]->law;
+    }
+    batch_->store(i, force, memory);
+    if (candidates.plain[entries[i]].is_deformable) {
+      damping_dyads_.resize(forces_.size());
+      damping_dyads_.back() = batch_->damping_dyad(i);
+    }
+    note(system, pair, force);
+  }
+}
+
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
-                                         const ContactHistory &history, std::size_t first, std::size_t last) {
+                                         ContactHistory &history, std::size_t first, std::size_t last) {
   const std::vector<PlainPair> &plain = candidates.plain;
   meeting_.resize(last - first);
   std::size_t num_meeting = 0;
@@ -79,32 +126,22 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     num_meeting += system.box[plain[k].lower.value].meets(system.box[plain[k].higher.value]) ? 1 : 0;
   }
   report_.evaluations += static_cast<std::int64_t>(num_meeting);
-  const PlainScene scene{system, candidates, history, increments_, deforming_, parameters_.damping_ratio};
   const auto alike = [&](std::size_t a, std::size_t b) {
     return plain[meeting_[a]].is_like(plain[meeting_[b]]);
   };
+  births_.clear();
   const std::size_t width = batch_->width();
   for (std::size_t begin = 0, end = 0; begin < num_meeting; begin = end) {
     end = begin + 1;
     while (end < std::min(num_meeting, begin + width) && alike(begin, end)) {
       ++end;
     }
-    batch_->evaluate(scene, std::span(meeting_).subspan(begin, end - begin));
-    for (std::size_t i = begin; i < end; ++i) {
-      if (batch_->touches(i - begin)) {
-        const std::uint32_t pair = plain[meeting_[i]].pair;
-        ranges_[pair] = {static_cast<std::uint32_t>(forces_.size()), 1};
-        RegionForce &force = forces_.emplace_back();
-        force.pair = pair;
-        force.born = history.ranges[pair].count == 0;
-        batch_->store(i - begin, force, next_.regions.emplace_back());
-        if (plain[meeting_[i]].is_deformable) {
-          damping_dyads_.resize(forces_.size());
-          damping_dyads_.back() = batch_->damping_dyad(i - begin);
-        }
-        note(system, candidates.pairs[pair], force);
-      }
-    }
+    evaluate_alike(system, candidates, history, std::span(meeting_).subspan(begin, end - begin));
+  }
+  for (const std::uint32_t number : births_) {
+    const auto begin = static_cast<std::uint32_t>(forces_.size());
+    evaluate_pair(system, candidates, number, {});
+    ranges_[number] = {begin, static_cast<std::uint32_t>(forces_.size()) - begin};
   }
 }
 

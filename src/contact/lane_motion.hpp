@@ -65,32 +65,39 @@ inline void load_deformed_slopes(const PlainScene &scene, const Rows &rows, cons
   }
 }
 
-/// Velocities and increments of two rigid blocks.
-struct RigidMotion {
+/// How two blocks move, as far as it does not matter whether they deform.
+struct TranslatingMotion {
   LaneVec lower_centroid;
   LaneVec higher_centroid;
   LaneVec lower_velocity;
   LaneVec higher_velocity;
-  Lanes lower_spin;
-  Lanes higher_spin;
   LaneVec lower_step;
   LaneVec higher_step;
+
+  TranslatingMotion(const PlainScene &scene, const Rows &a, const Rows &b) {
+    const BlockSystem &system = scene.system;
+    lower_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[a[i]]; });
+    higher_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[b[i]]; });
+    lower_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[a[i]].u; });
+    higher_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[b[i]].u; });
+    lower_step = LaneVec::of([&](std::size_t i) { return &scene.increments[a[i]].u; });
+    higher_step = LaneVec::of([&](std::size_t i) { return &scene.increments[b[i]].u; });
+  }
+};
+
+/// Velocities and increments of two rigid blocks.
+struct RigidMotion : TranslatingMotion {
+  Lanes lower_spin;
+  Lanes higher_spin;
   Lanes lower_sine;
   Lanes higher_sine;
   Lanes lower_versine;
   Lanes higher_versine;
 
-  RigidMotion(const PlainScene &scene, const Rows &a, const Rows &b) {
-    const BlockSystem &system = scene.system;
+  RigidMotion(const PlainScene &scene, const Rows &a, const Rows &b) : TranslatingMotion(scene, a, b) {
     const std::span<const TrialIncrement> increments = scene.increments;
-    lower_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[a[i]]; });
-    higher_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[b[i]]; });
-    lower_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[a[i]].u; });
-    higher_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[b[i]].u; });
-    lower_spin = Lanes::of([&](std::size_t i) { return system.velocity[a[i]].r; });
-    higher_spin = Lanes::of([&](std::size_t i) { return system.velocity[b[i]].r; });
-    lower_step = LaneVec::of([&](std::size_t i) { return &increments[a[i]].u; });
-    higher_step = LaneVec::of([&](std::size_t i) { return &increments[b[i]].u; });
+    lower_spin = Lanes::of([&](std::size_t i) { return scene.system.velocity[a[i]].r; });
+    higher_spin = Lanes::of([&](std::size_t i) { return scene.system.velocity[b[i]].r; });
     lower_sine = Lanes::of([&](std::size_t i) { return increments[a[i]].turn.yx; });
     higher_sine = Lanes::of([&](std::size_t i) { return increments[b[i]].turn.yx; });
     lower_versine = Lanes::of([&](std::size_t i) { return increments[a[i]].turn.xx; });
@@ -114,21 +121,14 @@ struct RigidMotion {
 };
 
 /// The same where one of two blocks deforms.
-struct DeformingMotion {
-  LaneVec lower_centroid;
-  LaneVec higher_centroid;
-  LaneVec lower_velocity;
-  LaneVec higher_velocity;
+struct DeformingMotion : TranslatingMotion {
   LaneMat lower_rate; ///< velocity gradients, 1/s
   LaneMat higher_rate;
-  LaneVec lower_step;
-  LaneVec higher_step;
   LaneMat lower_turn;
   LaneMat higher_turn;
 
-  DeformingMotion(const PlainScene &scene, const Rows &a, const Rows &b) {
+  DeformingMotion(const PlainScene &scene, const Rows &a, const Rows &b) : TranslatingMotion(scene, a, b) {
     const BlockSystem &system = scene.system;
-    const std::span<const TrialIncrement> increments = scene.increments;
     const auto rates_of = [&](const Rows &rows) {
       std::array<Mat2, num_lanes> rates;
       for (std::size_t i = 0; i < num_lanes; ++i) {
@@ -138,16 +138,10 @@ struct DeformingMotion {
       }
       return LaneMat::of([&](std::size_t i) { return &rates[i]; });
     };
-    lower_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[a[i]]; });
-    higher_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[b[i]]; });
-    lower_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[a[i]].u; });
-    higher_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[b[i]].u; });
     lower_rate = rates_of(a);
     higher_rate = rates_of(b);
-    lower_step = LaneVec::of([&](std::size_t i) { return &increments[a[i]].u; });
-    higher_step = LaneVec::of([&](std::size_t i) { return &increments[b[i]].u; });
-    lower_turn = LaneMat::of([&](std::size_t i) { return &increments[a[i]].turn; });
-    higher_turn = LaneMat::of([&](std::size_t i) { return &increments[b[i]].turn; });
+    lower_turn = LaneMat::of([&](std::size_t i) { return &scene.increments[a[i]].turn; });
+    higher_turn = LaneMat::of([&](std::size_t i) { return &scene.increments[b[i]].turn; });
   }
   [[nodiscard, gnu::always_inline]] LaneVec velocity_at(const LaneVec &x) const {
     return (lower_velocity + lower_rate(x - lower_centroid)) -

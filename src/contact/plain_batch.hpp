@@ -29,8 +29,11 @@ public:
   virtual ~PlainBatch() = default;
   /// Most pairs at a time.
   [[nodiscard]] virtual std::size_t width() const = 0;
-  /// Evaluate up to width() entries of Candidates::plain with like numbers of edges, all rigid or none.
-  virtual void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries) = 0;
+  static constexpr std::size_t most_lanes = 4;
+  /// Evaluate up to width() entries of Candidates::plain with like numbers of edges, all rigid or none, with
+  /// the constants that go with each.
+  virtual void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
+                        std::span<const CandidatePair *const> constants) = 0;
   [[nodiscard]] virtual bool touches(std::size_t lane) const = 0;
   /// Write the result of a lane that touches: all of the force but its pair and its birth, and what of the
   /// memory two convex blocks have.

@@ -64,8 +64,10 @@ inline LaneTraction integrate_without_tension(const Lanes &length, const Lanes &
 
 class LaneBatch final : public PlainBatch {
 public:
+  static_assert(num_lanes <= most_lanes);
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
-  void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries) override;
+  void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
+                std::span<const CandidatePair *const> constants) override;
   [[nodiscard]] bool touches(std::size_t lane) const override { return touches_[lane]; }
   void store(std::size_t lane, RegionForce &force, RegionMemory &memory) const override;
   [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const override;
@@ -311,7 +313,8 @@ void LaneBatch::add_friction_and_dashpots(const Constants &constants, const AnyM
   torque_[1] = -about_origin - cross(origin_ - motion.higher_centroid, force_);
 }
 
-inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries) {
+inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
+                                std::span<const CandidatePair *const> given) {
   const BlockSystem &system = scene.system;
   Rows a;
   Rows b;
@@ -322,8 +325,9 @@ inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::ui
   std::array<const RegionMemory *, num_lanes> memory;
   std::array<double, num_lanes> was_there;
   for (std::size_t i = 0; i < num_lanes; ++i) {
-    const PlainPair &plain = scene.candidates.plain[entries[std::min(i, entries.size() - 1)]];
-    candidate[i] = &scene.candidates.pairs[plain.pair];
+    const std::size_t entry = std::min(i, entries.size() - 1);
+    const PlainPair &plain = scene.candidates.plain[entries[entry]];
+    candidate[i] = given[entry];
     a[i] = plain.lower.value;
     b[i] = plain.higher.value;
     lower_chain[i] = scene.candidates.chain_vertices.data() + plain.chain;

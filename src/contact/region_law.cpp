@@ -33,20 +33,22 @@ std::int32_t law_of_edges(const BlockSystem &system, const JointLaws &joints, co
                          by_materials(system, joints, pair));
 }
 
-std::optional<std::int32_t> only_law(const BlockSystem &system, const JointLaws &joints,
-                                     const CandidatePair &pair) {
+PossibleLaws possible_laws(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair) {
   const std::int32_t otherwise = by_materials(system, joints, pair);
-  std::optional<std::int32_t> only;
-  for (const std::int32_t a : laws_on(system, pair.lower)) {
-    for (const std::int32_t b : laws_on(system, pair.higher)) {
+  const std::span<const std::int32_t> on_lower = laws_on(system, pair.lower);
+  const std::span<const std::int32_t> on_higher = laws_on(system, pair.higher);
+  const std::int32_t first = joints.of_edges(on_lower.front(), on_higher.front(), otherwise);
+  PossibleLaws laws{first, true};
+  for (const std::int32_t a : on_lower) {
+    for (const std::int32_t b : on_higher) {
       const std::int32_t law = joints.of_edges(a, b, otherwise);
-      if (only && *only != law) {
-        return std::nullopt;
+      laws.are_constant = laws.are_constant && joints.laws[static_cast<std::size_t>(law)].is_constant();
+      if (law != first) {
+        laws.only.reset();
       }
-      only = law;
     }
   }
-  return only;
+  return laws;
 }
 
 std::int32_t law_at_birth(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair,

@@ -11,7 +11,7 @@
 
 #include <random>
 
-namespace gcpdda {
+namespace gcpdda::balance_test {
 namespace {
 
 /// A grain heap of so many columns and rows on a floor: it flies apart, the farther from the middle the
@@ -142,4 +142,4 @@ TEST(Balance, StraysDoNotCoarsenTheGrid) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::balance_test

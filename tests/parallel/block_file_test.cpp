@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::block_file_test {
 namespace {
 
 using testing::BlockFileWriter;
@@ -356,4 +356,4 @@ TEST_F(BlockFiles, MustAgreeWithTheNamesOfTheScene) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::block_file_test

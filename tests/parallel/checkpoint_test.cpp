@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <csignal>
 
-namespace gcpdda {
+namespace gcpdda::checkpoint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -211,4 +211,4 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::checkpoint_test

@@ -10,7 +10,7 @@
 #include <array>
 #include <limits>
 
-namespace gcpdda {
+namespace gcpdda::communicator_test {
 namespace {
 
 std::byte letter(int from, int to, std::size_t position) {
@@ -284,4 +284,4 @@ TEST(PendingMax, IsTheLargestWhateverComesBetween) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::communicator_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-namespace gcpdda {
+namespace gcpdda::failure_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,4 +175,4 @@ TEST(Failure, BeforeTheFirstStep) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::failure_test

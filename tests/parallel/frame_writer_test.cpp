@@ -13,7 +13,7 @@
 #include <ostream>
 #include <random>
 
-namespace gcpdda {
+namespace gcpdda::frame_writer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -278,4 +278,4 @@ TEST(Slabs, CoverTheIdsAndAgreeWithTheirOwners) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::frame_writer_test

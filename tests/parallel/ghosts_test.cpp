@@ -12,7 +12,7 @@
 #include <set>
 #include <string>
 
-namespace gcpdda {
+namespace gcpdda::ghosts_test {
 namespace {
 
 using testing::bits_of_row;
@@ -293,4 +293,4 @@ TEST(Ghosts, AreOldUntilTheUpdateIsFinished) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::ghosts_test

@@ -15,7 +15,7 @@
 #include <random>
 #include <set>
 
-namespace gcpdda {
+namespace gcpdda::identity_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -308,4 +308,4 @@ TEST(Identity, IsNotAnsweredByEverything) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::identity_test

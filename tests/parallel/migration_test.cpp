@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <map>
 
-namespace gcpdda {
+namespace gcpdda::migration_test {
 namespace {
 
 using testing::bits_of_row;
@@ -266,4 +266,4 @@ TEST(Migration, ANewMapMovesEverything) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::migration_test

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace gcpdda {
+namespace gcpdda::region_test {
 namespace {
 
 using testing::jointed_slope;
@@ -127,4 +127,4 @@ TEST(Region, FaultsOfOneRankAreThoseOfAll) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::region_test

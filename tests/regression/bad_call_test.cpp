@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::bad_call_test {
 namespace {
 
 using testing::BlockFileWriter;
@@ -203,4 +203,4 @@ INSTANTIATE_TEST_SUITE_P(Table, BadInputOnRanks, ::testing::Values(1, 2, 4),
                          [](const auto &ranks) { return "ranks" + std::to_string(ranks.param); });
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::bad_call_test

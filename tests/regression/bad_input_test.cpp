@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::bad_input_test {
 namespace {
 
 using testing::scene_text;
@@ -337,4 +337,4 @@ TEST(BadInput, IsMadeFromAGoodScene) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::bad_input_test

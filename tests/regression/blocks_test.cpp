@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gcpdda {
+namespace gcpdda::blocks_test {
 namespace {
 
 using testing::count_of;
@@ -154,4 +154,4 @@ TEST_F(Blocks, InspectKnowsThem) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::blocks_test

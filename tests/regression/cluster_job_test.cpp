@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <thread>
 
-namespace gcpdda {
+namespace gcpdda::cluster_job_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -100,4 +100,4 @@ TEST_F(ClusterJob, DoesNotRepeatAFailure) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::cluster_job_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gcpdda {
+namespace gcpdda::command_line_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ TEST(SerialCopies, AreNotSeenInAnAllocation) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::command_line_test

@@ -13,7 +13,7 @@
 #include <numbers>
 #include <regex>
 
-namespace gcpdda {
+namespace gcpdda::inspect_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -340,4 +340,4 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::inspect_test

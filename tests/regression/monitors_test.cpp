@@ -16,7 +16,7 @@
 #include <memory>
 #include <sstream>
 
-namespace gcpdda {
+namespace gcpdda::monitors_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ TEST(ContactFrames, AreOrderedByPairAndPosition) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::monitors_test

@@ -22,7 +22,7 @@
 #include <random>
 #include <thread>
 
-namespace gcpdda {
+namespace gcpdda::restart_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -477,4 +477,4 @@ TEST_F(Restart, OverwriteRemovesCheckpoints) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::restart_test

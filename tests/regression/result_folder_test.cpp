@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <set>
 
-namespace gcpdda {
+namespace gcpdda::result_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ TEST(Identity, OfRunsStartedByMpirun) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::result_folder_test

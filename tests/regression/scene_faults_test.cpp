@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gcpdda {
+namespace gcpdda::scene_faults_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ TEST(Set, StandsInTheResolvedScene) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::scene_faults_test

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-namespace gcpdda {
+namespace gcpdda::stages_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,4 +120,4 @@ TEST(StagedRun, WithoutAVerdictEndsWithSeven) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::stages_test

@@ -52,6 +52,21 @@ inline JointLaws one_law(double normal_stiffness, double tan_friction = 0.0, dou
 /// Blocks may move anywhere.
 constexpr double infinite_skin = std::numeric_limits<double>::infinity();
 
+/// The same blocks with laws on their edges; none for a row without.
+inline BlockSystem with_edges(BlockSystem system, const std::vector<std::vector<std::int32_t>> &edge_joint) {
+  BlockSystem result;
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    append_row(result, system, row);
+    result.properties.back().has_edge_joints = !edge_joint[row].empty();
+    result.edge_joint.resize(result.reference_vertex.size() - edge_joint[row].size(), -1);
+    result.edge_joint.insert(result.edge_joint.end(), edge_joint[row].begin(), edge_joint[row].end());
+  }
+  result.num_owned = system.num_owned;
+  result.num_fixed = system.num_fixed;
+  pose(result, 0, result.num_rows());
+  return result;
+}
+
 /// All pairs of a small system and their forces, configuration by configuration.
 struct ContactBench {
   BlockSystem system;

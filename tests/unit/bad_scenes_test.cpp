@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::bad_scenes_test {
 namespace {
 
 const std::vector<std::string> good_lines{
@@ -487,4 +487,4 @@ TEST(BadScene, EndlessKeyAndEndlessArray) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::bad_scenes_test

@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace gcpdda {
+namespace gcpdda::block_matrix_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -169,4 +169,4 @@ TEST(BlockMatrix, IsForBlocksThatDeformOrAreHeld) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::block_matrix_test

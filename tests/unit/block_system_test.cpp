@@ -10,7 +10,7 @@
 #include <cstring>
 #include <limits>
 
-namespace gcpdda {
+namespace gcpdda::block_system_test {
 namespace {
 
 using namespace testing;
@@ -297,4 +297,4 @@ TEST(BlockSystem, PackedRowsKeepEveryBit) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::block_system_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <map>
 
-namespace gcpdda {
+namespace gcpdda::blockgen_test {
 namespace {
 
 using testing::all_blocks;
@@ -424,4 +424,4 @@ TEST(BlockQuality, KnowsWhatIsPoor) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::blockgen_test

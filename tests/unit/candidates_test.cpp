@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace gcpdda {
+namespace gcpdda::candidates_test {
 namespace {
 
 using namespace testing;
@@ -268,4 +268,4 @@ TEST(StiffnessBound, IsTheLargestOfAllPartners) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::candidates_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gcpdda {
+namespace gcpdda::contact_forces_test {
 namespace {
 
 using namespace testing;
@@ -391,4 +391,4 @@ TEST(Contact, MeanStressOfAPressedColumn) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::contact_forces_test

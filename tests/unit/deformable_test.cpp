@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-namespace gcpdda {
+namespace gcpdda::deformable_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -323,4 +323,4 @@ TEST(LocalDamping, TakesAShareOfEachComponent) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::deformable_test

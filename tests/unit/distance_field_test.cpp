@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::distance_field_test {
 namespace {
 
 using namespace testing;
@@ -261,4 +261,4 @@ TEST(DistanceField, OfAConvexBlockIsItsLowerEnvelope) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::distance_field_test

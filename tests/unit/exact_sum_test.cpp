@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::exact_sum_test {
 namespace {
 
 __extension__ using Integer = __int128;
@@ -151,4 +151,4 @@ TEST(ExactSum, HoldsABillionSummands) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::exact_sum_test

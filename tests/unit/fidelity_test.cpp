@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::fidelity_test {
 namespace {
 
 using testing::placed;
@@ -188,4 +188,4 @@ TEST(HoldsPoint, NoPolygonHoldsAPointThatIsNone) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::fidelity_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gcpdda {
+namespace gcpdda::frequency_bound_test {
 namespace {
 
 using namespace testing;
@@ -255,4 +255,4 @@ TEST(FrequencyBound, IsTheLimitOfTheStep) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::frequency_bound_test

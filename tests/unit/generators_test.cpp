@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::generators_test {
 namespace {
 
 using Kind = BrickGenerator::Kind;
@@ -185,4 +185,4 @@ TEST(Generators, AnyBrickIsMadeFromItsNumberAlone) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::generators_test

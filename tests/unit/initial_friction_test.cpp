@@ -13,7 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::initial_friction_test {
 namespace {
 
 using namespace testing;
@@ -241,4 +241,4 @@ TEST(InitialFriction, ZeroLeavesZero) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::initial_friction_test

@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace gcpdda {
+namespace gcpdda::integrate_test {
 namespace {
 
 SceneBlock block_of(Vec2 low, Vec2 high, std::array<double, 3> velocity = {}) {
@@ -158,4 +158,4 @@ TEST(MotionBound, HoldsForEveryVertex) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::integrate_test

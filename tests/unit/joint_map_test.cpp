@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gcpdda {
+namespace gcpdda::joint_map_test {
 namespace {
 
 std::vector<std::string> texts(const Diagnostics &diagnostics) {
@@ -67,4 +67,4 @@ TEST(JointMap, GeoJsonWithoutLinesIsAFault) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::joint_map_test

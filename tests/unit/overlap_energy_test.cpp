@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::overlap_energy_test {
 namespace {
 
 using namespace testing;
@@ -260,4 +260,4 @@ TEST(OverlapEnergy, CollinearVerticesChangeNothing) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::overlap_energy_test

@@ -12,7 +12,7 @@
 #include <limits>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::overlap_test {
 namespace {
 
 using namespace testing;
@@ -342,4 +342,4 @@ TEST(Locality, CuttingEnlargingAndRenumberingChangeNoBit) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::overlap_test

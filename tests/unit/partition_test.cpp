@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-namespace gcpdda {
+namespace gcpdda::partition_test {
 namespace {
 
 using Weights = std::vector<std::int64_t>;
@@ -289,4 +289,4 @@ TEST(BoxWithoutStrays, LeavesOutTheFarthest) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::partition_test

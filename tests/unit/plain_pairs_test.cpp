@@ -9,8 +9,9 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 
-namespace gcpdda {
+namespace gcpdda::plain_pairs_test {
 namespace {
 
 using namespace testing;
@@ -147,17 +148,39 @@ void move_all(std::mt19937 &engine, double size, ContactBench &first, ContactBen
   }
 }
 
-void expect_agreement(bool (*is_deformable)(std::size_t)) {
+/// Three laws, and edges in turn of the second, of the third and without.
+JointLaws laws_by_edge(const JointLaws &one, BlockSystem &system) {
+  JointLaws joints = one;
+  joints.laws.resize(3, one.laws.front());
+  joints.laws[1].normal_stiffness *= 0.5;
+  joints.laws[2].normal_stiffness *= 0.25;
+  joints.laws[2].tan_friction *= 2.0;
+  std::vector<std::vector<std::int32_t>> edge_joint(system.num_rows());
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    for (std::size_t k = 0; k < system.num_vertices(row); ++k) {
+      edge_joint[row].push_back(static_cast<std::int32_t>((row + k) % 3) - (k % 2 == 0 ? 1 : 0));
+    }
+  }
+  system = with_edges(system, edge_joint);
+  return joints;
+}
+
+void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = false) {
   std::mt19937 engine(91);
   constexpr int count = 300;
   const double stiffness = 1e6;
   BlockSystem system = couples(engine, count, most_plain_edges, is_deformable);
   deform(engine, system);
-  TwoWays ways(std::move(system), one_law(stiffness, 0.3, 10.0), 0.1);
+  JointLaws joints = one_law(stiffness, 0.3, 10.0);
+  if (with_families) {
+    joints = laws_by_edge(joints, system);
+  }
+  TwoWays ways(std::move(system), std::move(joints), 0.1);
   ASSERT_GE(ways.plain.candidates.plain.size(), static_cast<std::size_t>(count));
   int touching = 0;
   int sliding = 0;
   int deforming = 0;
+  std::set<std::int32_t> laws;
   for (int step = 0; step < 4; ++step) {
     move_all(engine, 3e-4, ways.plain, ways.general);
     ways.plain.evaluate();
@@ -183,6 +206,8 @@ void expect_agreement(bool (*is_deformable)(std::size_t)) {
         const RegionMemory &old = ways.plain.history.of_pair(k).front();
         const RegionMemory &expected = ways.general.history.of_pair(k).front();
         EXPECT_EQ(old.state, expected.state);
+        EXPECT_EQ(old.law, expected.law);
+        laws.insert(old.law);
         ++touching;
         sliding += old.state == ContactState::slip ? 1 : 0;
         if (::testing::Test::HasFailure()) {
@@ -194,6 +219,7 @@ void expect_agreement(bool (*is_deformable)(std::size_t)) {
   EXPECT_GT(touching, 4 * count / 3);
   EXPECT_GT(sliding, 20);
   EXPECT_EQ(deforming > 100, is_deformable(3));
+  EXPECT_EQ(laws.size() > 2, with_families);
 }
 
 TEST(PlainPairs, AgreeWithTheGeneralWay) {
@@ -202,6 +228,11 @@ TEST(PlainPairs, AgreeWithTheGeneralWay) {
 
 TEST(PlainPairs, AgreeWhereBlocksDeform) {
   expect_agreement(some_deform);
+}
+
+// Regions are born one by one, since they look at edges, and live in the lanes.
+TEST(PlainPairs, AgreeWhereEdgesHaveLawsOfTheirOwn) {
+  expect_agreement(some_deform, true);
 }
 
 /// Where a couple stands in the list of pairs; none for one that is left out.
@@ -290,4 +321,4 @@ TEST(PlainPairs, EdgesThatAreLeftOutChangeNoBit) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::plain_pairs_test

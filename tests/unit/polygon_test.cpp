@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::polygon_test {
 namespace {
 
 using Polygon = std::vector<Vec2>;
@@ -267,4 +267,4 @@ TEST(ReentrantVertices, AreTheRightTurns) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::polygon_test

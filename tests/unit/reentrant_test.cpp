@@ -12,7 +12,7 @@
 #include <numbers>
 #include <utility>
 
-namespace gcpdda {
+namespace gcpdda::reentrant_test {
 namespace {
 
 using namespace testing;
@@ -431,4 +431,4 @@ TEST(Reentrant, CuttingEnlargingAndRenumberingChangeNoBit) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::reentrant_test

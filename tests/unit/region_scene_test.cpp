@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::region_scene_test {
 namespace {
 
 using testing::good;
@@ -243,4 +243,4 @@ TEST(RegionScene, FaultsAreNamedWithTheirPlaces) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::region_scene_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::regions_test {
 namespace {
 
 using namespace testing;
@@ -152,4 +152,4 @@ TEST(Regions, OfRandomPairsAreSoundAndLoseNothing) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::regions_test

@@ -20,7 +20,7 @@
 #include <limits>
 #include <set>
 
-namespace gcpdda {
+namespace gcpdda::restart_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -274,4 +274,4 @@ TEST_F(CutResults, ALockIsHeldByOneAndGivenBack) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::restart_test

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace gcpdda {
+namespace gcpdda::result_files_test {
 namespace {
 
 const Monitor slider{"slider", 0, false, {}, {}};
@@ -281,4 +281,4 @@ TEST_F(Comparison, ReaderRefusesWhatIsNotAFrame) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::result_files_test

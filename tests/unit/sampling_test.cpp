@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace gcpdda::blockgen {
+namespace gcpdda::blockgen::sampling_test {
 namespace {
 
 constexpr int num_draws = 40000;
@@ -94,4 +94,4 @@ TEST(SampleAngle, HasTheMomentsAsked) {
 }
 
 } // namespace
-} // namespace gcpdda::blockgen
+} // namespace gcpdda::blockgen::sampling_test

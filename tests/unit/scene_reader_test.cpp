@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::scene_reader_test {
 namespace {
 
 using namespace gcpdda::testing;
@@ -381,4 +381,4 @@ fixed = true
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::scene_reader_test

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::scene_sets_test {
 namespace {
 
 using namespace gcpdda::testing;
@@ -114,4 +114,4 @@ TEST(EditDistance, CountsEditsAndSwaps) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::scene_sets_test

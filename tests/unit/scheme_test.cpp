@@ -14,7 +14,7 @@
 #include <limits>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::scheme_test {
 namespace {
 
 using namespace testing;
@@ -272,4 +272,4 @@ TEST(Schemes, MotionBoundBoundsTheNextTrialConfiguration) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::scheme_test

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::stages_test {
 namespace {
 
 /// All stages, as a run goes through them.
@@ -234,4 +234,4 @@ TEST(Stages, GoThroughNumbersUnchanged) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::stages_test

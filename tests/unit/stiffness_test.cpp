@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gcpdda {
+namespace gcpdda::stiffness_test {
 namespace {
 
 using testing::rectangle;
@@ -95,4 +95,4 @@ TEST(AllowedOverlap, MedianOfAnEvenCount) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::stiffness_test

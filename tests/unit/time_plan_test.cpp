@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gcpdda {
+namespace gcpdda::time_plan_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -145,4 +145,4 @@ TEST(TimePlan, IncommensurableTimesAreAnError) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::time_plan_test

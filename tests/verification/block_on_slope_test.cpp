@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::block_on_slope_test {
 namespace {
 
 /// A block 1 m high and tan(slenderness) m wide.
@@ -204,4 +204,4 @@ TEST(BlockOnSlope, SafetyAgainstSlidingByStrengthReduction) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::block_on_slope_test

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::block_systems_test {
 namespace {
 
 double max_speed(const Simulation &simulation) {
@@ -85,4 +85,4 @@ TEST(BlockSystems, WedgeOnASlopeSlidesWhenFrictionIsTooLow) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::block_systems_test

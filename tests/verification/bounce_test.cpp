@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::bounce_test {
 namespace {
 
 constexpr double stiffness = 1e9;
@@ -157,4 +157,4 @@ TEST(Bounce, ObliqueImpactOfOffsetSquares) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::bounce_test

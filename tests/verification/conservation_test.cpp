@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::conservation_test {
 namespace {
 
 // Round-off. The angle is a sum of 1e5 equal terms, whose half ulps of up to 5e-13 rad may all fall on one
@@ -107,4 +107,4 @@ TEST(Conservation, FrictionalCollisionOfManyBlocks) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::conservation_test

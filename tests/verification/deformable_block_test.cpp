@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace gcpdda {
+namespace gcpdda::deformable_block_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -438,4 +438,4 @@ TEST(Anchors, TwoHoldABlockUnderGravity) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::deformable_block_test

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::incline_test {
 namespace {
 
 constexpr double duration = 2.0;
@@ -115,4 +115,4 @@ TEST(Incline, FarPartOfThePlaneDoesNotMatter) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::incline_test

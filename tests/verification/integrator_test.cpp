@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::integrator_test {
 namespace {
 
 // A unit square flush on a wide plane is an oscillator: force k_n d (1 - d/2) at depth d, so about the depth
@@ -262,4 +262,4 @@ TEST(Order, ConstantAccelerationIsExact) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::integrator_test

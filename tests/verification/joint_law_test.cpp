@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::joint_law_test {
 namespace {
 
 constexpr double stiffness = 1e9; ///< Pa/m
@@ -251,4 +251,4 @@ TEST(Bond, IsLeftAloneByACommonMotion) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::joint_law_test

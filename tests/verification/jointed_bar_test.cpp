@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::jointed_bar_test {
 namespace {
 
 constexpr int num_blocks = 16;
@@ -138,4 +138,4 @@ TEST(JointedBar, CarriesWavesAtTheSpeedOfTheEffectiveModulus) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::jointed_bar_test

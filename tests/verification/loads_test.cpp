@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::loads_test {
 namespace {
 
 constexpr double modulus = 1e9; ///< E, Pa
@@ -430,4 +430,4 @@ TEST(EnergyLedger, ClosesForADeformableBlockOnTheFloor) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::loads_test

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::pyramid_test {
 namespace {
 
 constexpr double watch = 5.0; ///< s
@@ -87,4 +87,4 @@ TEST(Pyramid, StandsAndStays) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::pyramid_test

@@ -12,7 +12,7 @@
 #include <array>
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::reentrant_block_test {
 namespace {
 
 /// An L of 3 m2 that stands on its long leg, and a table of 3 m2 on two legs of 0.5 m.
@@ -263,4 +263,4 @@ TEST(Collision, OfBlocksOfAllKindsKeepsMomentum) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::reentrant_block_test

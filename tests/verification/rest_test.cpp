@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::rest_test {
 namespace {
 
 constexpr double weight = rock_density * earth_gravity; ///< of a unit square, N/m
@@ -158,4 +158,4 @@ TEST(Rest, ShorteningOfADeformableColumn) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::rest_test

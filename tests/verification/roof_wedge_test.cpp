@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::roof_wedge_test {
 namespace {
 
 constexpr double apical = 20.0 * degree;   ///< al, half the angle at the apex
@@ -89,4 +89,4 @@ TEST(RoofWedge, PullOutLoad) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::roof_wedge_test

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::shaken_base_test {
 namespace {
 
 constexpr double friction = 0.2;
@@ -81,4 +81,4 @@ TEST(ShakenBase, SlipsAndSlipsBack) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::shaken_base_test

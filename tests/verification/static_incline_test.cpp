@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::static_incline_test {
 namespace {
 
 constexpr double settling = 60.0; ///< s
@@ -70,4 +70,4 @@ TEST(StaticIncline, AnotherBlockFarAwayChangesNoBit) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::static_incline_test

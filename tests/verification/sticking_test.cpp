@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::sticking_test {
 namespace {
 
 // No damping, no slip: swaying couples with rocking and bouncing, nothing is lost. The first tenth of the run
@@ -54,4 +54,4 @@ TEST(Sticking, EnergyOfATangentialOscillationIsBounded) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::sticking_test

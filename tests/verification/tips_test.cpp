@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::tips_test {
 namespace {
 
 /// A needle of unit length with a tip of `angle` degrees at the origin, pointing to -x.
@@ -167,4 +167,4 @@ TEST(Tips, EdgesInOneLine) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::tips_test

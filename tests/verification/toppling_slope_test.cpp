@@ -11,7 +11,7 @@
 #include <fstream>
 #include <map>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::toppling_slope_test {
 namespace {
 
 constexpr int num_columns = 16;
@@ -231,4 +231,4 @@ TEST(TopplingSlope, LimitingFrictionAngle) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::toppling_slope_test

@@ -183,8 +183,10 @@ private:
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
   /// Entries [first, last) of Candidates::plain.
-  void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
-                            const ContactHistory &history, std::size_t first, std::size_t last);
+  void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
+                            std::size_t first, std::size_t last);
+  void evaluate_alike(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
+                      std::span<const std::uint32_t> entries);
   void recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
               std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const;
   /// Normal force for k_n/2 = 1, direction and size of a region; false if it carries nothing.
@@ -212,6 +214,7 @@ private:
   Overlap overlap_;
   std::unique_ptr<PlainBatch> batch_;
   std::vector<std::uint32_t> meeting_; ///< entries of Candidates::plain whose boxes meet
+  std::vector<std::uint32_t> births_;  ///< plain pairs whose new regions must choose among laws
   std::vector<RegionForce> forces_;
   std::vector<RegionRange> ranges_; ///< of forces_, one a pair
   ForceReport report_;              ///< of what has been evaluated so far

@@ -17,8 +17,9 @@
 // stiffness of another would be none of those in the scene. A block that leaves its joint, if only for a
 // step, meets the next one under that one's law.
 //
-// A pair whose edges all lead to the same law is as one without families: its law stands in CandidatePair,
-// its regions remember none, and it may be plain (candidates.hpp).
+// A pair whose edges all lead to the same law is as one without families: its law stands in CandidatePair and
+// its regions remember none. Of a mixed pair that is plain (candidates.hpp) the lanes take the constants of
+// the law that its region remembers; a birth, which looks at the edges, is left to the general way.
 
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/overlap.hpp"
@@ -33,9 +34,12 @@ namespace gcpdda {
 std::int32_t law_of_edges(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair,
                           std::int32_t lower_edge, std::int32_t higher_edge);
 
-/// The law of any contact of two blocks if their edges allow only one.
-std::optional<std::int32_t> only_law(const BlockSystem &system, const JointLaws &joints,
-                                     const CandidatePair &pair);
+/// The laws that the edges of two blocks allow.
+struct PossibleLaws {
+  std::optional<std::int32_t> only; ///< if it is one
+  bool are_constant = true;         ///< JointLaw::is_constant of all
+};
+PossibleLaws possible_laws(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair);
 
 /// The law a region of a mixed pair is born with, from its pieces: [begin, middle) on the lower block's
 /// edges, [middle, end) on the higher one's.
