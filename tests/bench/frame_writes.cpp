@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <iostream>
 #include <unistd.h>
+#include <utility>
 
 namespace gcpdda {
 namespace {
@@ -100,7 +101,8 @@ int compare(const Communicator &world, const std::filesystem::path &folder, std:
   std::vector<double> frames;
   std::vector<double> plain;
   for (int k = 1; k <= repeats; ++k) {
-    frames.push_back(seconds_of(world, [&] { writer.write(k, k, data); }));
+    FrameData given = data; // a run hands its rows over, too
+    frames.push_back(seconds_of(world, [&] { writer.write(k, k, std::move(given)); }));
     plain.push_back(
         seconds_of(world, [&] { write_plain(world, folder / fmt::format("plain_{}.h5", k), mine); }));
   }
