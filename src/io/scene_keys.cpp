@@ -187,6 +187,13 @@ constexpr Key all_keys[] = {
   {"bricks[].bond", Kind::number, optional, from_below(0, 1), "", "<0.5>", "0.5", "Shift of every second row, in brick widths."},
   {"bricks[].joint", Kind::name, optional, any, "", "<by the materials>", "\"mortar\"", "Contact law, one of [joint.NAME]."},
 
+  {"water", Kind::named_tables, optional, any, "", "", "[water.winter]", "Water in joints and around blocks: below its phreatic line it presses on every edge that it wets, so that the contacts carry the effective forces."},
+  {"water.*", Kind::table, optional, any, "", "", "[water.winter]", "One water table."},
+  {"water.*.phreatic", Kind::points, required, from_to(-1e9, 1e9), "", "", "[[0, 0], [40, 12]]", "[m] Phreatic line, its points from left to right; level to the left and to the right of it. The pressure is density times gravity times the depth below it."},
+  {"water.*.joints", Kind::names, optional, any, "", "<all edges>", "[\"bedding\"]", "Laws of the edges that it wets; other edges stay dry. Edges that have no law of their own have no name: leave this out to wet them too."},
+  {"water.*.density", Kind::number, optional, above_to(0, 1e12), "", "1000.0", "1000.0", "[kg/m3] Density."},
+  {"water.*.active", Kind::boolean, optional, any, "", "true", "false", "Whether it is there; a stage may set this, as all of [water.NAME]."},
+
   {"output", Kind::table, optional, any, "", "", "[output]", "What is written and when."},
   {"output.interval", Kind::number, optional, above_to(0, 1e12), "", "<duration/100>", "0.02", "[s] Time between frames."},
   {"output.history_interval", Kind::number, optional, above_to(0, 1e12), "", "<interval>", "0.02", "[s] Time between rows of the histories; divides interval or is a multiple of it."},
@@ -207,7 +214,7 @@ constexpr Key all_keys[] = {
   {"stage[].region", Kind::polygon, optional, from_to(-1e9, 1e9), "", "<none>", "[[0, 0], [4, 0], [4, 3], [0, 3]]", "[m] Polygon; blocks whose centroid lies in it when the stage begins are excavated, fixed ones too."},
   {"stage[].openings", Kind::names, optional, any, "", "<none>", "[\"tunnel\"]", "Names of [[opening]] tables whose blocks to excavate."},
   {"stage[].relax", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.5", "[s] Time over which the forces of excavated blocks on those that stay fall linearly to zero; 0: at once."},
-  {"stage[].set", Kind::assignments, optional, any, "", "<none>", "{ \"joint.default.friction_angle_deg\" = 25.0 }", "Values of the scene that change when the stage begins, by path as with --set: keys of [run] that can change (gravity, time_step, safety, contact_damping, local_damping, elasticity, potential), any value of a [joint.NAME] or [material.NAME], block.NAME.fixed and block.NAME.load."},
+  {"stage[].set", Kind::assignments, optional, any, "", "<none>", "{ \"joint.default.friction_angle_deg\" = 25.0 }", "Values of the scene that change when the stage begins, by path as with --set: keys of [run] that can change (gravity, time_step, safety, contact_damping, local_damping, elasticity, potential), any value of a [joint.NAME], [material.NAME] or [water.NAME], block.NAME.fixed and block.NAME.load."},
 
   {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks and points whose history is written to history/<name>.csv: either block, or name and point."},
   {"monitor[].block", Kind::name, optional, any, "", "<exactly one of this and point>", "\"slider\"", "Name of the block, also of a generated one or one of the block file."},

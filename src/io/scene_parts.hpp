@@ -70,6 +70,9 @@ RunSettings read_run(const SceneSource &source);
 OutputSettings read_output(const SceneSource &source, double duration);
 JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materials);
 
+/// The water of [water.NAME]; the faulty ones lack their faulty parts.
+std::vector<Water> read_water(const SceneSource &source, const JointLaws &joints);
+
 /// One SceneBlock per [[block]]; the faulty ones lack their faulty parts.
 std::vector<SceneBlock> read_blocks(const SceneSource &source, Materials &materials, Names &names,
                                     Fidelity of_run, const JointLaws &joints);

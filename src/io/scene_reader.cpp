@@ -35,6 +35,7 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   Names names(source.faults);
   scene.materials = materials.all();
   scene.joints = read_joint_laws(source, materials.index());
+  scene.water = read_water(source, scene.joints);
   expect_blocks(source);
   scene.blocks = read_blocks(source, materials, names, fidelity, scene.joints);
   scene.generators = read_generators(source, materials, names, fidelity, scene.blocks);

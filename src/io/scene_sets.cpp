@@ -200,8 +200,10 @@ bool can_change(const Path &path) {
     return path.size() == 3 && !is_one_of({"materials", "allowed_overlap"}) &&
            find_key("joint.*", last) != nullptr;
   }
-  if (path.front() == "material") {
-    return path.size() == 3 && find_key("material.*", last) != nullptr;
+  for (const char *whole : {"material", "water"}) {
+    if (path.front() == whole) {
+      return path.size() == 3 && find_key(std::string(whole) + ".*", last) != nullptr;
+    }
   }
   return path.front() == "block" && path.size() > 2 && is_one_of({"fixed", "load"});
 }
@@ -256,7 +258,7 @@ void apply_change(toml::table &root, const toml::key &dotted, toml::node &value,
   const auto path = split(trimmed(dotted.str()));
   if (!path || !can_change(*path)) {
     faults.add(dotted.source(), fmt::format("a stage cannot set '{}'", shown(dotted.str())),
-               "it sets values of joints and materials, block.NAME.fixed, block.NAME.load and some of [run]",
+               "it sets values of joints, materials and water, block.NAME.fixed, block.NAME.load and some of [run]",
                "for example set = { \"joint.default.friction_angle_deg\" = 25.0 }");
     return;
   }

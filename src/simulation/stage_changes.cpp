@@ -175,6 +175,7 @@ void Simulation::adopt(const Scene &after) {
   }
   scene_.run = after.run;
   contacts_ = ContactForces({scene_.joints, scene_.run.contact_damping, scene_.run.potential});
+  scene_.water = after.water;
   adopt_materials(std::exchange(scene_.materials, after.materials));
   for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
     const auto id = static_cast<std::int64_t>(i);

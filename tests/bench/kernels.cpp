@@ -8,39 +8,16 @@
 #include "gcpdda/simulation/simulation.hpp"
 
 #include <benchmark/benchmark.h>
-#include <fmt/format.h>
 
 namespace gcpdda::testing {
 namespace {
-
-std::string pyramid_toml(std::int64_t rows, const std::string &fidelity) {
-  return fmt::format(R"([run]
-duration = 1.0
-fidelity = "{}"
-local_damping = 0.8
-[material.rock]
-density = 2600.0
-youngs_modulus = 40e9
-poissons_ratio = 0.25
-[joint.default]
-allowed_overlap = 1e-3
-friction_angle_deg = 31.0
-[[pyramid]]
-material = "rock"
-origin = [0.0, 0.0]
-rows = {}
-block_size = [1.0, 1.0]
-)",
-                     fidelity, rows) +
-         block_toml("floor", rectangle({-2.0, -2.0}, {static_cast<double>(rows) + 2.0, 0.0}), "fixed = true");
-}
 
 /// A pyramid whose joints have closed.
 class Pile {
 public:
   explicit Pile(std::int64_t rows, const std::string &fidelity = "rigid")
-      : simulation(Communicator::self(), scene_of(pyramid_toml(rows, fidelity))), blocks(simulation.blocks()),
-        history(simulation.history()) {
+      : simulation(Communicator::self(), scene_of(settling_pyramid_toml(rows, 1.0, fidelity))),
+        blocks(simulation.blocks()), history(simulation.history()) {
     for (int k = 0; k < 200; ++k) {
       simulation.step();
     }

@@ -152,4 +152,26 @@ std::string mixed_wall_toml(int rows, int columns, double duration) {
   return toml;
 }
 
+std::string settling_pyramid_toml(std::int64_t rows, double duration, const std::string &fidelity) {
+  return fmt::format(R"([run]
+duration = {}
+fidelity = "{}"
+local_damping = 0.8
+[material.rock]
+density = 2600.0
+youngs_modulus = 40e9
+poissons_ratio = 0.25
+[joint.default]
+allowed_overlap = 1e-3
+friction_angle_deg = {:.17g}
+[[pyramid]]
+material = "rock"
+origin = [0.0, 0.0]
+rows = {}
+block_size = [1.0, 1.0]
+)",
+                     duration, fidelity, std::atan(0.6) * 180.0 / std::numbers::pi, rows) +
+         block_toml("floor", rectangle({-2.0, -2.0}, {static_cast<double>(rows) + 2.0, 0.0}), "fixed = true");
+}
+
 } // namespace gcpdda::testing

@@ -2,6 +2,7 @@
 
 #include "gcpdda/model/scene.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,5 +38,9 @@ std::string falling_pile_toml(int num_blocks, double duration);
 /// A wall of cells of an L and a brick in its notch, each rigid or deformable by turns, on a floor that
 /// shakes it; two outputs, a monitored block and point.
 std::string mixed_wall_toml(int rows, int columns, double duration);
+
+/// Unit squares on a fixed floor, friction 0.6. Gravity acts at once; joints hardly damp the slow modes of a
+/// pile, so local damping settles it, and stays on.
+std::string settling_pyramid_toml(std::int64_t rows, double duration, const std::string &fidelity = "rigid");
 
 } // namespace gcpdda::testing

@@ -78,4 +78,23 @@ double log_slope(const std::vector<double> &x, const std::vector<double> &y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
+void run_stages(Simulation &simulation) {
+  while (true) {
+    simulation.end_stage();
+    if (simulation.finished()) {
+      return;
+    }
+    if (simulation.stage_is_over()) {
+      simulation.begin_next_stage();
+    } else {
+      simulation.step();
+    }
+  }
+}
+
+std::string without_duration(std::string toml) {
+  const std::size_t begin = toml.find("duration = ");
+  return toml.erase(begin, toml.find('\n', begin) - begin);
+}
+
 } // namespace gcpdda::testing

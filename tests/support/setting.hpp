@@ -40,6 +40,11 @@ const RigidDof &velocity_of(const Simulation &simulation, int block);
 /// Step to a time that is a whole number of steps, or to the next step after it; stops at a fault.
 void advance(Simulation &simulation, double time);
 
+/// All stages, as a run goes through them.
+void run_stages(Simulation &simulation);
+/// A scene whose stages say how long they last.
+std::string without_duration(std::string toml);
+
 /// Slope of the least-squares line through (log x, log y).
 double log_slope(const std::vector<double> &x, const std::vector<double> &y);
 

@@ -13,26 +13,6 @@
 namespace gcpdda::testing::stages_test {
 namespace {
 
-/// All stages, as a run goes through them.
-void run_stages(Simulation &simulation) {
-  while (true) {
-    simulation.end_stage();
-    if (simulation.finished()) {
-      return;
-    }
-    if (simulation.stage_is_over()) {
-      simulation.begin_next_stage();
-    } else {
-      simulation.step();
-    }
-  }
-}
-
-std::string without_duration(std::string toml) {
-  const std::size_t begin = toml.find("duration = ");
-  return toml.erase(begin, toml.find('\n', begin) - begin);
-}
-
 const std::string settle = "[[stage]]\nkind = \"settle\"\nlimit = 40.0\n";
 const std::string wait_undamped = "[[stage]]\nkind = \"run\"\nlimit = 20.0\n";
 

@@ -13,28 +13,6 @@ namespace {
 
 constexpr double watch = 5.0; ///< s
 
-/// Gravity acts at once; joints hardly damp the slow modes of a pile, so local damping settles it, and stays
-/// on.
-std::string pyramid_toml(int rows, double duration) {
-  return fmt::format(R"([run]
-duration = {}
-fidelity = "rigid"
-local_damping = 0.8
-[material.rock]
-density = 2600.0
-[joint.default]
-allowed_overlap = 1e-3
-friction_angle_deg = {:.17g}
-[[pyramid]]
-material = "rock"
-origin = [0.0, 0.0]
-rows = {}
-block_size = [1.0, 1.0]
-)",
-                     duration, std::atan(0.6) / degree, rows) +
-         block_toml("floor", rectangle({-2.0, -2.0}, {rows + 2.0, 0.0}), "fixed = true");
-}
-
 /// Mean overlaps N/(k_n l) of the joints from the top block down to the floor, summed along the column of
 /// half joints on the left or right of the axis.
 double joint_overlaps(const Simulation &simulation, int rows, bool right) {
@@ -62,7 +40,7 @@ double joint_overlaps(const Simulation &simulation, int rows, bool right) {
 TEST(Pyramid, StandsAndStays) {
   const int rows = full_size() ? 100 : 20;
   const double settling = 0.3 * std::sqrt(rows);
-  Simulation simulation(Communicator::self(), scene_of(pyramid_toml(rows, settling + watch)));
+  Simulation simulation(Communicator::self(), scene_of(settling_pyramid_toml(rows, settling + watch)));
   const BlockSystem &blocks = simulation.blocks();
   const std::string problem = fmt::format("C6 pyramid of {} squares, local damping 0.8: ", blocks.num_owned);
   run_until(simulation, settling);

@@ -5,6 +5,7 @@
 #include "gcpdda/model/joint_law.hpp"
 #include "gcpdda/model/rock_region.hpp"
 #include "gcpdda/model/stage.hpp"
+#include "gcpdda/model/water.hpp"
 
 #include <array>
 #include <cstdint>
@@ -135,6 +136,7 @@ struct Scene {
   RunSettings run;
   std::vector<Material> materials; ///< in file order
   JointLaws joints;
+  std::vector<Water> water; ///< in file order
   std::vector<SceneBlock> blocks;                   ///< of the scene file, the first BlockIds
   std::vector<BrickGenerator> generators;           ///< the next ones
   BlockFile block_file;                             ///< after them

@@ -216,7 +216,7 @@ private:
   void take(const ForceReport &report);
   void gather_forces();
   void gather_block(std::size_t row, Vec2 gravity_now);
-  void gather_gradient(std::size_t row);
+  void gather_gradient(std::size_t row, Vec2 gravity_now);
   void add_half_works(std::size_t row);
   void report();
   [[nodiscard]] double own_status();

@@ -1,0 +1,84 @@
+#include "gcpdda/dynamics/water_pressure.hpp"
+
+#include <algorithm>
+
+namespace gcpdda {
+
+namespace {
+
+/// int p ds and int p s ds along an edge.
+struct PressureIntegral {
+  double total = 0.0;
+  double along = 0.0;
+
+  /// Of max(0, p), p linear from p0 at s0 to p1 at s1.
+  void add(double s0, double p0, double s1, double p1) {
+    if (p0 < 0.0 && p1 < 0.0) {
+      return;
+    }
+    const double root = s0 + (s1 - s0) * (p0 / (p0 - p1));
+    if (p0 < 0.0) {
+      s0 = root;
+      p0 = 0.0;
+    } else if (p1 < 0.0) {
+      s1 = root;
+      p1 = 0.0;
+    }
+    const double length = s1 - s0;
+    const double part = 0.5 * length * (p0 + p1);
+    total += part;
+    along += s0 * part + length * length * (p0 + 2.0 * p1) / 6.0;
+  }
+};
+
+/// An edge from `begin` along `tangent`.
+PressureIntegral pressure_on_edge(const Water &water, Vec2 begin, Vec2 tangent, double length,
+                                  double unit_weight) {
+  PressureIntegral sum;
+  const auto pressure = [&](double s) {
+    const Vec2 x = begin + s * tangent;
+    return unit_weight * (water.head(x.x) - x.y);
+  };
+  double s = 0.0;
+  double here = pressure(0.0);
+  const std::size_t count = water.phreatic.size();
+  for (std::size_t k = 0; k < count && tangent.x != 0.0; ++k) {
+    const Vec2 corner = water.phreatic[tangent.x > 0.0 ? k : count - 1 - k];
+    const double at_corner = (corner.x - begin.x) / tangent.x;
+    if (at_corner > s && at_corner < length) {
+      const double there = unit_weight * (corner.y - (begin.y + at_corner * tangent.y));
+      sum.add(s, here, at_corner, there);
+      s = at_corner;
+      here = there;
+    }
+  }
+  sum.add(s, here, length, pressure(length));
+  return sum;
+}
+
+} // namespace
+
+WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const Water> water,
+                     double gravity) {
+  WaterLoad load;
+  const std::span<const Vec2> vertex = system.of_row(system.vertex, row);
+  const std::span<const Vec2> normal = system.of_row(system.normal, row);
+  const std::span<const double> length = system.of_row(system.edge_length, row);
+  const std::span<const std::int32_t> joints = system.edge_joints(row);
+  for (const Water &of : water) {
+    for (std::size_t k = 0; k < vertex.size() && of.active; ++k) {
+      const std::int32_t joint = joints.empty() ? -1 : joints[k];
+      if (!of.joints.empty() && !std::binary_search(of.joints.begin(), of.joints.end(), joint)) {
+        continue;
+      }
+      const Vec2 tangent = perp(normal[k]);
+      const PressureIntegral p = pressure_on_edge(of, vertex[k], tangent, length[k], of.density * gravity);
+      const Vec2 moment = p.total * (vertex[k] - system.trial_centroid[row]) + p.along * tangent;
+      load.force += -p.total * normal[k];
+      load.dyad += outer(-1.0 * normal[k], moment);
+    }
+  }
+  return load;
+}
+
+} // namespace gcpdda
