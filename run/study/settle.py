@@ -1,12 +1,13 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What a settle stage saves: a wall of bricks under its own weight, brought to rest by slow dynamics and by settle.
 
     run/study/settle.py GCPDDA OUT_DIR [--quick]
 
 The wall has 50 rows of 100 bricks; --quick takes 12 rows of 20. Slow dynamics is what one does without settle: gravity
 rises slowly, joints are damped as usual, and nothing else takes energy. The slower it rises, the less the wall sways
-afterwards: the time of the rise is doubled until the wall is within 1e-3 of its greatest settlement of where a settle
-stage of a hundred times smaller tolerance leaves it. Prints steps and contact evaluations of both.
+afterwards: the time of the rise is doubled until the wall stays within 1e-3 of its greatest settlement of where a settle
+stage of a hundred times smaller tolerance leaves it, all through the quarter of that time that follows the rise: a wall
+that sways passes through its place of rest, too. Prints steps and contact evaluations of both.
 """
 
 import json
@@ -42,7 +43,8 @@ block_size = [1.0, 0.5]
 {stages}"""
 
 
-def run(gcpdda, out, name, rows, columns, keys, interval, stages):
+def run(gcpdda, out, name, rows, columns, keys, interval, stages, counted=1):
+    """Summary, and displacements in the last frames that count."""
     text = SCENE.format(run=keys, interval=interval, right=columns + 1, rows=rows, columns=columns, stages=stages)
     scene = os.path.join(out, name + ".toml")
     with open(scene, "w") as file:
@@ -52,9 +54,11 @@ def run(gcpdda, out, name, rows, columns, keys, interval, stages):
     with open(os.path.join(folder, "summary.json")) as file:
         summary = json.load(file)
     frames = sorted(f for f in os.listdir(os.path.join(folder, "frames")) if f.startswith("frame_"))
-    with h5py.File(os.path.join(folder, "frames", frames[-1])) as file:
-        displacement = numpy.array(file["VTKHDF/CellData/displacement"])[:, :2]
-    return summary, displacement
+    displacements = []
+    for frame in frames[-counted:]:
+        with h5py.File(os.path.join(folder, "frames", frame)) as file:
+            displacements.append(numpy.array(file["VTKHDF/CellData/displacement"])[:, :2])
+    return summary, displacements
 
 
 def settle(tolerance, more=""):
@@ -66,11 +70,11 @@ def main():
     rows, columns = (12, 20) if "--quick" in sys.argv else (50, 100)
     os.makedirs(out, exist_ok=True)
     _, rest = run(gcpdda, out, "reference", rows, columns, "", 20.0, settle(1e-7))
-    largest = numpy.abs(rest).max()
+    largest = numpy.abs(rest[0]).max()
     rows_of_table = []
 
-    def tell(name, summary, displacement):
-        error = numpy.abs(displacement - rest).max() / largest
+    def tell(name, summary, displacements):
+        error = max(numpy.abs(displacement - rest[0]).max() for displacement in displacements) / largest
         rows_of_table.append((name, summary["steps"], sum(summary["evaluations_per_rank"]), error))
         print(f"{name:32} {summary['steps']:8} steps {sum(summary['evaluations_per_rank']):12} contact evaluations, "
               f"{error:.1e} of the settlement off", flush=True)
@@ -84,7 +88,7 @@ def main():
         rise *= 2.0
         keys = f"duration = {1.25 * rise}\ngravity_ramp = {rise}\n"
         if tell(f"slow dynamics, gravity in {rise:g} s",
-                *run(gcpdda, out, "slow", rows, columns, keys, 1.25 * rise, "")) <= 1e-3 or rise > 100.0:
+                *run(gcpdda, out, "slow", rows, columns, keys, rise / 64, "", counted=17)) <= 1e-3 or rise > 100.0:
             break
     _, steps, evaluations, _ = rows_of_table[1]
     print(f"kinetic damping takes 1/{rows_of_table[-1][1] / steps:.1f} of the steps and 1/{rows_of_table[-1][2] / evaluations:.1f} "

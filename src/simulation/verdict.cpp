@@ -23,9 +23,10 @@ Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory) {
   return look.moved >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
 }
 
-// Long enough to see a pile sway: its slowest period grows with its height in blocks.
+// Long enough to see a pile sway, whose slowest period of about 12 steps for each block of its height grows
+// with the root of their number: between two looks it goes on by a tenth of a period or more.
 std::int64_t steps_between_looks(std::int64_t num_blocks) {
-  return 50 + static_cast<std::int64_t>(4.0 * std::sqrt(static_cast<double>(num_blocks)));
+  return 50 + static_cast<std::int64_t>(std::sqrt(static_cast<double>(num_blocks)));
 }
 
 namespace {

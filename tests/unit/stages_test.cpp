@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace gcpdda::testing::stages_test {
 namespace {
@@ -109,6 +110,50 @@ TEST(Stages, AWallSettlesWhereSlowDynamicsLeavesIt) {
   }
   EXPECT_LE(apart, 1e-3 * largest);
   EXPECT_LE(2 * settled.step_count(), slow.step_count()); // it pays more the higher the wall
+}
+
+const std::string settle_kinetically = settle + "kinetic_damping = true\n";
+
+// Sudden gravity on a touching block: half a swing about the overlap that bears it, fastest in its middle.
+TEST(Stages, KineticDampingStopsABlockWhereItIsFastest) {
+  const std::string toml = stack_head +
+                           block_toml("floor", rectangle({-2.0, -1.0}, {3.0, 0.0}), "fixed = true") +
+                           block_toml("stone", rectangle({0.0, 0.0}, {1.0, 1.0})) + settle_kinetically;
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  do {
+    simulation.step();
+  } while (velocity_of(simulation, 1) != RigidDof{} && simulation.step_count() < 100);
+  const double omega = std::sqrt(1e9 / rock_density);
+  const double weight = rock_density * earth_gravity / 1e9;
+  const double dt = simulation.plan().time_step;
+  // The peak is known when it has passed: at most one step and a half later.
+  EXPECT_NEAR(simulation.time(), 0.5 * std::numbers::pi / omega + dt, dt);
+  EXPECT_NEAR(-displacement_of(simulation, 1).u.y, weight, 1.5 * omega * dt * weight);
+  run_stages(simulation);
+  EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled);
+  EXPECT_NEAR(-displacement_of(simulation, 1).u.y, weight * (1.0 + 0.5 * weight), 1e-5 * weight);
+}
+
+// The same place, since no joint slips, at less than half of the cost.
+TEST(Stages, KineticDampingLeavesAWallWhereLocalDampingDoes) {
+  const std::string wall =
+      stack_head + block_toml("floor", rectangle({-1.0, -1.0}, {9.0, 0.0}), "fixed = true") +
+      "[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 16\ncolumns = 8\n"
+      "block_size = [1.0, 0.5]\n";
+  Simulation local(Communicator::self(), scene_of(wall + settle));
+  Simulation kinetic(Communicator::self(), scene_of(wall + settle_kinetically));
+  double largest = 0.0;
+  double apart = 0.0;
+  run_stages(local);
+  run_stages(kinetic);
+  EXPECT_EQ(kinetic.stage_results().back().verdict, Verdict::settled);
+  for (std::size_t row = 0; row < local.blocks().num_owned; ++row) {
+    const Vec2 moved = local.blocks().displacement[row].u;
+    largest = std::max(largest, norm(moved));
+    apart = std::max(apart, norm(moved - kinetic.blocks().displacement[row].u));
+  }
+  EXPECT_LE(apart, 1e-3 * largest);
+  EXPECT_LE(2 * kinetic.step_count(), local.step_count());
 }
 
 TEST(Stages, AFallingBlockFails) {
