@@ -134,8 +134,16 @@ double bond_energy(const BlockSystem &system, const CandidatePair &pair, const R
   return energy;
 }
 
+bool lie_on_each_other(const SharedStretch &shared, double pressed) {
+  constexpr double most_pressed = 0.02; // of the length: corners that meet are no edges
+  const double overlap = std::min(pressed, most_pressed * shared.length);
+  return std::all_of(shared.gap.begin(), shared.gap.end(), [&](double gap) {
+    return gap <= coincidence * shared.length && -gap <= coincidence * shared.length + overlap;
+  });
+}
+
 void bond_joints(const BlockSystem &system, const Candidates &candidates, const JointLaws &joints,
-                 ContactHistory &history) {
+                 double pressed, ContactHistory &history) {
   if (std::none_of(joints.laws.begin(), joints.laws.end(),
                    [](const JointLaw &law) { return law.has_bonds; })) {
     return;
@@ -150,7 +158,7 @@ void bond_joints(const BlockSystem &system, const Candidates &candidates, const 
         const std::int32_t law = law_of_edges(system, joints, pair, lower_edge, higher_edge);
         const auto shared = shared_stretch(system, pair, lower_edge, higher_edge);
         if (!joints.laws[static_cast<std::size_t>(law)].has_bonds || !shared ||
-            std::max(std::abs(shared->gap[0]), std::abs(shared->gap[1])) > coincidence * shared->length) {
+            !lie_on_each_other(*shared, pressed)) {
           continue;
         }
         RegionMemory &bond = history.regions.emplace_back();

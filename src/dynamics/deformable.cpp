@@ -40,14 +40,14 @@ Mat2 elastic_stress(const Deformation &d, const Mat2 &strain) {
 Mat2 elastic_force(const Deformation &d, const Mat2 &gradient) {
   const Mat2 turn = rotation_of(gradient);
   const Mat2 stretch = transposed(turn) * gradient;
-  const Mat2 stress = elastic_stress(d, stretch - Mat2::identity());
+  const Mat2 stress = elastic_stress(d, stretch - Mat2::identity() + d.initial_strain);
   const Mat2 product = stress * stretch;
   const double no_torque = (product.xy - product.yx) / (stretch.xx + stretch.yy);
   return turn * Mat2{stress.xx, stress.xy - no_torque, stress.yx + no_torque, stress.yy};
 }
 
 double strain_energy(const Deformation &d, const Mat2 &gradient) {
-  const Mat2 strain = transposed(rotation_of(gradient)) * gradient - Mat2::identity();
+  const Mat2 strain = transposed(rotation_of(gradient)) * gradient - Mat2::identity() + d.initial_strain;
   return 0.5 * contract(elastic_stress(d, strain), strain);
 }
 
@@ -61,6 +61,14 @@ double applied_strain_energy(const Deformation &d) {
 
 double kinetic_energy(const Deformation &d, const Mat2 &rate) {
   return 0.5 * contract(rate * d.second_moment, rate);
+}
+
+Mat2 strain_under(const Deformation &d, const Mat2 &force) {
+  const double a = d.stiffness_direct;
+  const double b = d.stiffness_cross;
+  const double both = a * a - b * b;
+  const double shear = 0.5 * force.xy / d.stiffness_shear;
+  return {(a * force.xx - b * force.yy) / both, shear, shear, (a * force.yy - b * force.xx) / both};
 }
 
 std::array<double, 3> mean_cauchy_stress(const Deformation &d, double area) {

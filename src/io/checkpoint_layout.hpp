@@ -136,7 +136,7 @@ template <auto Member> constexpr Field<std::vector<RegionRecord>> of_region(cons
 
 } // namespace detail
 
-// Left out: what the scene says (properties, shapes, stiffness, loads, anchors), what follows from it and the
+// Left out: what the scene says (properties, shapes, stiffness, loads, anchors, initial strain), what follows from it and the
 // time step (matrices), and where blocks were at the last refresh, since a restart begins with one.
 inline constexpr std::array block_fields{
     detail::of_row<&BlockSystem::displacement>("/block/displacement"),
@@ -180,7 +180,7 @@ inline constexpr const char *region_laws = "/region/law";     ///< i32
 static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 9);
 static_assert(sizeof(BlockMark) == 6 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 18 * sizeof(double));
-static_assert(sizeof(Deformation) == (12 * 4 + 3) * sizeof(double));
+static_assert(sizeof(Deformation) == (13 * 4 + 3) * sizeof(double));
 static_assert(sizeof(RegionMemory) == 7 * sizeof(double));
 
 inline constexpr std::array<const char *, 7> groups{"/clock", "/run",         "/stage", "/scene",

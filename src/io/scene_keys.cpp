@@ -113,7 +113,8 @@ constexpr Key all_keys[] = {
   {"region.slivers", Kind::choice, optional, any, "merge refuse keep", "<merge>", "\"refuse\"", "A sliver becomes part of the neighbour of its material and opening that shares most of its boundary, up to three times over; or it is a fault; or it stays."},
   {"region.max_blocks", Kind::count, optional, from_to(1, 2147483647), "", "<2000000>", "500000", "A scene whose joints would cut about more blocks than this is a fault."},
   {"region.fixed", Kind::words, optional, any, "bottom left right top", "<none>", "[\"bottom\", \"left\"]", "Sides of the region's bounding box along which a fixed block lies."},
-  {"region.fixed_thickness", Kind::number, optional, above_to(0, 1e9), "", "<1/20 of the square root of the region's area>", "1.0", "[m] Thickness of these fixed blocks."},
+  {"region.roller", Kind::words, optional, any, "bottom left right top", "<none>", "[\"left\", \"right\"]", "Sides along which a fixed block named roller.<side> lies that holds the normal direction only: the law of its edges is [joint.roller], or where the scene has none the default one without friction and cohesion."},
+  {"region.fixed_thickness", Kind::number, optional, above_to(0, 1e9), "", "<1/20 of the square root of the region's area>", "1.0", "[m] Thickness of the blocks along fixed sides and rollers."},
 
   {"region.slope", Kind::table, optional, any, "", "", "[region.slope]", "A slope that rises to the right, instead of polygon: level ground, benches, level crest."},
   {"region.slope.toe", Kind::vector2, optional, from_to(-1e8, 1e8), "", "<[0.0, 0.0]>", "[0.0, 0.0]", "[m] Foot of the lowest face."},
@@ -193,6 +194,14 @@ constexpr Key all_keys[] = {
   {"water.*.joints", Kind::names, optional, any, "", "<all edges>", "[\"bedding\"]", "Laws of the edges that it wets; other edges stay dry. Edges that have no law of their own have no name: leave this out to wet them too."},
   {"water.*.density", Kind::number, optional, above_to(0, 1e12), "", "1000.0", "1000.0", "[kg/m3] Density."},
   {"water.*.active", Kind::boolean, optional, any, "", "true", "false", "Whether it is there; a stage may set this, as all of [water.NAME]."},
+
+  {"in_situ", Kind::table, optional, any, "", "", "[in_situ]", "Stress that is in the rock before anything happens, compression positive: blocks and contacts begin in equilibrium under it. Edges that touch nothing do not bear it."},
+  {"in_situ.vertical_stress", Kind::number, optional, from_to(0, 1e15), "", "<0.0 with level>", "2.6e6", "[Pa] Stress along gravity (along y without gravity): at the level if there is one, such as the load on a surface, else everywhere."},
+  {"in_situ.k0", Kind::number, optional, from_to(0, 100), "", "1.0", "0.7", "Stress across gravity over the stress along it."},
+  {"in_situ.principal_stresses", Kind::vector2, optional, from_to(0, 1e15), "", "<none>", "[4e6, 2e6]", "[Pa] Instead of vertical_stress: two stresses at right angles."},
+  {"in_situ.principal_angle_deg", Kind::number, optional, from_to(-360, 360), "", "0.0", "30.0", "[degrees] Direction of the first of them against the x axis, counter-clockwise."},
+  {"in_situ.level", Kind::number, optional, from_to(-1e9, 1e9), "", "<none: the same stress everywhere>", "100.0", "[m] Height against gravity (y) where these stresses are; below it they grow with the weight of the rock, which they bear. A stress that is the same everywhere bears no weight."},
+  {"in_situ.density", Kind::number, optional, above_to(0, 1e12), "", "<that of the materials if they have the same>", "2600.0", "[kg/m3] Density the growth with depth is computed with."},
 
   {"output", Kind::table, optional, any, "", "", "[output]", "What is written and when."},
   {"output.interval", Kind::number, optional, above_to(0, 1e12), "", "<duration/100>", "0.02", "[s] Time between frames."},

@@ -91,6 +91,13 @@ BlockFile read_block_file_table(const SceneSource &source, Materials &materials,
 RockRegion read_region(const SceneSource &source, Materials &materials, const JointLaws &joints,
                        const std::string &scene_file);
 
+/// The fixed blocks along the region's rollers, behind the blocks of the scene, and their law.
+/// @param scene  with laws, blocks and region
+void add_rollers(const SceneSource &source, Scene &scene);
+
+/// @param scene  with run and materials
+InSituStress read_in_situ(const SceneSource &source, const Scene &scene);
+
 /// @param scene  with all its blocks
 std::vector<Monitor> read_monitors(const SceneSource &source, const Scene &scene);
 

@@ -41,6 +41,7 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.generators = read_generators(source, materials, names, fidelity, scene.blocks);
   scene.block_file = read_block_file_table(source, materials, fidelity, file);
   scene.region = read_region(source, materials, scene.joints, file);
+  add_rollers(source, scene);
   if (source.root.contains("stage")) {
     scene.run.duration = duration_of_stages(source);
   }
@@ -136,6 +137,7 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     }
     const FaultyNodes faulty = check_keys(*root, faults);
     read_parts({*root, faulty, faults}, file, reading.scene);
+    reading.scene.in_situ = read_in_situ({*root, faulty, faults}, reading.scene);
     reading.scene.stages = read_stages({*root, faulty, faults}, reading.scene);
     read_changes({text, file, sets}, faults, reading.scene);
     reading.diagnostics = faults.sorted();

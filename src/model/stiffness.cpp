@@ -27,10 +27,16 @@ SizeSurvey survey_sizes(const Scene &scene, std::span<const SceneBlock> blocks, 
 }
 
 void resolve_stiffness(Scene &scene, const SizeSurvey &survey, double median_size) {
+  double pressure = survey.densest * norm(scene.run.gravity) * (survey.high - survey.low);
+  if (scene.in_situ.present) {
+    for (const double head : {survey.low, survey.high}) {
+      const Mat2 stress = scene.in_situ.compression_at(head * scene.in_situ.down);
+      pressure = std::max(pressure, principal_values(stress).largest);
+    }
+  }
   for (JointLaw &law : scene.joints.laws) {
     if (law.allowed_overlap > 0.0) {
-      law.normal_stiffness = survey.densest * norm(scene.run.gravity) * (survey.high - survey.low) /
-                             (law.allowed_overlap * median_size);
+      law.normal_stiffness = pressure / (law.allowed_overlap * median_size);
     }
   }
 }

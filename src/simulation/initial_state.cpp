@@ -114,10 +114,12 @@ void Simulation::accelerate_owned() {
 // a_0 = M^-1 F(0): constant acceleration is then exact from the first step.
 void Simulation::find_initial_state() {
   check_bonds(); // told with the other faults of the initial state
-  bond_joints(blocks_, candidates_, contacts_.parameters().joints, history_);
+  bond_joints(blocks_, candidates_, contacts_.parameters().joints, pressed_, history_);
   take(contacts_.evaluate(blocks_, candidates_, history_)); // ghosts are whole copies yet
   check_initial_overlaps();
-  if (scene_.run.initial_friction == InitialFriction::consistent) {
+  if (scene_.in_situ.present) {
+    put_initial_shear();
+  } else if (scene_.run.initial_friction == InitialFriction::consistent) {
     find_initial_friction();
   }
   gather_forces();

@@ -125,6 +125,13 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
   compare_materials(before.materials, after.materials, faults);
   compare_joints(before.joints, after.joints, faults);
   compare_blocks(before, after, faults);
+  const auto in_situ = [](const Scene &scene) {
+    const InSituStress &stress = scene.in_situ;
+    return std::tuple(stress.present, stress.at_level, stress.growth, stress.down, stress.level);
+  };
+  if (in_situ(before) != in_situ(after)) {
+    faults.push_back(refused(after.in_situ.where, "[in_situ]", "blocks have their shapes by it"));
+  }
   return faults;
 }
 

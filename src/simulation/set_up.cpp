@@ -126,6 +126,9 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
                          communicator_.size(), &partition_);
   identify(slab);
   take_blocks(std::exchange(slab, {}));
+  if (scene_.in_situ.present) {
+    press();
+  }
   std::vector<RegionRecord> none;
   if (!restart_from.empty()) { // rows are those of the slab still
     const Scene start = scene_;

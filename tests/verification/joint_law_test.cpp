@@ -182,7 +182,7 @@ struct Glued : ContactBench {
   explicit Glued(JointLaws joints)
       : ContactBench(system_of({{{0, 0}, {2, 0}, {2.5, 1}, {0, 1}}, {{2, 0}, {4, 0}, {4, 1}, {2.5, 1}}}, {}),
                      std::move(joints)) {
-    bond_joints(system, candidates, forces.parameters().joints, history);
+    bond_joints(system, candidates, forces.parameters().joints, 0.0, history);
   }
 };
 

@@ -72,6 +72,10 @@ struct SharedStretch {
 std::optional<SharedStretch> shared_stretch(const BlockSystem &system, const CandidatePair &pair,
                                             std::int32_t lower_edge, std::int32_t higher_edge);
 
+/// Whether they lie on each other.
+/// @param pressed  overlap that a stress in the rock has given them (in_situ.hpp), m
+bool lie_on_each_other(const SharedStretch &shared, double pressed);
+
 enum class Configuration { trial, trial_previous };
 
 /// A bond in one of the last two trial configurations.
@@ -92,7 +96,8 @@ double bond_energy(const BlockSystem &system, const CandidatePair &pair, const R
 
 /// Bonds of all pairs whose edges lie on each other, where the law of these has bonds, put into the history
 /// of a run that begins.
+/// @param pressed  largest overlap that a stress in the rock has given them, m
 void bond_joints(const BlockSystem &system, const Candidates &candidates, const JointLaws &joints,
-                 ContactHistory &history);
+                 double pressed, ContactHistory &history);
 
 } // namespace gcpdda

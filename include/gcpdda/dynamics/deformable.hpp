@@ -15,7 +15,8 @@
 //     P = R (A sigma + a J),   A sigma = dW/dE,   J = [0 -1; 1 0],   a = tr(J A sigma U)/tr U:
 // with F' = R (w J U + U'), P : F' = W' for every spin w if and only if A sigma + a J does no work on J U,
 // and tr(J^T J U) = tr U. An isotropic sigma commutes with U, so that a is zero but for rounding; the formula
-// removes that too. The equation of motion of F is
+// removes that too. (A block born under stress has E + E_0 in place of E, E_0 the initial strain of its
+// Deformation; its reference axes are those of the shape it is born with.) The equation of motion of F is
 //     F'' S = G - P,
 // and d/dt tr(J^T F' S F^T) = tr(J^T (G - P) F^T) has no elastic part: elasticity has no torque.
 //
@@ -91,6 +92,9 @@ double spin_rate_of(const Mat2 &gradient, const Mat2 &rate, const Mat2 &accelera
 
 /// K e (N) on the symmetric part of e, in the axes of e.
 Mat2 elastic_stress(const Deformation &deformation, const Mat2 &strain);
+
+/// The symmetric strain e with K e = force (N), which is symmetric.
+Mat2 strain_under(const Deformation &deformation, const Mat2 &force);
 
 /// Elastic force P* (N) on F = R U at the given gradient, without torque.
 Mat2 elastic_force(const Deformation &deformation, const Mat2 &gradient);

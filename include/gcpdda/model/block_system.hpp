@@ -74,6 +74,7 @@ struct Deformation {
   Mat2 trial_previous = Mat2::identity();
   Mat2 refreshed = Mat2::identity(); ///< F at the last refresh of the neighbourhood
   Mat2 second_moment;                ///< S, kg m2 per metre
+  Mat2 initial_strain;               ///< E_0 of a block that is born under stress: sigma is D (E + E_0)
   /// Stiffness area * D of (eps_x, eps_y, gamma_xy) is [a b 0; b a 0; 0 0 c], N.
   double stiffness_direct = 0.0; ///< a
   double stiffness_cross = 0.0;  ///< b

@@ -2,6 +2,7 @@
 
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/model/in_situ.hpp"
 #include "gcpdda/model/joint_law.hpp"
 #include "gcpdda/model/rock_region.hpp"
 #include "gcpdda/model/stage.hpp"
@@ -137,6 +138,7 @@ struct Scene {
   std::vector<Material> materials; ///< in file order
   JointLaws joints;
   std::vector<Water> water; ///< in file order
+  InSituStress in_situ;
   std::vector<SceneBlock> blocks;                   ///< of the scene file, the first BlockIds
   std::vector<BrickGenerator> generators;           ///< the next ones
   BlockFile block_file;                             ///< after them

@@ -26,7 +26,8 @@ SizeSurvey survey_sizes(const Scene &scene, std::span<const SceneBlock> blocks, 
 ///
 /// rho the densest material in use, g = |gravity|, h the extent of the mobile blocks along gravity, L the
 /// median of their sqrt(area). The extent is a pressure head: the deepest joint then closes by about e.
-/// Without mobile blocks the fixed ones stand in (nothing can touch, any positive number does).
+/// Where the scene has an in-situ stress, its largest compression at that extent stands for rho g h if it is
+/// more. Without mobile blocks the fixed ones stand in (nothing can touch, any positive number does).
 ///
 /// @param median_size  of the surveyed blocks, the (n/2)-th in ascending order from 0, m
 void resolve_stiffness(Scene &scene, const SizeSurvey &survey, double median_size);

@@ -2,6 +2,7 @@
 
 #include "gcpdda/base/phase_timer.hpp"
 #include "gcpdda/contact/contact_forces.hpp"
+#include "gcpdda/contact/in_situ.hpp"
 #include "gcpdda/dynamics/integrate.hpp"
 #include "gcpdda/dynamics/scheme.hpp"
 #include "gcpdda/io/checkpoint.hpp"
@@ -203,6 +204,10 @@ private:
   void check_bonds();
   void check_initial_overlaps();
   void find_initial_friction();
+  void press();
+  void stress_rows();
+  void tell_of_swelling(const SwellReport &mine);
+  void put_initial_shear();
   void accelerate_owned();
   [[nodiscard]] RegionRecord record_of(std::size_t pair, const RegionMemory &region) const;
   [[nodiscard]] std::vector<RegionRecord> remembered_contacts() const;
@@ -248,6 +253,7 @@ private:
   double load_time_ = 0.0;     ///< when loads were last evaluated, s
   double thinnest_ = 0.0;      ///< narrowest width of any block, m
   double base_skin_ = 0.0;
+  double pressed_ = 0.0; ///< largest overlap of the in-situ stress, m
   double skin_ = 0.0;
   bool stale_ = true;
   bool stop_asked_ = false;

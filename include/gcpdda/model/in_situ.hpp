@@ -1,0 +1,39 @@
+#pragma once
+
+#include "gcpdda/base/diagnostic.hpp"
+#include "gcpdda/geometry/mat2.hpp"
+#include "gcpdda/geometry/vec2.hpp"
+
+#include <cmath>
+
+namespace gcpdda {
+
+/// The stress that is in the rock before anything happens, as compression C = -sigma (Pa):
+///
+///     C(x) = C_0 + z (d d^T + K0 (I - d d^T)) rho g,     z = level + d.x,  d = gravity/|gravity|,
+///
+/// z the depth below the level. div C = rho g d whatever C_0 and K0: the stress bears the weight of the rock,
+/// and nothing moves. Without growth C is C_0 everywhere, which bears no weight.
+struct InSituStress {
+  bool present = false;
+  Mat2 at_level;        ///< C_0, symmetric, Pa
+  Mat2 growth;          ///< by depth, Pa/m; 0 of a stress that is the same everywhere
+  Vec2 down;            ///< d; 0 without growth
+  double level = 0.0;   ///< height above [0, 0] against gravity, m
+  SourcePosition where; ///< of its table
+
+  [[nodiscard]] Mat2 compression_at(Vec2 x) const { return at_level + (level + dot(down, x)) * growth; }
+};
+
+/// Least and largest principal value of a symmetric matrix.
+struct PrincipalValues {
+  double least = 0.0;
+  double largest = 0.0;
+};
+inline PrincipalValues principal_values(const Mat2 &symmetric) {
+  const double mean = 0.5 * (symmetric.xx + symmetric.yy);
+  const double radius = std::hypot(0.5 * (symmetric.xx - symmetric.yy), symmetric.xy);
+  return {mean - radius, mean + radius};
+}
+
+} // namespace gcpdda

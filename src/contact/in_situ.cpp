@@ -1,0 +1,170 @@
+#include "gcpdda/contact/in_situ.hpp"
+
+#include "gcpdda/contact/bonds.hpp"
+#include "gcpdda/contact/region_law.hpp"
+#include "gcpdda/geometry/polygon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gcpdda {
+
+namespace {
+
+/// What the contacts of one edge ask for: its overlap share is compliance times normal traction.
+struct EdgeAsks {
+  double length = 0.0;     ///< that touches, m
+  double compliance = 0.0; ///< times that length, m2/Pa
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+
+  void add(double touching, double asked) {
+    length += touching;
+    compliance += touching * asked;
+    least = std::min(least, asked);
+    most = std::max(most, asked);
+  }
+};
+
+/// A vertex between edges with normals n1, n2 that move outwards by a and b. A tip may not run away.
+Vec2 moved_vertex(Vec2 n1, double a, Vec2 n2, double b) {
+  constexpr double farthest = 20.0;
+  const Vec2 sum = n1 + n2;
+  const Vec2 difference = n2 - n1;
+  const auto along = [&](double share, Vec2 axis) {
+    const double length = norm(axis);
+    const double limit = farthest * std::max(a, b);
+    return length > 0.0 ? (std::clamp(share / length, -limit, limit) / length) * axis : Vec2{};
+  };
+  return along(a + b, sum) + along(b - a, difference);
+}
+
+std::vector<EdgeAsks> ask_contacts(const BlockSystem &system,
+                                   std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
+                                   const JointLaws &joints) {
+  std::vector<EdgeAsks> asks(system.reference_vertex.size());
+  constexpr double opposite = -0.9;
+  for (const auto &[lower, higher] : pairs) {
+    CandidatePair pair;
+    pair.lower = lower;
+    pair.higher = higher;
+    const auto lower_normals = system.of_row(system.reference_normal, lower.value);
+    const auto higher_normals = system.of_row(system.reference_normal, higher.value);
+    const double share = system.is_fixed(lower.value) || system.is_fixed(higher.value) ? 1.0 : 0.5;
+    for (std::size_t a = 0; a < lower_normals.size(); ++a) {
+      for (std::size_t b = 0; b < higher_normals.size(); ++b) {
+        if (dot(lower_normals[a], higher_normals[b]) > opposite) {
+          continue;
+        }
+        const auto lower_edge = static_cast<std::int32_t>(a);
+        const auto higher_edge = static_cast<std::int32_t>(b);
+        const auto shared = shared_stretch(system, pair, lower_edge, higher_edge);
+        if (!shared || !lie_on_each_other(*shared, 0.0)) {
+          continue;
+        }
+        const std::int32_t law = law_of_edges(system, joints, pair, lower_edge, higher_edge);
+        const double asked = share / joints.laws[static_cast<std::size_t>(law)].normal_stiffness;
+        asks[system.vertex_begin[lower.value] + a].add(shared->length, asked);
+        asks[system.vertex_begin[higher.value] + b].add(shared->length, asked);
+      }
+    }
+  }
+  return asks;
+}
+
+} // namespace
+
+std::vector<Vec2> find_swelling(const BlockSystem &system,
+                                std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
+                                const JointLaws &joints, const InSituStress &stress, SwellReport &report) {
+  const std::vector<EdgeAsks> asks = ask_contacts(system, pairs, joints);
+  std::vector<Vec2> by(system.vertex_begin[system.num_owned]);
+  std::vector<std::array<double, 2>> outwards; // of the ends of each edge of a row
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    const std::size_t begin = system.vertex_begin[row];
+    const auto normals = system.of_row(system.reference_normal, row);
+    const auto vertices = system.of_row(system.reference_vertex, row);
+    const std::size_t count = normals.size();
+    outwards.assign(count, {});
+    for (std::size_t k = 0; k < count; ++k) {
+      const EdgeAsks &edge = asks[begin + k];
+      const double mean = edge.length > 0.0 ? edge.compliance / edge.length : 0.0;
+      report.spread = std::max(report.spread, mean > 0.0 ? (edge.most - edge.least) / mean : 0.0);
+      for (const std::size_t end : {0U, 1U}) {
+        const Vec2 x = system.properties[row].centroid + vertices[(k + end) % count];
+        const Vec2 traction = stress.compression_at(x)(normals[k]);
+        report.largest = std::max(report.largest, norm(traction));
+        if (edge.length == 0.0 && norm(traction) > report.unheld) {
+          report.unheld = norm(traction);
+          report.at = system.properties[row].id.value;
+        }
+        outwards[k][end] = mean * std::max(0.0, dot(traction, normals[k]));
+        report.widest = std::max(report.widest, 2.0 * outwards[k][end]);
+      }
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t before = (k + count - 1) % count;
+      by[begin + k] = moved_vertex(normals[before], outwards[before][1], normals[k], outwards[k][0]);
+    }
+  }
+  return by;
+}
+
+void swell(BlockSystem &system, std::size_t row, std::span<const Vec2> by) {
+  const std::size_t begin = system.vertex_begin[row];
+  const std::size_t count = system.num_vertices(row);
+  BlockProperties &block = system.properties[row];
+  for (std::size_t k = 0; k < count; ++k) {
+    system.reference_vertex[begin + k] += by[k];
+    block.radius = std::max(block.radius, norm(system.reference_vertex[begin + k]));
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec2 edge = system.reference_vertex[begin + (k + 1) % count] - system.reference_vertex[begin + k];
+    const double length = norm(edge);
+    system.edge_length[begin + k] = length;
+    system.reference_normal[begin + k] = {edge.y / length, -edge.x / length};
+  }
+  const auto shape = system.of_row(system.reference_vertex, row);
+  const std::vector<Vec2> vertices(shape.begin(), shape.end());
+  block.is_convex = is_convex(vertices);
+  block.width = narrowest_width(vertices);
+}
+
+double put_in_situ_shear(const BlockSystem &system, const Candidates &candidates, const InSituStress &stress,
+                         ContactForces &forces, ContactHistory &history) {
+  double most_cut = 0.0;
+  for (std::size_t k = 0; k < forces.regions().size(); ++k) {
+    const RegionForce &force = forces.regions()[k];
+    const CandidatePair &pair = candidates.pairs[force.pair];
+    const Vec2 tangent = perp(force.normal);
+    const Vec2 middle = force.point + 0.5 * (force.extent_begin + force.extent_end) * tangent;
+    // On the lower block, whose outward normal is minus the direction of N: -sigma n = C (N/|N|).
+    const Vec2 traction = stress.compression_at(middle)(force.normal);
+    const double pressure = dot(traction, force.normal);
+    if (!(pressure > 0.0)) {
+      continue;
+    }
+    // An overlap force falls off at the ends of the joint, and the shear with it.
+    const double normal_force =
+        force.bonded ? pressure * (force.extent_end - force.extent_begin) : force.normal_force;
+    const double wanted = -normal_force * dot(traction, tangent) / pressure;
+    const double shear = std::clamp(wanted, -force.cap, force.cap);
+    if (!force.bonded && force.cap == 0.0 && history.has_bonds(force.pair)) {
+      continue; // the bond carries it
+    }
+    constexpr double rounding = 1e-9;
+    if (std::abs(wanted) > force.cap * (1.0 + rounding) && std::abs(wanted) > rounding * normal_force) {
+      most_cut = std::max(most_cut, 1.0 - force.cap / std::abs(wanted));
+    }
+    if (!(force.cap > 0.0) || !(history.regions[k].longest > 0.0)) {
+      continue;
+    }
+    history.regions[k].shear = shear;
+    forces.set_shear(k, shear, force.point - system.trial_centroid[pair.lower.value],
+                     force.point - system.trial_centroid[pair.higher.value]);
+  }
+  return most_cut;
+}
+
+} // namespace gcpdda

@@ -1,0 +1,94 @@
+// A run under in-situ stress: the same files on any number of ranks and through a restart, which finds the
+// shapes of the blocks anew.
+
+#include "child_process.hpp"
+
+#include "gcpdda/io/run_comparison.hpp"
+#include "support/run_facts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gcpdda {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Outcome;
+using testing::run_gcpdda;
+using testing::WorkFolder;
+
+const std::string tunnel = R"([run]
+accepted_error = 0.1
+[material.rock]
+density = 2600
+youngs_modulus = 20e9
+poissons_ratio = 0.2
+[joint.default]
+normal_stiffness = 2e9
+friction_angle_deg = 35
+[in_situ]
+level = 60
+k0 = 0.6
+[region]
+material = "rock"
+polygon = [[0, 0], [24, 0], [24, 18], [0, 18]]
+fixed = ["bottom", "left", "right", "top"]
+[[joint_set]]
+dip_deg = 60
+spacing = 1.6
+[[joint_set]]
+dip_deg = -20
+spacing = 1.4
+[[opening]]
+name = "tunnel"
+shape = "circle"
+centre = [12, 9]
+width = 5
+[output]
+interval = 0.01
+[[stage]]
+kind = "run"
+duration = 0.01
+[[stage]]
+kind = "excavate"
+openings = ["tunnel"]
+relax = 0.01
+[[stage]]
+kind = "run"
+duration = 0.02
+)";
+
+const std::vector<std::string> none;
+
+TEST(InSituRun, IsTheSameOnAnyNumberOfRanksAndThroughARestart) {
+  WorkFolder folder;
+  folder.write("tunnel.toml", tunnel);
+  const Outcome alone = run_gcpdda(1, {"run", "tunnel.toml", "--out", "one"}, folder);
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  const fs::path one = folder / "one";
+  for (const int ranks : {2, 3}) {
+    const std::string name = "on" + std::to_string(ranks);
+    const Outcome outcome = run_gcpdda(ranks, {"run", "tunnel.toml", "--out", name}, folder);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(compare_runs(one, folder / name), none);
+  }
+  std::vector<fs::path> files;
+  for (const auto &entry : fs::directory_iterator(one / "checkpoints")) {
+    files.push_back(entry.path());
+  }
+  ASSERT_EQ(files.size(), 2U) << "one before the tunnel, one at the end";
+  fs::remove(std::max(files[0], files[1]));
+  const Outcome again = run_gcpdda(2, {"restart", "one"}, folder);
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(compare_runs(folder / "on2", one), none);
+
+  const Outcome changed = run_gcpdda(1, {"restart", "one", "--set", "in_situ.k0=0.7"}, folder);
+  EXPECT_EQ(changed.exit_code, 3);
+  EXPECT_NE(changed.err.find("a restart cannot change [in_situ]"), std::string::npos) << changed.err;
+}
+
+} // namespace
+} // namespace gcpdda
