@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Turn a picture of `gcpdda blocks --svg` or `gcpdda inspect --svg` into PNG: svg_to_png.py IN.svg OUT.png"""
+"""Turn a picture of `gcpdda blocks --svg`, `gcpdda inspect --svg` or `gcpdda fos` into PNG: svg_to_png.py IN.svg OUT.png"""
 import re
 import sys
 import xml.etree.ElementTree as xml

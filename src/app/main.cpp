@@ -11,6 +11,7 @@
 #include "gcpdda/simulation/inspect.hpp"
 #include "gcpdda/simulation/restart.hpp"
 #include "gcpdda/simulation/run.hpp"
+#include "gcpdda/simulation/safety_factor.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 #include "gcpdda/simulation/stop_signal.hpp"
 
@@ -32,6 +33,10 @@ struct Arguments {
   std::vector<std::string> sets;
   std::string svg;
   std::string json;
+  std::vector<std::string> families;
+  std::string tolerance; ///< and the next two: values of [fos]
+  std::string from;
+  std::string to;
   int ranks = 0;
   bool overwrite = false;
 };
@@ -79,12 +84,16 @@ template <class Work> int with_scene(const Communicator &world, const Arguments 
   }
 }
 
+std::filesystem::path result_folder(const Arguments &arguments, const std::string &stem) {
+  return arguments.directory.empty() ? std::filesystem::path("results") / stem
+                                     : std::filesystem::path(arguments.directory);
+}
+
 int run(const Communicator &world, const Arguments &arguments) {
   catch_stop_signal();
   return with_scene(world, arguments, [&](const Scene &scene) {
     RunOptions options;
-    options.directory = arguments.directory.empty() ? std::filesystem::path("results") / scene.stem
-                                                    : std::filesystem::path(arguments.directory);
+    options.directory = result_folder(arguments, scene.stem);
     options.overwrite = arguments.overwrite;
     return run_scene(world, scene, options);
   });
@@ -100,6 +109,28 @@ int restart(const Communicator &world, Arguments arguments) {
       read_scene(read_on_root(world, arguments.scene, "the scene"), arguments.scene, {});
   return with_scene(world, has_errors(before.diagnostics) ? unchanged : arguments, [&](const Scene &after) {
     return restart_scene(world, before.scene, after, arguments.directory);
+  });
+}
+
+/// What the command line says of the search goes the way of --set.
+int fos(const Communicator &world, Arguments arguments) {
+  catch_stop_signal();
+  std::string families;
+  for (const std::string &name : arguments.families) {
+    families += (families.empty() ? "\"" : ", \"") + name + '"';
+  }
+  if (!families.empty()) {
+    arguments.sets.push_back("fos.families=[" + families + "]");
+  }
+  for (const auto &[key, value] : {std::pair("tolerance", arguments.tolerance),
+                                   std::pair("from", arguments.from), std::pair("to", arguments.to)}) {
+    if (!value.empty()) {
+      arguments.sets.push_back(std::string("fos.") + key + '=' + value);
+    }
+  }
+  return with_scene(world, arguments, [&](const Scene &scene) {
+    return find_safety_factor(world, scene,
+                              {result_folder(arguments, scene.stem + "_fos"), arguments.overwrite});
   });
 }
 
@@ -151,6 +182,19 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   blocks_command->add_option("--svg", arguments.svg, "draw the blocks into this file");
   blocks_command->add_option("--out", arguments.directory, "write the blocks into this block file (HDF5)");
   blocks_command->add_option("--json", arguments.json, "write the report for programs into this file");
+  CLI::App *fos_command = app.add_subcommand(
+      "fos", "factor of safety by lowering the strength of joints from the settled state of a scene");
+  takes_scene(fos_command);
+  fos_command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>_fos");
+  fos_command->add_flag("--overwrite", arguments.overwrite, "replace an earlier search in the result folder");
+  fos_command
+      ->add_option("--families", arguments.families,
+                   "laws to weaken, a,b,...; default [fos] families, or all")
+      ->delimiter(',');
+  fos_command->add_option("--tolerance", arguments.tolerance,
+                          "width of the bracket at the end; default 0.01");
+  fos_command->add_option("--from", arguments.from, "factor that is expected to hold; default 0.5");
+  fos_command->add_option("--to", arguments.to, "factor that is expected to fail; default 4");
   const CLI::App *reference_command =
       app.add_subcommand("reference", "print all scene keys as a Markdown page");
   try {
@@ -168,6 +212,9 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   }
   if (restart_command->parsed()) {
     return restart(world, arguments);
+  }
+  if (fos_command->parsed()) {
+    return fos(world, arguments);
   }
   if (blocks_command->parsed()) {
     return blocks(world, arguments);

@@ -149,7 +149,8 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
                                            ContactHistory &history, std::span<const std::uint32_t> pairs) {
   for (const std::uint32_t k : pairs) {
     const CandidatePair &pair = candidates.pairs[k];
-    if (system.box[pair.lower.value].meets(system.box[pair.higher.value]) || history.has_bonds(k)) {
+    if (system.box[pair.lower.value].meets(system.box[pair.higher.value]) || history.has_bonds(k) ||
+        history.is_dilated(k)) {
       ++report_.evaluations;
       const auto begin = static_cast<std::uint32_t>(forces_.size());
       evaluate_pair(system, candidates, k,
@@ -167,6 +168,7 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   forces_.clear();
   damping_dyads_.clear();
   bond_dyads_.clear();
+  dilation_works_.clear();
   next_.regions.clear();
   ranges_.assign(candidates.pairs.size(), {});
   // Most candidates touch: to grow by doubling would take more memory than to have room for all.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace gcpdda {
@@ -137,9 +138,13 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
     memory.shear += stiffness * dot(slide, tangent);
   }
   if (std::abs(memory.shear) > force.cap) {
+    const double slip_before = memory.slip;
     memory.slip += (std::abs(memory.shear) - force.cap) / stiffness;
     memory.shear = std::copysign(force.cap, memory.shear);
     memory.state = ContactState::slip;
+    if (law.dilates()) {
+      dilate(system, pair, slip_before, force, memory);
+    }
   }
   double viscous = 0.0;
   if (parameters_.damping_ratio > 0.0) {
@@ -226,7 +231,11 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
 void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &candidates,
                                   std::uint32_t number, std::span<RegionMemory> old) {
   const CandidatePair &pair = candidates.pairs[number];
-  const bool touches = system.box[pair.lower.value].meets(system.box[pair.higher.value]) &&
+  dilated_.clear();
+  std::copy_if(old.begin(), old.end(), std::back_inserter(dilated_),
+               [](const RegionMemory &m) { return m.is_dilated(); });
+  const bool all_dilated = pair.is_convex && !dilated_.empty(); // its only region
+  const bool touches = !all_dilated && system.box[pair.lower.value].meets(system.box[pair.higher.value]) &&
                        overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
                                      parameters_.potential);
   const auto first_bond =
@@ -251,6 +260,11 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &c
       memory = force.born ? memory : old.front();
     } else {
       recall(system, pair, region, old, memory, force);
+      if (memory.is_dilated()) { // on its own below
+        forces_.pop_back();
+        next_.regions.pop_back();
+        continue;
+      }
     }
     const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, region);
     if (!pair.is_mixed) {
@@ -261,6 +275,9 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &c
       memory.law = law_at_birth(system, parameters_.joints, pair, overlap_.pieces(), region);
     }
     load_region(system, constants_of(system, parameters_, pair, memory.law), region, share, memory, force);
+  }
+  for (const RegionMemory &known : dilated_) {
+    evaluate_dilated(system, pair, number, known);
   }
   if (!bonds_.empty()) {
     append_bonds(system, pair, number);
@@ -276,8 +293,14 @@ void ContactForces::load_region(const BlockSystem &system, const CandidatePair &
     memory.shear = 0.0;
     memory.state = ContactState::slip;
   } else {
-    const RelativeVelocity velocity(system, pair, force.origin);
+    RelativeVelocity velocity(system, pair, force.origin);
+    const Vec2 dilation_before = memory.dilation;
     add_friction(system, pair, velocity, bonds, memory, force);
+    if (memory.dilation != dilation_before) { // what slip opens does not part the surfaces that touch
+      const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
+      const double sliding = dot(velocity.at(force.point - force.origin), perp(force.normal));
+      velocity.at_origin -= law.tan_dilation * std::abs(sliding) * force.normal;
+    }
     if (pair.damping > 0.0) {
       add_normal_dashpot(pair, velocity, region, force);
     }

@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 inline constexpr const char *format = "gcpdda checkpoint";
-inline constexpr std::int64_t version = 2; ///< since 2 regions have laws and blocks marks
+inline constexpr std::int64_t version = 3; ///< since 3 joints dilate
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -169,7 +169,8 @@ inline constexpr std::array deformation_fields{
 inline constexpr std::array region_fields{detail::of_region<&RegionMemory::shear>("/region/shear"),
                                           detail::of_region<&RegionMemory::longest>("/region/longest"),
                                           detail::of_region<&RegionMemory::slip>("/region/slip"),
-                                          detail::of_region<&RegionMemory::position>("/region/position")};
+                                          detail::of_region<&RegionMemory::position>("/region/position"),
+                                          detail::of_region<&RegionMemory::dilation>("/region/dilation")};
 inline constexpr const char *region_blocks = "/region/blocks"; ///< i64 (n, 2): lower, higher
 inline constexpr const char *region_stretches =
     "/region/stretches";                                      ///< i32 (n, 2): of the lower, of the higher
@@ -181,7 +182,7 @@ static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 9);
 static_assert(sizeof(BlockMark) == 6 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 18 * sizeof(double));
 static_assert(sizeof(Deformation) == (13 * 4 + 3) * sizeof(double));
-static_assert(sizeof(RegionMemory) == 7 * sizeof(double));
+static_assert(sizeof(RegionMemory) == 9 * sizeof(double));
 
 inline constexpr std::array<const char *, 7> groups{"/clock", "/run",         "/stage", "/scene",
                                                     "/block", "/deformation", "/region"};

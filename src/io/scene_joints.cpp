@@ -126,6 +126,31 @@ private:
     law.read("cohesion", values.cohesion);
     read_angle(law, "friction_angle_deg", values.tan_friction);
     read_strength(law, values);
+    read_dilation(law, values);
+  }
+
+  // Where a bond dilates it has broken.
+  void read_dilation(const Section &law, JointLaw &values) {
+    read_angle(law, "dilation_angle_deg", values.tan_dilation);
+    law.read("dilation_limit", values.dilation_limit);
+    if (!law.known("dilation_angle_deg") || !law.known("dilation_limit")) {
+      return;
+    }
+    const toml::node *angle = law.given("dilation_angle_deg");
+    const toml::source_region &where = angle != nullptr ? angle->source() : law.source();
+    if (values.dilates() && values.dilation_limit == 0.0) {
+      fault(where, law.subject("dilation_limit") + " is missing",
+            "no joint opens for ever: its roughness ends where the slip is as long as an asperity",
+            "for example dilation_limit = 0.01");
+    }
+    const bool has_residual = values.has_bonds || values.is_barton_bandis;
+    const double tan_friction = has_residual ? values.residual_tan_friction : values.tan_friction;
+    if (values.tan_dilation > (1.0 + 1e-12) * tan_friction) { // rounding of the tangents
+      fault(where,
+            fmt::format("{} has a dilation angle above its {}friction angle", law.label(),
+                        has_residual ? "residual " : ""),
+            "slip would do more work against the pressure than friction takes", "lower it");
+    }
   }
 
   static void read_angle(const Section &law, const char *key, double &tangent) {

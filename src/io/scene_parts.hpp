@@ -68,6 +68,7 @@ std::int32_t find_material(const MaterialIndex &materials, const std::string &na
 
 RunSettings read_run(const SceneSource &source);
 OutputSettings read_output(const SceneSource &source, double duration);
+StrengthReduction read_reduction(const SceneSource &source, const JointLaws &joints);
 JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materials);
 
 /// The water of [water.NAME]; the faulty ones lack their faulty parts.

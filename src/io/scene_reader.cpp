@@ -47,6 +47,7 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   }
   scene.output = read_output(source, scene.run.duration);
   scene.monitors = read_monitors(source, scene);
+  scene.reduction = read_reduction(source, scene.joints);
 }
 
 // A block that could move keeps its state when a stage fixes it: it is held where it is then.

@@ -61,14 +61,59 @@ double mean_stiffness(const Simulation &simulation, std::size_t number, const Bl
           memory.lower_stretch == region.faces.first && memory.higher_stretch == region.faces.second;
       law = same ? memory.law : law;
     }
-    for (const Piece &piece : overlap.pieces().subspan(region.begin, region.end - region.begin)) {
-      const double depth = piece.depth_begin + piece.depth_end;
-      const double weight = piece.length * depth * depth;
-      weights += weight;
-      weighted += weight * 0.5 * parameters.joints.laws[static_cast<std::size_t>(law)].normal_stiffness;
-    }
+    const double weight = energy_weight(overlap, region);
+    weights += weight;
+    weighted += weight * 0.5 * parameters.joints.laws[static_cast<std::size_t>(law)].normal_stiffness;
   }
   return weights > 0.0 ? weighted / weights : pair.half_stiffness;
+}
+
+/// Share of the pair's energy that is in the regions for which `counts` holds.
+template <class Counts> double energy_share(const Overlap &overlap, Counts &&counts) {
+  double all = 0.0;
+  double counted = 0.0;
+  for (const Region &region : overlap.regions()) {
+    const double weight = energy_weight(overlap, region);
+    all += weight;
+    counted += counts(region) ? weight : 0.0;
+  }
+  return all > 0.0 ? counted / all : 0.0;
+}
+
+/// Of a pair with dilated regions: each with its own opening taken out, the rest as the blocks lie.
+double dilated_energy(const Simulation &simulation, std::size_t number, const BlockView &first,
+                      const BlockView &second) {
+  const CandidatePair &pair = simulation.candidates().pairs[number];
+  const ContactParameters &parameters = simulation.contacts().parameters();
+  const std::span<const RegionMemory> known = simulation.history().of_pair(number);
+  Overlap overlap;
+  ClosedPair closed;
+  double sum = 0.0;
+  for (const RegionMemory &memory : known) {
+    if (!memory.is_dilated()) {
+      continue;
+    }
+    closed.move(simulation.blocks(), pair, memory.dilation);
+    if (!closed.lower().box.meets(closed.higher().box) ||
+        !overlap.find(closed.lower(), closed.higher(), parameters.potential)) {
+      continue;
+    }
+    const Region *own = region_of(simulation.blocks(), pair, overlap, memory);
+    sum += constants_of(simulation.blocks(), parameters, pair, memory.law).half_stiffness *
+           overlap_energy(closed.lower(), closed.higher()) *
+           energy_share(overlap, [&](const Region &region) { return &region == own; });
+  }
+  if (pair.is_convex || !overlap.find(first, second, parameters.potential)) {
+    return sum;
+  }
+  const auto is_fresh = [&](const Region &region) {
+    return std::none_of(known.begin(), known.end(), [&](const RegionMemory &memory) {
+      return memory.is_dilated() && region.faces == RegionFaces{memory.lower_stretch, memory.higher_stretch};
+    });
+  };
+  const double half_stiffness =
+      pair.is_mixed ? mean_stiffness(simulation, number, first, second) : pair.half_stiffness;
+  return sum + half_stiffness * overlap_energy(first, second) * energy_share(overlap, is_fresh);
 }
 
 void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
@@ -77,9 +122,14 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
     const CandidatePair &pair = simulation.candidates().pairs[k];
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
-    if (simulation.counts_here(pair) && blocks.box[a].meets(blocks.box[b])) {
-      const BlockView first = view_of(blocks, a);
-      const BlockView second = view_of(blocks, b);
+    if (!simulation.counts_here(pair)) {
+      continue;
+    }
+    const BlockView first = view_of(blocks, a);
+    const BlockView second = view_of(blocks, b);
+    if (simulation.history().is_dilated(k)) {
+      sum.add(share * dilated_energy(simulation, k, first, second));
+    } else if (first.box.meets(second.box)) {
       const double half_stiffness =
           pair.is_mixed ? mean_stiffness(simulation, k, first, second) : pair.half_stiffness;
       sum.add(share * half_stiffness * overlap_energy(first, second));

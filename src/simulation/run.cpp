@@ -39,9 +39,9 @@ public:
   /// @param lock  of the folder, if there is one yet
   SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
       : communicator_(communicator), directory_(options.directory),
-        simulation_(communicator, scene, options.restart ? options.directory : std::filesystem::path()) {
-    if (!simulation_.restored()) {
-      begin_results(scene, options.overwrite);
+        simulation_(communicator, scene, options.restart ? options.directory : options.from) {
+    if (!options.restart) {
+      begin_results(scene, options);
     } else if (!simulation_.finished()) {
       continue_results(scene, *simulation_.restored());
     }
@@ -49,7 +49,7 @@ public:
     set_up_seconds_ = seconds_since(start_);
   }
 
-  int run() {
+  RunOutcome run() {
     if (simulation_.finished() && simulation_.restored()) {
       if (communicator_.is_root()) {
         std::cerr << fmt::format("the run in {} is finished at t = {:g} s, {} goes on from there\n",
@@ -57,7 +57,7 @@ public:
                                  simulation_.is_staged() ? "a longer limit or a further stage"
                                                          : "a longer run.duration");
       }
-      return exit_code_of_stages();
+      return {exit_code_of_stages(), {}};
     }
     announce();
     write_owners_of_blocks();
@@ -142,14 +142,14 @@ private:
     return waited && stage.verdict == Verdict::undecided ? 7 : 0;
   }
 
-  void begin_results(const Scene &scene, bool overwrite) {
+  void begin_results(const Scene &scene, const RunOptions &options) {
     on_root(communicator_, [&] {
-      prepare_result_directory(directory_, overwrite, scene.resolved);
+      prepare_result_directory(directory_, options.overwrite, scene.resolved);
       histories_.emplace(directory_, scene.monitors);
     });
-    log_.emplace(communicator_.is_root(), directory_, std::ios::trunc);
+    log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet);
     frames_.emplace(communicator_, directory_, simulation_.num_blocks());
-    ledger_.emplace(simulation_);
+    simulation_.restored() ? ledger_.emplace(simulation_.restored()->facts) : ledger_.emplace(simulation_);
     checkpoints_.emplace(communicator_, directory_, std::filesystem::path());
   }
 
@@ -364,7 +364,7 @@ private:
     return fmt::format("{}: its state is no longer finite; try a smaller run.time_step", where);
   }
 
-  int finish() {
+  RunOutcome finish() {
     const bool failed = simulation_.fault().has_value();
     const bool stopped = !simulation_.finished();
     RunSummary summary;
@@ -401,7 +401,7 @@ private:
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());
     forget_stop_signal();
-    return failed ? 5 : stopped ? 6 : exit_code_of_stages();
+    return {failed ? 5 : stopped ? 6 : exit_code_of_stages(), summary};
   }
 
   [[nodiscard]] const Stage &last_stage() const {
@@ -483,10 +483,14 @@ private:
 
 } // namespace
 
-int run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
+RunOutcome run_and_tell(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
   FolderLock lock;
   on_root(communicator, [&] { lock.acquire(options.directory); });
   return SceneRun(communicator, scene, options, lock).run();
+}
+
+int run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
+  return run_and_tell(communicator, scene, options).exit_code;
 }
 
 } // namespace gcpdda

@@ -5,8 +5,8 @@
 
 namespace gcpdda {
 
-RunLog::RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode)
-    : speaks_(speaks), terminal_(speaks && isatty(STDERR_FILENO) != 0) {
+RunLog::RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode, bool quiet)
+    : speaks_(speaks), quiet_(quiet), terminal_(speaks && !quiet && isatty(STDERR_FILENO) != 0) {
   if (speaks_) {
     file_.open(directory / "run.log", std::ios::out | mode);
   }
@@ -15,7 +15,9 @@ RunLog::RunLog(bool speaks, const std::filesystem::path &directory, std::ios::op
 void RunLog::line(const std::string &text) {
   if (speaks_) {
     end_progress();
-    std::cerr << text << '\n';
+    if (!quiet_) {
+      std::cerr << text << '\n';
+    }
     file_ << text << std::endl;
   }
 }

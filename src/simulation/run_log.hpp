@@ -14,7 +14,8 @@ namespace gcpdda {
 class RunLog {
 public:
   /// @param mode  std::ios::trunc, or std::ios::app to go on with an earlier run.log
-  RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode);
+  /// @param quiet  nothing to stderr
+  RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode, bool quiet = false);
 
   void line(const std::string &text);
   void diagnostic(const Diagnostic &diagnostic);
@@ -27,6 +28,7 @@ private:
   void end_progress();
 
   bool speaks_;
+  bool quiet_;
   bool terminal_;
   bool in_progress_ = false;
   std::ofstream file_;

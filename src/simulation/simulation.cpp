@@ -71,7 +71,11 @@ void Simulation::refresh(std::vector<RegionRecord> memory) {
 
   // Fast blocks would use up the usual skin at once: it grows so that half of it outlasts several steps.
   constexpr double steps_in_skin = 16.0;
-  double reach = 0.0;
+  std::array<double, 2> largest{};
+  auto &[reach, dilation] = largest;
+  for (const RegionRecord &record : memory) { // a joint that slip has opened still acts
+    dilation = std::max(dilation, norm(record.memory.dilation));
+  }
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     reach = std::max(reach, motion_bound(blocks_, row, plan_.time_step));
     blocks_.refreshed[row] = blocks_.displacement[row];
@@ -80,12 +84,15 @@ void Simulation::refresh(std::vector<RegionRecord> memory) {
       d.refreshed = d.gradient;
     }
   }
-  communicator_.max(std::span(&reach, 1));
+  communicator_.max(largest);
+  dilation += contacts_.parameters().joints.largest_dilation();
   skin_ = std::max(base_skin_, steps_in_skin * reach);
 
-  ghosts_.rebuild(blocks_, reach_boxes(blocks_, skin_));
+  // A joint is remembered until it is open by twice that; only one of its blocks may be inflated.
+  const double reach_skin = skin_ + 4.0 * dilation;
+  ghosts_.rebuild(blocks_, reach_boxes(blocks_, reach_skin));
   candidates_ = {}; // the old and the new list together would be the largest thing in memory
-  candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, skin_)),
+  candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, reach_skin)),
                                 contacts_.parameters(), std::move(memory), history_, skin_);
   pose(blocks_, 0, blocks_.num_rows());
   stale_ = false;
@@ -210,6 +217,7 @@ void Simulation::gather_forces() {
     forces_.rigid[row] = {};
   }
   contact_count_ = add_contacts(candidates_, contacts_, blocks_, forces_.rigid);
+  contacts_.add_dilation_works(candidates_, blocks_);
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     gather_block(row, gravity_now);
     if (blocks_.is_deformable(row)) {

@@ -169,6 +169,7 @@ void Simulation::adopt(const Scene &after) {
   const std::vector<JointLaw> laws = std::exchange(scene_.joints, after.joints).laws;
   for (std::size_t i = 0; i < laws.size(); ++i) {
     JointLaw &law = scene_.joints.laws[i];
+    law.is_on_edges = laws[i].is_on_edges;
     if (law.allowed_overlap > 0.0) { // it has been resolved for the start
       law.normal_stiffness = laws[i].normal_stiffness;
     }

@@ -318,7 +318,8 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
       {"[material.NAME]", {"density", "youngs_modulus", "poissons_ratio"}},
       {"[joint.NAME]",
        {"materials", "normal_stiffness", "allowed_overlap", "tangential_ratio", "friction_angle_deg",
-        "cohesion", "tension", "residual_friction_angle_deg", "residual_cohesion", "law", "jrc", "jcs"}},
+        "cohesion", "tension", "residual_friction_angle_deg", "residual_cohesion",
+        "dilation_angle_deg", "dilation_limit", "law", "jrc", "jcs"}},
       {"[[block]]",
        {"name", "material", "vertices", "edge_joints", "velocity", "fixed", "fidelity", "fixed_points",
         "prescribed_velocity", "velocity_table", "load"}},
@@ -327,6 +328,7 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
       {"[[pyramid]]", {"name", "material", "origin", "rows", "block_size", "gap"}},
       {"[blocks]", {"file"}},
       {"[output]", {"interval", "history_interval", "checkpoint_interval", "contacts"}},
+      {"[fos]", {"families", "from", "to", "tolerance", "limit", "failure_motion", "local_damping"}},
       {"[[monitor]]", {"block", "name", "point"}}};
   for (const auto &[title, keys] : contract) {
     const std::string text = section(title);

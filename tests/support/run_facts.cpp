@@ -36,12 +36,12 @@ int count_of(const std::string &text, const std::string &part) {
   return count;
 }
 
-std::string summary_text(const fs::path &directory, const std::string &key) {
-  const std::string text = file_text(directory / "summary.json");
+std::string json_value(const fs::path &file, const std::string &key) {
+  const std::string text = file_text(file);
   const std::string quoted = "\"" + key + "\": ";
   const std::size_t found = text.find(quoted);
   if (found == std::string::npos) {
-    throw std::runtime_error("no key " + key + " in summary.json of " + directory.string());
+    throw std::runtime_error("no key " + key + " in " + file.string());
   }
   const std::size_t begin = found + quoted.size();
   std::size_t end = begin;
@@ -62,6 +62,10 @@ std::string summary_text(const fs::path &directory, const std::string &key) {
     depth -= c == '}' || c == ']' ? 1 : 0;
   }
   return text.substr(begin, end - begin);
+}
+
+std::string summary_text(const fs::path &directory, const std::string &key) {
+  return json_value(directory / "summary.json", key);
 }
 
 double summary_number(const fs::path &directory, const std::string &key) {

@@ -190,6 +190,8 @@ inline void expect_same(const Scene &a, const Scene &b) {
     EXPECT_EQ(a.joints.laws[i].tension, b.joints.laws[i].tension);
     EXPECT_EQ(a.joints.laws[i].residual_tan_friction, b.joints.laws[i].residual_tan_friction);
     EXPECT_EQ(a.joints.laws[i].residual_cohesion, b.joints.laws[i].residual_cohesion);
+    EXPECT_EQ(a.joints.laws[i].tan_dilation, b.joints.laws[i].tan_dilation);
+    EXPECT_EQ(a.joints.laws[i].dilation_limit, b.joints.laws[i].dilation_limit);
     EXPECT_EQ(a.joints.laws[i].is_barton_bandis, b.joints.laws[i].is_barton_bandis);
     EXPECT_EQ(a.joints.laws[i].roughness, b.joints.laws[i].roughness);
     EXPECT_EQ(a.joints.laws[i].strength, b.joints.laws[i].strength);

@@ -29,6 +29,7 @@
 // sliding block.
 
 #include "gcpdda/contact/candidates.hpp"
+#include "gcpdda/contact/dilation.hpp"
 #include "gcpdda/contact/overlap.hpp"
 
 #include <array>
@@ -162,6 +163,10 @@ public:
     return region < bond_dyads_.size() ? bond_dyads_[region] : Mat2{};
   }
 
+  /// What slip has done against the pressure in the last evaluation, off the work of friction in the ledger
+  /// of each block.
+  void add_dilation_works(const Candidates &candidates, BlockSystem &system);
+
   /// Replace the shear of a region, friction alone; for the initial state. Arms of x_r from the trial
   /// centroids.
   void set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm);
@@ -200,6 +205,19 @@ private:
   [[nodiscard]] BondShare share_of_bonds(const CandidatePair &pair, const Region &region) const;
   /// Those that hold as regions of their own.
   void append_bonds(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number);
+  /// The pair at hand with `dilation` taken out, and its region that goes on with this memory.
+  const Region *find_dilated(const BlockSystem &system, const CandidatePair &pair, const RegionMemory &memory,
+                             Vec2 dilation);
+  double guessed_slip(const BlockSystem &system, const CandidatePair &pair, const RegionMemory &known);
+  [[nodiscard]] double consistent_slip(const BlockSystem &system, const CandidatePair &pair,
+                                       const RegionMemory &known, const RegionForce &force,
+                                       double guess) const;
+  void evaluate_dilated(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                        const RegionMemory &known);
+  void keep_open(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                 const RegionMemory &known);
+  void dilate(const BlockSystem &system, const CandidatePair &pair, double slip_before,
+              const RegionForce &force, RegionMemory &memory);
   void add_friction(const BlockSystem &system, const CandidatePair &pair, const RelativeVelocity &velocity,
                     const BondShare &bonds, RegionMemory &memory, RegionForce &force);
   void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity, const Region &region,
@@ -226,6 +244,14 @@ private:
   std::vector<Mat2> bond_dyads_;          ///< by region, up to the last bond
   std::vector<BondAtWork> bonds_;         ///< of the pair at hand
   std::vector<double> facing_;            ///< of the pieces at hand, scratch
+  /// N opened by slip, J/m.
+  struct DilationWork {
+    std::uint32_t pair = 0;
+    double work = 0.0;
+  };
+  std::vector<DilationWork> dilation_works_;
+  std::vector<RegionMemory> dilated_; ///< of the pair at hand
+  ClosedPair closed_;                 ///< the same, with one of these taken out
 };
 
 /// Sums of one block's contacts, in the order of the other blocks' ids.

@@ -3,6 +3,7 @@
 #include "gcpdda/base/ids.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,12 +20,14 @@ struct RegionMemory {
   double longest = 0.0; ///< largest extent along t_r so far, m: the tangential stiffness never falls
   double slip = 0.0;    ///< accumulated sliding distance, m
   Vec2 position;        ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
+  Vec2 dilation;        ///< what slip has opened, in axes that turn with the mean of both blocks, m
   std::int32_t lower_stretch = 0;  ///< stretches of the outlines between re-entrant vertices that face each
   std::int32_t higher_stretch = 0; ///< other; 0 for a convex block; of a bond -1 - number of its edge
   std::int32_t law = -1;           ///< that the region was born with; -1: the only one its pair can have
   ContactState state = ContactState::stick;
 
   [[nodiscard]] bool is_bond() const { return lower_stretch < 0; }
+  [[nodiscard]] bool is_dilated() const { return dilation != Vec2{}; }
 
   /// Two copies of one region, not two regions of a pair.
   [[nodiscard]] bool is_same_region(const RegionMemory &other) const {
@@ -57,6 +60,10 @@ struct ContactHistory {
   }
   [[nodiscard]] bool has_bonds(std::size_t pair) const {
     return ranges[pair].count > 0 && of_pair(pair).back().is_bond();
+  }
+  [[nodiscard]] bool is_dilated(std::size_t pair) const {
+    const std::span<const RegionMemory> known = of_pair(pair);
+    return std::any_of(known.begin(), known.end(), [](const RegionMemory &m) { return m.is_dilated(); });
   }
 };
 

@@ -26,16 +26,26 @@ struct JointLaw {
   double tension = 0.0; ///< tensile strength of the bond, Pa
   double residual_tan_friction = 0.0;
   double residual_cohesion = 0.0; ///< Pa
+  /// Slip opens the joint by tan_dilation of it (contact/dilation.hpp), until it has slipped by
+  /// dilation_limit.
+  double tan_dilation = 0.0;
+  double dilation_limit = 0.0; ///< m
   /// Friction angle by Barton and Bandis, see tan_friction_at(); tan_friction is then that of the residual
   /// angle.
   bool is_barton_bandis = false;
   double roughness = 0.0;   ///< JRC
+  double reduction = 1.0;   ///< its tangent is divided by this
   double strength = 0.0;    ///< JCS, Pa
   bool is_on_edges = false; ///< some edge of some block has it; known once all blocks have been looked at
 
   [[nodiscard]] bool has_friction() const { return tan_friction > 0.0 || cohesion > 0.0 || roughness > 0.0; }
   /// The same constants for every contact at all times.
-  [[nodiscard]] bool is_constant() const { return !has_bonds && !is_barton_bandis; }
+  [[nodiscard]] bool is_constant() const { return !has_bonds && !is_barton_bandis && dilation_limit == 0.0; }
+  [[nodiscard]] bool dilates() const { return tan_dilation > 0.0; }
+  /// By how much slip opens the joint, from a fresh one, m.
+  [[nodiscard]] double dilation_at(double slip) const {
+    return tan_dilation * std::min(slip, dilation_limit);
+  }
 
   /// Barton and Choubey, Barton and Bandis [doi:10.1007/BF01261801]:
   ///     phi = phi_r + JRC log10(JCS/sigma_n), at least phi_r and at most 70 degrees (or phi_r, if that is
@@ -44,13 +54,13 @@ struct JointLaw {
   /// @param normal_stress  of the contact, compression positive, Pa
   [[nodiscard]] double tan_friction_at(double normal_stress) const {
     if (!is_barton_bandis || normal_stress >= strength) {
-      return tan_friction;
+      return tan_friction / reduction;
     }
     constexpr double degree = std::numbers::pi / 180.0;
     const double residual = std::atan(tan_friction);
     const double steepest = std::max(70.0 * degree, residual);
     const double angle = residual + roughness * degree * std::log10(strength / normal_stress);
-    return std::tan(std::min(angle, steepest));
+    return std::tan(std::min(angle, steepest)) / reduction;
   }
 };
 
@@ -63,6 +73,15 @@ struct JointLaws {
   [[nodiscard]] std::int32_t between(std::int32_t a, std::int32_t b) const {
     return of_material[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +
                        static_cast<std::size_t>(b)];
+  }
+
+  /// The most that slip opens any joint, m.
+  [[nodiscard]] double largest_dilation() const {
+    double largest = 0.0;
+    for (const JointLaw &law : laws) {
+      largest = std::max(largest, law.dilation_at(law.dilation_limit));
+    }
+    return largest;
   }
 
   /// Law where an edge of law a meets one of law b, -1 for an edge without; `by_materials` where neither has

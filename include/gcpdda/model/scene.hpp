@@ -129,6 +129,17 @@ struct BlockGroup {
   std::vector<std::int64_t> blocks; ///< ids, ascending
 };
 
+/// How the factor of safety is searched: strengths are divided by a factor until the blocks fail.
+struct StrengthReduction {
+  std::vector<std::int32_t> families; ///< laws that are weakened, index into JointLaws::laws; empty: all
+  double from = 0.5;                  ///< factor that is expected to hold
+  double to = 4.0;                    ///< one that is expected to fail
+  double tolerance = 0.01;            ///< width of the last bracket over its lower end
+  double limit = 0.0;                 ///< s a trial lasts at most; 0: as long as the last settle stage
+  double failure_motion = 0.1;        ///< share of its size that a block moves when it fails
+  double local_damping = 0.0;
+};
+
 class BlockSource;
 
 /// The whole input after validation; every rank holds the same one.
@@ -149,7 +160,8 @@ struct Scene {
   OutputSettings output;
   std::vector<Monitor> monitors;
   std::vector<Stage> stages; ///< in their order; none for one run of run.duration
-  std::string resolved;      ///< the scene after --set, as TOML text
+  StrengthReduction reduction;
+  std::string resolved; ///< the scene after --set, as TOML text
 };
 
 } // namespace gcpdda

@@ -25,6 +25,9 @@ public:
   /// Of the calling rank alone.
   static Communicator self();
 
+  /// Of the ranks that say the same number, in their order here. Collective.
+  [[nodiscard]] Communicator split(int group) const;
+
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] bool is_root() const { return rank_ == 0; }

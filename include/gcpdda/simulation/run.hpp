@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gcpdda/io/result_files.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
@@ -13,7 +14,19 @@ struct RunOptions {
   std::filesystem::path directory;
   bool overwrite = false;
   bool restart = false; ///< go on from the newest checkpoint in the folder
+  /// A run of its own that begins with the newest checkpoint of this folder; empty for t = 0.
+  std::filesystem::path from = {};
+  bool quiet = false; ///< the log goes to its file alone
 };
+
+/// How a run ended.
+struct RunOutcome {
+  int exit_code = 0; ///< 0 done, 5 numerical failure, 6 stopped by the signal with a checkpoint, 7 undecided
+  RunSummary summary;
+};
+
+/// The same as run_scene() with all that is known of the run. Collective.
+RunOutcome run_and_tell(const Communicator &communicator, const Scene &scene, const RunOptions &options);
 
 /// Run a valid scene to its end and write everything, with checkpoints by output.checkpoint_interval and when
 /// SIGUSR1 comes (stop_signal.hpp). Collective.

@@ -69,6 +69,13 @@ struct Communicator::Handle {
 
   explicit Handle(MPI_Comm parent) {
     check(MPI_Comm_dup(parent, &value), "MPI_Comm_dup");
+    return_errors();
+  }
+  Handle(MPI_Comm parent, int group, int rank) {
+    check(MPI_Comm_split(parent, group, rank, &value), "MPI_Comm_split");
+    return_errors();
+  }
+  void return_errors() const {
     check(MPI_Comm_set_errhandler(value, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   }
   ~Handle() {
@@ -94,6 +101,10 @@ Communicator Communicator::world() {
 
 Communicator Communicator::self() {
   return Communicator(std::make_shared<Handle>(MPI_COMM_SELF));
+}
+
+Communicator Communicator::split(int group) const {
+  return Communicator(std::make_shared<Handle>(handle_->value, group, rank_));
 }
 
 void Communicator::barrier() const {

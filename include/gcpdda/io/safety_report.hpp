@@ -1,0 +1,68 @@
+#pragma once
+
+#include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/model/stage.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gcpdda {
+
+/// A run with all strengths divided by a factor.
+struct StrengthTrial {
+  double factor = 1.0;
+  Verdict verdict = Verdict::undecided; ///< also where the run has ended in a numerical failure
+  bool decisive = false;                ///< the bracket rests on it; others were run because ranks were free
+  double time = 0.0;                    ///< simulated, s
+  double moved = 0.0;                   ///< largest motion of a block, in sizes of that block
+  double unbalanced_ratio = 0.0;
+  std::int64_t steps = 0;
+  std::int64_t evaluations = 0; ///< of candidate pairs, all ranks
+  double cpu_s = 0.0;           ///< all ranks
+  int ranks = 1;
+  std::string message;
+  std::filesystem::path directory;
+};
+
+/// A block in the picture of how the blocks fail.
+struct FailingBlock {
+  std::int64_t block = 0;
+  std::string name;
+  std::vector<Vec2> vertices; ///< at failure, m
+  bool fixed = false;
+  bool moves = false;    ///< at least a tenth as far as the one that moves most
+  Vec2 displacement;     ///< of the centroid since the trial began, m
+  double rotation = 0.0; ///< since the trial began, rad
+  double motion = 0.0;   ///< largest of any of its points, m
+};
+
+/// What gcpdda fos has found.
+struct SafetyReport {
+  std::vector<std::string> families;   ///< laws that were weakened
+  double tolerance = 0.0;              ///< asked for
+  std::optional<double> holds;         ///< largest factor at which the blocks settled
+  std::optional<double> fails;         ///< smallest one at which they failed
+  std::vector<double> undecided;       ///< factors between these two without a verdict
+  StrengthTrial settled;               ///< the run up to the settled state, at factor 1
+  std::vector<StrengthTrial> trials;   ///< by factor
+  std::vector<FailingBlock> mechanism; ///< of `fails`, by BlockId; empty without it
+
+  /// The bracket is as narrow as asked for.
+  [[nodiscard]] bool is_found() const { return holds && fails && *fails - *holds <= tolerance * *holds; }
+};
+
+/// What people read.
+std::string to_text(const SafetyReport &report);
+
+/// fos.txt, fos.json, fos_trials.csv, and with a mechanism fos_blocks.csv and fos.svg. Root only; throws
+/// FileError.
+void write_safety_report(const std::filesystem::path &directory, const SafetyReport &report);
+
+/// Makes the folder of a search. One that holds a search or a run is refused with FileError unless
+/// `overwrite`, which removes what a search writes. Root only.
+void prepare_safety_directory(const std::filesystem::path &directory, bool overwrite);
+
+} // namespace gcpdda

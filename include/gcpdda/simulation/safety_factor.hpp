@@ -1,0 +1,61 @@
+#pragma once
+
+// The factor of safety by strength reduction: friction (its tangent), cohesion and tension of the families of
+// joints are divided by a factor, every time from the same settled state, until the blocks fail.
+//
+// Which factors are tried follows from the verdicts alone, never from how many trials run at once: first the
+// two ends, then the middle of what lies between the largest factor that has settled and the smallest that
+// has failed. A trial without a verdict in its limit moves neither: what lies on both sides of it is narrowed
+// down on its own, and the bracket keeps the stretch between. With ranks to spare the trials that would come
+// next after either outcome run at the same time, each on its own ranks. A trial gives the same bits on any
+// number of ranks, and so the factor is the same.
+//
+// Barton and Bandis' tan(phi) is divided at every pressure. A dilation angle above the friction that is left
+// is lowered to it: otherwise slip would do more work than friction takes.
+
+#include "gcpdda/io/safety_report.hpp"
+#include "gcpdda/model/scene.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace gcpdda {
+
+/// Verdict of the trial at a factor; none where it has not run.
+using TrialVerdicts = std::function<std::optional<Verdict>(double factor)>;
+
+/// Where a search stands.
+struct SafetySearch {
+  std::optional<double> next; ///< the factor to try; none at the end
+  std::optional<double> holds;
+  std::optional<double> fails;
+  std::vector<double> undecided; ///< between these two, ascending
+  std::vector<double> decisive;  ///< what all this rests on, in the order they were asked for
+};
+SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &verdicts);
+
+/// The next factor and those that would follow it after either outcome, in the order of how soon they may be
+/// asked for; at most `most` of them.
+std::vector<double> next_factors(const StrengthReduction &reduction, const TrialVerdicts &verdicts,
+                                 std::size_t most);
+
+/// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints.
+Scene weakened_scene(const Scene &scene, double factor);
+
+struct SafetyOptions {
+  std::filesystem::path directory;
+  bool overwrite = false;
+};
+
+/// Find the factor of a valid scene and write everything: `settled` (the run up to the end of the last settle
+/// stage), `trials`, and the report. A scene without stages settles for run.duration at most. Collective.
+///
+/// @return exit code: 0 found within the tolerance; 5 numerical failure before the settled state; 6 stopped by
+///         the signal; 7 the scene does not settle, or the bracket is wider than asked for
+/// @throws SceneError, FileError
+int find_safety_factor(const Communicator &communicator, Scene scene, const SafetyOptions &options);
+
+} // namespace gcpdda

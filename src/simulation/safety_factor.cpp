@@ -1,0 +1,321 @@
+#include "gcpdda/simulation/safety_factor.hpp"
+
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/geometry/polygon.hpp"
+#include "gcpdda/io/run_comparison.hpp"
+#include "gcpdda/model/generators.hpp"
+#include "gcpdda/simulation/run.hpp"
+#include "gcpdda/simulation/simulation.hpp"
+#include "gcpdda/simulation/stop_signal.hpp"
+#include "rank_facts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <iostream>
+#include <iterator>
+#include <map>
+
+namespace gcpdda {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Blocks below which another rank costs more than it saves.
+constexpr std::int64_t fewest_blocks_per_rank = 500;
+
+/// What ranks tell each other of a trial; the strings are the root's of its group.
+struct TrialFacts {
+  double factor = 0.0;
+  std::int64_t verdict = 0;
+  double time = 0.0;
+  double moved = 0.0;
+  double unbalanced_ratio = 0.0;
+  std::int64_t steps = 0;
+  std::int64_t evaluations = 0;
+  double cpu_s = 0.0;
+  std::int64_t ranks = 0;
+  std::int64_t exit_code = 0;
+};
+
+std::int64_t sum_of(const std::vector<std::int64_t> &counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+}
+
+TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time) {
+  TrialFacts facts;
+  facts.factor = factor;
+  facts.exit_code = outcome.exit_code;
+  facts.ranks = outcome.summary.ranks;
+  facts.evaluations = sum_of(outcome.summary.evaluations_per_rank);
+  facts.cpu_s = outcome.summary.cpu_s;
+  facts.time = outcome.summary.time - start_time;
+  if (!outcome.summary.stages.empty()) {
+    const StageResult &stage = outcome.summary.stages.back().result;
+    facts.verdict = static_cast<std::int64_t>(outcome.exit_code == 0 ? stage.verdict : Verdict::undecided);
+    facts.moved = stage.moved;
+    facts.unbalanced_ratio = stage.unbalanced_ratio;
+    facts.steps = stage.steps;
+  }
+  return facts;
+}
+
+/// The last frame of a run.
+FrameContent last_frame(const fs::path &directory) {
+  fs::path last;
+  for (const fs::directory_entry &entry : fs::directory_iterator(directory / "frames")) {
+    const fs::path path = entry.path();
+    if (path.filename().string().starts_with("frame_") && path.extension() == ".hdf" && path > last) {
+      last = path;
+    }
+  }
+  return read_frame(last);
+}
+
+class SafetyFactor {
+public:
+  SafetyFactor(const Communicator &world, const Scene &scene, const SafetyOptions &options)
+      : world_(world), scene_(scene), options_(options) {}
+
+  int find() {
+    on_root(world_, [&] { prepare_safety_directory(options_.directory, options_.overwrite); });
+    if (const int code = settle(); code != 0) {
+      return code;
+    }
+    const std::size_t at_once = choose_groups();
+    while (true) {
+      const std::vector<double> factors = next_factors(
+          scene_.reduction, [&](double factor) { return verdict_of(factor); }, at_once);
+      if (factors.empty()) {
+        break;
+      }
+      if (run_trials(factors)) {
+        say(fmt::format("stopped by a signal after {} trials; a search does not go on from there\n",
+                        trials_.size()));
+        return 6;
+      }
+    }
+    return tell();
+  }
+
+private:
+  void say(const std::string &text) const {
+    if (world_.is_root()) {
+      std::cerr << text << std::flush;
+    }
+  }
+
+  // The settled state, on all ranks.
+  int settle() {
+    Scene start = scene_;
+    const auto last = std::find_if(start.stages.rbegin(), start.stages.rend(),
+                                   [](const Stage &stage) { return stage.kind == StageKind::settle; });
+    if (last == start.stages.rend()) {
+      throw SceneError({{Severity::error,
+                         {},
+                         "the scene has stages but none of kind settle",
+                         "strengths are lowered from a state of rest",
+                         "write [[stage]] with kind = \"settle\" and a limit"}});
+    }
+    start.stages.erase(last.base(), start.stages.end());
+    const RunOutcome outcome =
+        run_and_tell(world_, start, {settled_directory(), options_.overwrite, false, {}, false});
+    const TrialFacts facts = facts_of(1.0, outcome, 0.0);
+    report_.settled = trial_of(facts);
+    report_.settled.steps = outcome.summary.steps;
+    start_time_ = outcome.summary.time;
+    num_blocks_ = outcome.summary.blocks;
+    if (outcome.exit_code != 0) {
+      return outcome.exit_code;
+    }
+    if (facts.verdict != static_cast<std::int64_t>(Verdict::settled)) {
+      say("the blocks fail while they settle, with their full strength: let them settle with more "
+          "(stage[].set) and "
+          "bring it back in a stage of kind change, or use a smaller scene of the same slope\n");
+      return 7;
+    }
+    return 0;
+  }
+
+  /// Trials at once.
+  std::size_t choose_groups() {
+    const std::int64_t per_trial =
+        std::clamp<std::int64_t>(num_blocks_ / fewest_blocks_per_rank, 1, world_.size());
+    const std::int64_t groups = world_.size() / per_trial;
+    group_number_ = static_cast<int>(world_.rank() * groups / world_.size());
+    group_.emplace(world_.split(group_number_));
+    return static_cast<std::size_t>(groups);
+  }
+
+  /// Each group takes one; true if the signal came.
+  bool run_trials(const std::vector<double> &factors) {
+    std::vector<TrialFacts> mine;
+    std::string trouble;
+    std::string message;
+    if (static_cast<std::size_t>(group_number_) < factors.size()) {
+      const double factor = factors[static_cast<std::size_t>(group_number_)];
+      try {
+        const RunOutcome outcome = run_trial(factor);
+        message = outcome.exit_code == 0 || outcome.exit_code == 7 ? "" : outcome.summary.message;
+        if (group_->is_root()) {
+          mine.push_back(facts_of(factor, outcome, start_time_));
+        }
+      } catch (const std::exception &error) { // of the whole group; the others must not wait for it
+        trouble = fmt::format("the trial at factor {:g} cannot run: {}", factor, error.what());
+      }
+    }
+    return share(mine, message, trouble);
+  }
+
+  RunOutcome run_trial(double factor) {
+    Scene weakened = weakened_scene(scene_, factor);
+    weakened.resolved =
+        fmt::format("# a trial of gcpdda fos: strengths as below divided by {:.17g}\n", factor) +
+        scene_.resolved;
+    const fs::path directory = trial_directory(factor);
+    RunOutcome outcome =
+        run_and_tell(*group_, weakened, {directory, false, false, settled_directory(), true});
+    on_root(*group_, [&] { fs::remove_all(directory / "checkpoints"); }); // large, and of no further use
+    return outcome;
+  }
+
+  /// What every group has found goes to all; the first trouble ends the search on all ranks.
+  bool share(const std::vector<TrialFacts> &mine, const std::string &message, const std::string &trouble) {
+    const auto texts = world_.all_gather(std::vector<char>(trouble.begin(), trouble.end()));
+    for (const std::vector<char> &text : texts) {
+      if (!text.empty()) {
+        throw FileError(std::string(text.begin(), text.end()));
+      }
+    }
+    const auto messages = world_.all_gather(std::vector<char>(message.begin(), message.end()));
+    const auto all = world_.all_gather(mine);
+    bool stopped = false;
+    for (std::size_t rank = 0; rank < all.size(); ++rank) {
+      for (const TrialFacts &facts : all[rank]) {
+        StrengthTrial trial = trial_of(facts);
+        trial.message.assign(messages[rank].begin(), messages[rank].end());
+        trial.directory = trial_directory(facts.factor);
+        trials_[facts.factor] = trial;
+        stopped = stopped || facts.exit_code == 6;
+        say(fmt::format("factor {:.6g}: {} after {:.4g} s, {} steps, {:.2f} CPU s on {} rank{} {}\n",
+                        facts.factor, word_of(trial.verdict), trial.time, trial.steps, trial.cpu_s,
+                        trial.ranks, trial.ranks == 1 ? "" : "s", trial.message));
+      }
+    }
+    return stopped;
+  }
+
+  static std::string word_of(Verdict verdict) {
+    return verdict == Verdict::settled ? "holds" : verdict == Verdict::failed ? "fails" : "undecided";
+  }
+
+  static StrengthTrial trial_of(const TrialFacts &facts) {
+    StrengthTrial trial;
+    trial.factor = facts.factor;
+    trial.verdict = static_cast<Verdict>(facts.verdict);
+    trial.time = facts.time;
+    trial.moved = facts.moved;
+    trial.unbalanced_ratio = facts.unbalanced_ratio;
+    trial.steps = facts.steps;
+    trial.evaluations = facts.evaluations;
+    trial.cpu_s = facts.cpu_s;
+    trial.ranks = static_cast<int>(facts.ranks);
+    return trial;
+  }
+
+  [[nodiscard]] std::optional<Verdict> verdict_of(double factor) const {
+    const auto trial = trials_.find(factor);
+    return trial == trials_.end() ? std::nullopt : std::optional(trial->second.verdict);
+  }
+
+  [[nodiscard]] fs::path settled_directory() const { return options_.directory / "settled"; }
+  [[nodiscard]] fs::path trial_directory(double factor) const {
+    return options_.directory / "trials" / fmt::format("F{:.9g}", factor);
+  }
+
+  int tell() {
+    const SafetySearch search = follow(scene_.reduction, [&](double factor) { return verdict_of(factor); });
+    report_.tolerance = scene_.reduction.tolerance;
+    report_.holds = search.holds;
+    report_.fails = search.fails;
+    report_.undecided = search.undecided;
+    for (std::size_t i = 0; i < scene_.joints.laws.size(); ++i) {
+      const std::vector<std::int32_t> &chosen = scene_.reduction.families;
+      if (chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(i)) > 0) {
+        report_.families.push_back(scene_.joints.laws[i].name);
+      }
+    }
+    for (const auto &[factor, trial] : trials_) {
+      report_.trials.push_back(trial);
+      report_.trials.back().decisive = std::count(search.decisive.begin(), search.decisive.end(), factor) > 0;
+    }
+    on_root(world_, [&] {
+      if (report_.fails) {
+        find_mechanism(*report_.fails);
+      }
+      write_safety_report(options_.directory, report_);
+      std::cout << to_text(report_) << std::flush;
+    });
+    return report_.is_found() ? 0 : 7;
+  }
+
+  // Root alone. What each block has done since the trial began, by the frames of both runs.
+  void find_mechanism(double factor) {
+    const FrameContent begin = last_frame(settled_directory());
+    const FrameContent end = last_frame(trial_directory(factor));
+    double farthest = 0.0;
+    for (std::size_t row = 0; row < end.block.size(); ++row) {
+      const auto found = std::lower_bound(begin.block.begin(), begin.block.end(), end.block[row]);
+      const auto before = static_cast<std::size_t>(found - begin.block.begin());
+      FailingBlock block;
+      block.block = end.block[row];
+      block.name = block_name(scene_, block.block);
+      block.fixed = end.kind[row] == 0;
+      for (std::int64_t k = end.offsets[row]; k < end.offsets[row + 1]; ++k) {
+        const std::array<double, 3> &point = end.points[static_cast<std::size_t>(k)];
+        block.vertices.push_back({point[0], point[1]});
+      }
+      block.displacement = {end.displacement[row][0] - begin.displacement[before][0],
+                            end.displacement[row][1] - begin.displacement[before][1]};
+      block.rotation = end.rotation[row] - begin.rotation[before];
+      const Vec2 centroid = polygon_moments(block.vertices).centroid;
+      double radius = 0.0;
+      for (const Vec2 vertex : block.vertices) {
+        radius = std::max(radius, norm(vertex - centroid));
+      }
+      block.motion = block.fixed ? 0.0 : norm(block.displacement) + radius * std::abs(block.rotation);
+      farthest = std::max(farthest, block.motion);
+      report_.mechanism.push_back(std::move(block));
+    }
+    for (FailingBlock &block : report_.mechanism) {
+      block.moves = !block.fixed && block.motion >= 0.1 * farthest;
+    }
+  }
+
+  Communicator world_;
+  const Scene &scene_;
+  SafetyOptions options_;
+  std::optional<Communicator> group_;
+  int group_number_ = 0;
+  double start_time_ = 0.0; ///< of all trials, s
+  std::int64_t num_blocks_ = 0;
+  std::map<double, StrengthTrial> trials_; ///< by factor
+  SafetyReport report_;
+};
+
+} // namespace
+
+int find_safety_factor(const Communicator &communicator, Scene scene, const SafetyOptions &options) {
+  if (scene.stages.empty()) {
+    Stage &settle = scene.stages.emplace_back();
+    settle.name = "settle";
+    settle.kind = StageKind::settle;
+    settle.duration = scene.run.duration;
+    settle.until_verdict = true;
+    settle.local_damping = 0.8; // as a settle stage that says nothing else
+  }
+  return SafetyFactor(communicator, scene, options).find();
+}
+
+} // namespace gcpdda

@@ -1,0 +1,66 @@
+// The same factor of safety whatever runs at once.
+
+#include "gcpdda/simulation/safety_factor.hpp"
+#include "shared_folder.hpp"
+#include "support/plane_failure.hpp"
+#include "support/run_facts.hpp"
+#include "support/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace gcpdda {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Keeps what is written to std::cout while it lives.
+class CapturedOutput {
+public:
+  CapturedOutput() : before_(std::cout.rdbuf(text_.rdbuf())) {}
+  ~CapturedOutput() { std::cout.rdbuf(before_); }
+  CapturedOutput(const CapturedOutput &) = delete;
+  CapturedOutput &operator=(const CapturedOutput &) = delete;
+
+private:
+  std::ostringstream text_;
+  std::streambuf *before_;
+};
+
+TEST(SafetyFactor, IsTheSameOnAnyNumberOfRanks) {
+  const Communicator world = Communicator::world();
+  const testing::SharedFolder folder(world);
+  const testing::CapturedLog log;
+  const CapturedOutput output;
+  const Scene scene = testing::scene_of(testing::plane_failure_toml(0.5), {"fos.tolerance=0.02", "fos.to=3"});
+  EXPECT_EQ(find_safety_factor(world, scene, {folder.path("together"), false}), 0);
+  world.barrier();
+  if (!world.is_root()) {
+    return;
+  }
+  EXPECT_EQ(find_safety_factor(Communicator::self(), scene, {folder.path("alone"), false}), 0);
+  const auto value = [&](const char *run, const char *key) {
+    return testing::json_value(folder.path(run) / "fos.json", key);
+  };
+  for (const char *key : {"factor", "holds", "fails", "undecided", "moving"}) {
+    EXPECT_EQ(value("together", key), value("alone", key)) << key;
+  }
+  EXPECT_NEAR(std::stod(value("alone", "factor")), testing::plane_failure_factor(0.5), 0.04);
+  const int together =
+      testing::count_of(testing::file_text(folder.path("together") / "fos.json"), "\"ranks\"");
+  const int alone = testing::count_of(testing::file_text(folder.path("alone") / "fos.json"), "\"ranks\"");
+  EXPECT_GE(together, alone) << "ranks to spare try factors that might be next";
+}
+
+TEST(SafetyFactor, SearchThatCannotRunEndsOnAllRanks) {
+  const Communicator world = Communicator::world();
+  const testing::SharedFolder folder(world);
+  const testing::CapturedLog log;
+  Scene scene = testing::scene_of(testing::plane_failure_toml(0.0));
+  scene.stages.front().kind = StageKind::run;
+  EXPECT_THROW(find_safety_factor(world, scene, {folder.path("fos"), false}), std::runtime_error);
+}
+
+} // namespace
+} // namespace gcpdda

@@ -1,0 +1,71 @@
+// gcpdda fos as a person calls it: what it writes, says and refuses.
+
+#include "child_process.hpp"
+#include "support/plane_failure.hpp"
+#include "support/run_facts.hpp"
+
+#include <gtest/gtest.h>
+
+namespace gcpdda {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::file_text;
+using testing::json_value;
+using testing::lines_of;
+using testing::Outcome;
+using testing::run_gcpdda;
+using testing::WorkFolder;
+
+TEST(Fos, WritesWhatItFinds) {
+  const WorkFolder folder;
+  folder.write("plane.toml", testing::plane_failure_toml(0.0));
+  const std::vector<std::string> call{"fos",  "plane.toml", "--tolerance", "0.3",
+                                      "--to", "2.5",        "--from",      "0.8"};
+  const Outcome outcome = run_gcpdda(2, call, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("factor of safety"), std::string::npos) << outcome.out;
+  const fs::path results = folder / "results/plane_fos";
+  EXPECT_EQ(file_text(results / "fos.txt"), outcome.out);
+  const double holds = std::stod(json_value(results / "fos.json", "holds"));
+  const double fails = std::stod(json_value(results / "fos.json", "fails"));
+  EXPECT_LT(holds, testing::plane_failure_factor(0.0));
+  EXPECT_GT(fails, testing::plane_failure_factor(0.0));
+  EXPECT_LE(fails - holds, 0.3 * holds);
+  const std::vector<std::string> trials = lines_of(file_text(results / "fos_trials.csv"));
+  EXPECT_GE(trials.size(), 4U) << "a header, both ends and what lies between";
+  EXPECT_EQ(json_value(results / "fos.json", "block"), "\"slider\"") << "the block that moves";
+  EXPECT_NE(file_text(results / "fos.svg").find("<polygon"), std::string::npos);
+  EXPECT_TRUE(fs::exists(results / "settled/checkpoints"));
+  EXPECT_TRUE(fs::exists(results / "trials/F2.5/frames/frame_000000.hdf"));
+
+  const Outcome again = run_gcpdda(0, call, folder);
+  EXPECT_EQ(again.exit_code, 4);
+  EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
+  const Outcome inside = run_gcpdda(0, {"fos", "plane.toml", "--out", "results/plane_fos/settled"}, folder);
+  EXPECT_EQ(inside.exit_code, 4) << "the folder of a run";
+  std::vector<std::string> replace = call;
+  replace.insert(replace.end(), {"--overwrite", "--set", "fos.limit=0.01"});
+  EXPECT_EQ(run_gcpdda(0, replace, folder).exit_code, 7) << "too short for any verdict";
+  EXPECT_FALSE(fs::exists(results / "trials/F2.5")) << "of the search before";
+  EXPECT_EQ(json_value(results / "fos.json", "holds"), "null");
+}
+
+TEST(Fos, RefusesWhatItCannotSearch) {
+  const WorkFolder folder;
+  folder.write("plane.toml", testing::plane_failure_toml(0.0));
+  const Outcome family = run_gcpdda(0, {"fos", "plane.toml", "--families", "defalt,default"}, folder);
+  EXPECT_EQ(family.exit_code, 3);
+  EXPECT_NE(family.err.find("did you mean 'default'?"), std::string::npos) << family.err;
+  const Outcome word = run_gcpdda(0, {"fos", "plane.toml", "--tolerance", "little"}, folder);
+  EXPECT_EQ(word.exit_code, 3);
+  EXPECT_NE(word.err.find("'tolerance' in [fos]"), std::string::npos) << word.err;
+  const Outcome unsettled =
+      run_gcpdda(0, {"fos", "plane.toml", "--set", "joint.default.friction_angle_deg=20"}, folder);
+  EXPECT_EQ(unsettled.exit_code, 7);
+  EXPECT_NE(unsettled.err.find("fail while they settle"), std::string::npos) << unsettled.err;
+  EXPECT_FALSE(fs::exists(folder / "results/plane_fos/fos.json"));
+}
+
+} // namespace
+} // namespace gcpdda
