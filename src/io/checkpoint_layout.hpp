@@ -136,8 +136,9 @@ template <auto Member> constexpr Field<std::vector<RegionRecord>> of_region(cons
 
 } // namespace detail
 
-// Left out: what the scene says (properties, shapes, stiffness, loads, anchors, initial strain), what follows from it and the
-// time step (matrices), and where blocks were at the last refresh, since a restart begins with one.
+// Left out: what the scene says (properties, shapes, stiffness, loads, anchors, initial strain), what follows
+// from it and the time step (matrices), and where blocks were at the last refresh, since a restart begins
+// with one.
 inline constexpr std::array block_fields{
     detail::of_row<&BlockSystem::displacement>("/block/displacement"),
     detail::of_row<&BlockSystem::velocity>("/block/velocity"),

@@ -199,9 +199,9 @@ constexpr Key all_keys[] = {
 
   {"in_situ", Kind::table, optional, any, "", "", "[in_situ]", "Stress that is in the rock before anything happens, compression positive: blocks and contacts begin in equilibrium under it. Edges that touch nothing do not bear it."},
   {"in_situ.vertical_stress", Kind::number, optional, from_to(0, 1e15), "", "<0.0 with level>", "2.6e6", "[Pa] Stress along gravity (along y without gravity): at the level if there is one, such as the load on a surface, else everywhere."},
-  {"in_situ.k0", Kind::number, optional, from_to(0, 100), "", "1.0", "0.7", "Stress across gravity over the stress along it."},
+  {"in_situ.k0", Kind::number, optional, from_to(0, 100), "", "<1.0>", "0.7", "Stress across gravity over the stress along it."},
   {"in_situ.principal_stresses", Kind::vector2, optional, from_to(0, 1e15), "", "<none>", "[4e6, 2e6]", "[Pa] Instead of vertical_stress: two stresses at right angles."},
-  {"in_situ.principal_angle_deg", Kind::number, optional, from_to(-360, 360), "", "0.0", "30.0", "[degrees] Direction of the first of them against the x axis, counter-clockwise."},
+  {"in_situ.principal_angle_deg", Kind::number, optional, from_to(-360, 360), "", "<0.0>", "30.0", "[degrees] Direction of the first of them against the x axis, counter-clockwise."},
   {"in_situ.level", Kind::number, optional, from_to(-1e9, 1e9), "", "<none: the same stress everywhere>", "100.0", "[m] Height against gravity (y) where these stresses are; below it they grow with the weight of the rock, which they bear. A stress that is the same everywhere bears no weight."},
   {"in_situ.density", Kind::number, optional, above_to(0, 1e12), "", "<that of the materials if they have the same>", "2600.0", "[kg/m3] Density the growth with depth is computed with."},
 

@@ -27,7 +27,7 @@ density = 2600
 youngs_modulus = 20e9
 poissons_ratio = 0.2
 [joint.default]
-normal_stiffness = 2e9
+normal_stiffness = 2e10
 friction_angle_deg = 35
 [in_situ]
 level = 60
@@ -38,27 +38,27 @@ polygon = [[0, 0], [24, 0], [24, 18], [0, 18]]
 fixed = ["bottom", "left", "right", "top"]
 [[joint_set]]
 dip_deg = 60
-spacing = 1.6
+spacing = 2.3
 [[joint_set]]
 dip_deg = -20
-spacing = 1.4
+spacing = 2.1
 [[opening]]
 name = "tunnel"
 shape = "circle"
 centre = [12, 9]
 width = 5
 [output]
-interval = 0.01
+interval = 0.002
 [[stage]]
 kind = "run"
-duration = 0.01
+duration = 0.002
 [[stage]]
 kind = "excavate"
 openings = ["tunnel"]
-relax = 0.01
+relax = 0.002
 [[stage]]
 kind = "run"
-duration = 0.02
+duration = 0.004
 )";
 
 const std::vector<std::string> none;

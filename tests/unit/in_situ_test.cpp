@@ -96,10 +96,12 @@ TEST_P(InSitu, NothingMovesWhenTheRunBegins) {
   EXPECT_LT(later.unbalanced, 3e-3);
   EXPECT_LT(later.moved, 0.02 * 0.64e-3) << "of the overlap";
 
-  with.in_situ.clear();
-  Simulation without(Communicator::self(), with.scene());
-  EXPECT_EQ(balance_of(without).unbalanced, simulation.scene().run.gravity == Vec2{} ? 0.0 : 1.0)
-      << "no contact bears anything, all weight is unbalanced";
+  if (simulation.scene().run.gravity != Vec2{}) {
+    with.in_situ.clear();
+    const Simulation without(Communicator::self(), with.scene());
+    EXPECT_GT(balance_of(without).unbalanced, 0.99)
+        << "no contact bears more than the block beside it weighs";
+  }
 }
 
 const std::string two_laws = R"([joint.default]
@@ -147,9 +149,11 @@ TEST(InSituStress, IsThatOfTheBlocks) {
     EXPECT_NEAR(own.yy, -vertical, 1e-9 * vertical);
     EXPECT_NEAR(own.xx, -0.7 * vertical, 1e-9 * vertical);
     EXPECT_NEAR(own.xy, 0.0, 1e-9 * vertical);
-    EXPECT_NEAR(by_contacts[1], -vertical, 3e-3 * vertical) << "its overlaps' ends";
-    EXPECT_NEAR(by_contacts[0], -0.7 * vertical, 3e-3 * vertical);
-    EXPECT_NEAR(by_contacts[2], 0.0, 3e-3 * vertical);
+    // What the ends of its joints lack: about d/l of each.
+    const double lacking = 8.0 * (vertical / 5e9) / std::sqrt(block.area) * vertical;
+    EXPECT_NEAR(by_contacts[1], -vertical, lacking);
+    EXPECT_NEAR(by_contacts[0], -0.7 * vertical, lacking);
+    EXPECT_NEAR(by_contacts[2], 0.0, lacking);
   }
 }
 
@@ -279,12 +283,13 @@ INSTANTIATE_TEST_SUITE_P(
             "too, leave it out of 'fixed' or of 'roller'"},
         BadInSitu{
             "Ramp", "[in_situ]\nlevel = 10\ndensity = 2600",
-            "7:16: error: 'gravity_ramp' in [run] has no meaning beside 'level' in [in_situ], the rock is in "
+            "6:16: error: 'gravity_ramp' in [run] has no meaning beside 'level' in [in_situ], the rock is in "
             "equilibrium under its whole weight, leave one of them out",
             "gravity_ramp = 0.5\n"},
-        BadInSitu{"Negative", "[in_situ]\nvertical_stress = -1e6",
-                  "2:19: error: 'vertical_stress' in [in_situ] is -1e+06, it must be at least 0 and at most "
-                  "1e+15, for example vertical_stress = 2.6e6"}),
+        BadInSitu{
+            "Negative", "[in_situ]\nvertical_stress = -1e6",
+            "2:19: error: 'vertical_stress' in [in_situ] is -1000000, it must be at least 0 and at most "
+            "1e+15, for example vertical_stress = 2.6e6"}),
     [](const auto &param) { return param.param.name; });
 
 } // namespace
