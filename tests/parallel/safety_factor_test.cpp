@@ -10,7 +10,7 @@
 
 #include <sstream>
 
-namespace gcpdda {
+namespace gcpdda::safety_factor_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ TEST(SafetyFactor, SearchThatCannotRunEndsOnAllRanks) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::safety_factor_test

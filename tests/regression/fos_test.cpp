@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace gcpdda {
+namespace gcpdda::fos_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +68,4 @@ TEST(Fos, RefusesWhatItCannotSearch) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::fos_test

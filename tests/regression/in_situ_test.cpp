@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace gcpdda {
+namespace gcpdda::in_situ_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,4 +91,4 @@ TEST(InSituRun, IsTheSameOnAnyNumberOfRanksAndThroughARestart) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::in_situ_test

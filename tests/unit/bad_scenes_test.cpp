@@ -301,24 +301,6 @@ materials = ["clay", "granite"]
 [joint.b]
 materials = ["granite", "clay"])",
      {R"(12:13: error: [joint.b] is a second law for 'granite' and 'clay', [joint.a] at line 9 is for them too, keep one of them)"}},
-    {"WaterWithoutALine", 13, R"(fixed = true
-[water.lake]
-phreatic = [[0, 1]])",
-     {R"(15:12: error: 'phreatic' in [water.lake] has one point, a line has at least two, add its other end)"}},
-    {"WaterThatTurnsBack", 13, R"(fixed = true
-[water.lake]
-phreatic = [[0, 1], [3, 1], [3, 2]])",
-     {R"(15:29: error: point 2 of 'phreatic' in [water.lake] does not lie to the right of the one before, the line gives one height for each x, write its points from left to right)"}},
-    {"WaterInAnUnknownJoint", 13, R"(fixed = true
-[water.lake]
-phreatic = [[0, 1], [3, 1]]
-joints = ["defult"])",
-     {R"(16:11: error: no joint is named 'defult', 'joints' in [water.lake] lists laws of [joint], did you mean 'default'?)"}},
-    {"WaterWithGravityAside", 2, R"(duration = 2.0
-gravity = [1.0, -9.0]
-[water.lake]
-phreatic = [[0, 1], [3, 1]])",
-     {R"(4:1: error: [water.lake] needs gravity along -y, its pressure grows downwards from a line of heights, write gravity = [0.0, -9.81], or leave the water out)"}},
     {"HistoryInterval", 13, R"(fixed = true
 [output]
 interval = 0.02

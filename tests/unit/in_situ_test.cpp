@@ -14,7 +14,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace gcpdda {
+namespace gcpdda::in_situ_test {
 namespace {
 
 using testing::block_toml;
@@ -293,4 +293,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto &param) { return param.param.name; });
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::in_situ_test

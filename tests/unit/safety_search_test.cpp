@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-namespace gcpdda {
+namespace gcpdda::safety_search_test {
 namespace {
 
 /// Blocks that hold below `limit`, and say nothing within `fog` of it.
@@ -150,4 +150,4 @@ TEST(WeakenedScene, DilatesNoMoreThanItsFrictionAllows) {
 }
 
 } // namespace
-} // namespace gcpdda
+} // namespace gcpdda::safety_search_test

@@ -190,7 +190,8 @@ TEST(SceneReader, DefaultsAreThoseOfTheModel) {
 // The table of keys describes the defaults; the model holds them. Stating each one changes nothing.
 TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
   const std::string bricks = "material = \"granite\"\norigin = [5, 0]\nrows = 2\nblock_size = [1, 1]\n";
-  const std::string text = small_scene + "[[wall]]\ncolumns = 2\n" + bricks + "[[pyramid]]\n" + bricks;
+  const std::string text = small_scene + "[[wall]]\ncolumns = 2\n" + bricks + "[[pyramid]]\n" + bricks +
+                           "[water.lake]\nphreatic = [[0, 0], [1, 0]]\n";
   const Scene scene = good(text);
   int compared = 0;
   for (const scene_text::Key &key : scene_text::scene_keys()) {
@@ -200,7 +201,8 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     std::string path(key.path);
     for (const auto &[from, to] :
          {std::pair("block[]", "block.slider"), std::pair("joint.*", "joint.default"),
-          std::pair("wall[]", "wall.wall0"), std::pair("pyramid[]", "pyramid.pyramid0")}) {
+          std::pair("wall[]", "wall.wall0"), std::pair("pyramid[]", "pyramid.pyramid0"),
+          std::pair("water.*", "water.lake")}) {
       if (path.starts_with(from)) {
         path.replace(0, std::string(from).size(), to);
       }
@@ -209,7 +211,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     expect_same(good(text, {path + "=" + std::string(key.fallback)}), scene);
     ++compared;
   }
-  EXPECT_EQ(compared, 26);
+  EXPECT_EQ(compared, 34);
 }
 
 // A duration of the run has no meaning beside stages, so they have a scene of their own.

@@ -176,6 +176,16 @@ inline void expect_same(const Scene &a, const Scene &b) {
   EXPECT_EQ(a.output.history_interval, b.output.history_interval);
   EXPECT_EQ(a.output.checkpoint_interval, b.output.checkpoint_interval);
   EXPECT_EQ(a.output.contacts, b.output.contacts);
+  EXPECT_EQ(a.reduction.from, b.reduction.from);
+  EXPECT_EQ(a.reduction.to, b.reduction.to);
+  EXPECT_EQ(a.reduction.tolerance, b.reduction.tolerance);
+  EXPECT_EQ(a.reduction.failure_motion, b.reduction.failure_motion);
+  EXPECT_EQ(a.reduction.local_damping, b.reduction.local_damping);
+  ASSERT_EQ(a.water.size(), b.water.size());
+  for (std::size_t i = 0; i < a.water.size(); ++i) {
+    EXPECT_EQ(a.water[i].density, b.water[i].density);
+    EXPECT_EQ(a.water[i].active, b.water[i].active);
+  }
   EXPECT_EQ(a.joints.num_materials, b.joints.num_materials);
   EXPECT_EQ(a.joints.of_material, b.joints.of_material);
   ASSERT_EQ(a.joints.laws.size(), b.joints.laws.size());

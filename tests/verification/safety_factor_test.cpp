@@ -12,7 +12,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::safety_factor_test {
 namespace {
 
 struct Found {
@@ -112,4 +112,4 @@ TEST(SafetyFactor, KeepsUndecidedTrialsInTheBracket) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::safety_factor_test

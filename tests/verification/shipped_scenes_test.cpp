@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace gcpdda::testing {
+namespace gcpdda::testing::shipped_scenes_test {
 namespace {
 
 /// With what cuts its region, if it has one.
@@ -245,4 +245,4 @@ TEST(ShippedScenes, FallingRocksNeverGainEnergy) {
 }
 
 } // namespace
-} // namespace gcpdda::testing
+} // namespace gcpdda::testing::shipped_scenes_test
