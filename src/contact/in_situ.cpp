@@ -91,11 +91,13 @@ std::vector<Vec2> find_swelling(const BlockSystem &system,
       const EdgeAsks &edge = asks[begin + k];
       const double mean = edge.length > 0.0 ? edge.compliance / edge.length : 0.0;
       report.spread = std::max(report.spread, mean > 0.0 ? (edge.most - edge.least) / mean : 0.0);
+      const Vec2 centroid = system.properties[row].centroid;
+      const bool is_loaded = stress.acts_on(centroid + vertices[k], centroid + vertices[(k + 1) % count]);
       for (const std::size_t end : {0U, 1U}) {
-        const Vec2 x = system.properties[row].centroid + vertices[(k + end) % count];
+        const Vec2 x = centroid + vertices[(k + end) % count];
         const Vec2 traction = stress.compression_at(x)(normals[k]);
         report.largest = std::max(report.largest, norm(traction));
-        if (edge.length == 0.0 && norm(traction) > report.unheld) {
+        if (edge.length == 0.0 && norm(traction) > report.unheld && !is_loaded) {
           report.unheld = norm(traction);
           report.at = system.properties[row].id.value;
         }

@@ -116,6 +116,7 @@ constexpr Key all_keys[] = {
   {"region.max_blocks", Kind::count, optional, from_to(1, 2147483647), "", "<2000000>", "500000", "A scene whose joints would cut about more blocks than this is a fault."},
   {"region.fixed", Kind::words, optional, any, "bottom left right top", "<none>", "[\"bottom\", \"left\"]", "Sides of the region's bounding box along which a fixed block lies."},
   {"region.roller", Kind::words, optional, any, "bottom left right top", "<none>", "[\"left\", \"right\"]", "Sides along which a fixed block named roller.<side> lies that holds the normal direction only: the law of its edges is [joint.roller], or where the scene has none the default one without friction and cohesion."},
+  {"region.stress", Kind::words, optional, any, "bottom left right top", "<none>", "[\"top\"]", "Sides on which the stress of [in_situ] acts from outside, on the edges that lie on the side at the start, the same whatever moves."},
   {"region.fixed_thickness", Kind::number, optional, above_to(0, 1e9), "", "<1/20 of the square root of the region's area>", "1.0", "[m] Thickness of the blocks along fixed sides and rollers."},
 
   {"region.slope", Kind::table, optional, any, "", "", "[region.slope]", "A slope that rises to the right, instead of polygon: level ground, benches, level crest."},

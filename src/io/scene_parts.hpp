@@ -96,6 +96,9 @@ RockRegion read_region(const SceneSource &source, Materials &materials, const Jo
 /// @param scene  with laws, blocks and region
 void add_rollers(const SceneSource &source, Scene &scene);
 
+/// The sides of the region where the in-situ stress, which has been read, acts from outside.
+void read_stressed_sides(const SceneSource &source, Scene &scene);
+
 /// @param scene  with run and materials
 InSituStress read_in_situ(const SceneSource &source, const Scene &scene);
 

@@ -139,6 +139,7 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     const FaultyNodes faulty = check_keys(*root, faults);
     read_parts({*root, faulty, faults}, file, reading.scene);
     reading.scene.in_situ = read_in_situ({*root, faulty, faults}, reading.scene);
+    read_stressed_sides({*root, faulty, faults}, reading.scene);
     reading.scene.stages = read_stages({*root, faulty, faults}, reading.scene);
     read_changes({text, file, sets}, faults, reading.scene);
     reading.diagnostics = faults.sorted();

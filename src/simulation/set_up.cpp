@@ -110,6 +110,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
 void Simulation::distribute(const std::filesystem::path &restart_from) {
   stop_on_errors(open_block_file(communicator_, scene_));
   std::vector<SceneBlock> slab = load_slab(cut_region());
+  load_sides(slab);
   note_groups(slab);
   resolve_stiffness(slab);
   place_monitors(slab);

@@ -41,6 +41,9 @@ std::vector<std::string> clean_environment(const std::vector<std::string> &added
         "OMPI_MCA_pml=ob1", "OMPI_MCA_btl=self,vader", "OMPI_MCA_ess_singleton_isolated=1"}) {
     variables.emplace_back(needed);
   }
+  // Single ranks without a daemon all take the same name for their scratch files: not in one place, then.
+  static const WorkFolder scratch;
+  variables.emplace_back("OMPI_MCA_orte_tmpdir_base=" + scratch.path().string());
   variables.insert(variables.end(), added.begin(), added.end());
   return variables;
 }

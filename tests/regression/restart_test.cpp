@@ -341,8 +341,9 @@ TEST_F(Restart, WithoutAValidCheckpointIsRefused) {
                  {old + ": cannot open ", last + ": it is an HDF5 file, but no checkpoint of gcpdda"});
   fs::remove(files_[0]);
   std::ofstream(files_[1], std::ios::binary) << good;
-  set_number(files_[1], "/version", 3);
-  expect_refusal(0, {"restart", "run"}, 4, {last + ": it has format version 3, this gcpdda reads version 2"});
+  set_number(files_[1], "/version", 1000);
+  expect_refusal(0, {"restart", "run"}, 4,
+                 {last + ": it has format version 1000, this gcpdda reads version 3"});
   fs::remove_all(folder_ / "run/checkpoints");
   fs::remove(folder_ / "run/summary.json");
   expect_refusal(0, {"restart", "run"}, 4, {"there is no checkpoint in run/checkpoints"});

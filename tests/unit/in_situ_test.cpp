@@ -34,13 +34,13 @@ struct Rock {
   std::string cuts = "[[voronoi]]\nsize = 2.0\nirregularity = 0.7\n";
   std::string in_situ = "[in_situ]\nlevel = 100.0\nk0 = 0.7\n";
   std::string stages = "";
+  std::string sides = "fixed = [\"bottom\", \"left\", \"right\", \"top\"]\n";
 
   [[nodiscard]] Scene scene() const {
-    Scene scene = scene_of("[run]\n" + (stages.empty() ? "duration = 1.0\n" : std::string()) + run + "\n" +
-                           rock + joints + "[output]\ninterval = 0.02\n[region]\nmaterial = \"rock\"\n" +
-                           "polygon = [[0, 0], [20, 0], [20, 16], [0, 16]]\nfixed = [\"bottom\", \"left\", "
-                           "\"right\", \"top\"]\n" +
-                           cuts + in_situ + stages);
+    Scene scene =
+        scene_of("[run]\n" + (stages.empty() ? "duration = 1.0\n" : std::string()) + run + "\n" + rock +
+                 joints + "[output]\ninterval = 0.02\n[region]\nmaterial = \"rock\"\n" +
+                 "polygon = [[0, 0], [20, 0], [20, 16], [0, 16]]\n" + sides + cuts + in_situ + stages);
     scene.region_blocks = std::make_shared<RegionCutter>(scene, 40);
     return scene;
   }
@@ -98,6 +98,7 @@ TEST_P(InSitu, NothingMovesWhenTheRunBegins) {
 
   if (simulation.scene().run.gravity != Vec2{}) {
     with.in_situ.clear();
+    with.sides = Rock{}.sides;
     const Simulation without(Communicator::self(), with.scene());
     EXPECT_GT(balance_of(without).unbalanced, 0.99)
         << "no contact bears more than the block beside it weighs";
@@ -131,6 +132,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"RotatedAxes",
              {.run = "fidelity = \"deformable\"\ngravity = [0, 0]",
               .in_situ = "[in_situ]\nprincipal_stresses = [3.2e6, 2e6]\nprincipal_angle_deg = 30.0\n"}},
+        Case{"StressOnTop", {.sides = "fixed = [\"bottom\", \"left\", \"right\"]\nstress = [\"top\"]\n"}},
+        Case{"StressAllAround",
+             {.run = "fidelity = \"deformable\"\ngravity = [0, 0]",
+              .in_situ = "[in_situ]\nprincipal_stresses = [3.2e6, 2e6]\nprincipal_angle_deg = 30.0\n",
+              .sides = "stress = [\"bottom\", \"left\", \"right\", \"top\"]\n"}},
         Case{"Bonded",
              {.joints = "[joint.default]\nnormal_stiffness = 5e9\nfriction_angle_deg = 40.0\ncohesion = 1e6\n"
                         "tension = 1e5\n"}}),
@@ -281,6 +287,18 @@ INSTANTIATE_TEST_SUITE_P(
             "fixed = [\"left\"]\nroller = [\"left\"]",
             "5:11: error: the left side of [region] is fixed and a roller, a fixed side holds along itself "
             "too, leave it out of 'fixed' or of 'roller'"},
+        BadInSitu{"StressOnAFixedSide",
+                  "[in_situ]\nvertical_stress = 1e6\n[region]\nmaterial = \"rock\"\npolygon = [[5, 0], [6, "
+                  "0], [6, 1]]\n"
+                  "fixed = [\"top\"]\nstress = [\"top\"]",
+                  "7:11: error: the top side of [region] is fixed and under stress, what holds it bears "
+                  "whatever acts on "
+                  "it, leave it out of 'fixed' or of 'stress'"},
+        BadInSitu{
+            "StressFromNowhere",
+            "[region]\nmaterial = \"rock\"\npolygon = [[5, 0], [6, 0], [6, 1]]\nstress = [\"top\"]",
+            "4:11: error: no stress acts on the top side of [region], the one of [in_situ] does, which is "
+            "missing, for example [in_situ] with level = 100.0"},
         BadInSitu{
             "Ramp", "[in_situ]\nlevel = 10\ndensity = 2600",
             "6:16: error: 'gravity_ramp' in [run] has no meaning beside 'level' in [in_situ], the rock is in "

@@ -4,9 +4,20 @@
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace gcpdda {
+
+/// A straight side of the region with its outward normal: points on it have normal.x = reach.
+struct Boundary {
+  Vec2 normal;
+  double reach = 0.0;    ///< m
+  double rounding = 0.0; ///< of points on it, m
+
+  [[nodiscard]] bool holds(Vec2 x) const { return std::abs(dot(normal, x) - reach) <= rounding; }
+};
 
 /// The stress that is in the rock before anything happens, as compression C = -sigma (Pa):
 ///
@@ -16,12 +27,18 @@ namespace gcpdda {
 /// and nothing moves. Without growth C is C_0 everywhere, which bears no weight.
 struct InSituStress {
   bool present = false;
-  Mat2 at_level;        ///< C_0, symmetric, Pa
-  Mat2 growth;          ///< by depth, Pa/m; 0 of a stress that is the same everywhere
-  Vec2 down;            ///< d; 0 without growth
-  double level = 0.0;   ///< height above [0, 0] against gravity, m
-  SourcePosition where; ///< of its table
+  Mat2 at_level;                    ///< C_0, symmetric, Pa
+  Mat2 growth;                      ///< by depth, Pa/m; 0 of a stress that is the same everywhere
+  Vec2 down;                        ///< d; 0 without growth
+  double level = 0.0;               ///< height above [0, 0] against gravity, m
+  std::vector<Boundary> boundaries; ///< where it acts on the region from outside
+  SourcePosition where;             ///< of its table
 
+  /// Does it act from outside on an edge between these points at t = 0?
+  [[nodiscard]] bool acts_on(Vec2 a, Vec2 b) const {
+    return std::any_of(boundaries.begin(), boundaries.end(),
+                       [&](const Boundary &boundary) { return boundary.holds(a) && boundary.holds(b); });
+  }
   [[nodiscard]] Mat2 compression_at(Vec2 x) const { return at_level + (level + dot(down, x)) * growth; }
 };
 

@@ -204,6 +204,7 @@ private:
   void check_bonds();
   void check_initial_overlaps();
   void find_initial_friction();
+  void load_sides(std::span<SceneBlock> slab) const;
   void press();
   void stress_rows();
   void tell_of_swelling(const SwellReport &mine);
