@@ -5,12 +5,13 @@
     run/plot.py results/wall --frame 0,last --field stress --out before_after.png
     run/plot.py results/wall --frame all --field velocity --out wall.gif
 
-Fixed blocks are grey and hatched. Panels and pictures of one call share axes and colour scale.
+Fixed blocks are grey and hatched, phreatic lines blue and dashed. Panels and pictures of one call share axes and colour scale.
 """
 
 import argparse
 import pathlib
 import sys
+import tomllib
 
 import h5py
 import matplotlib
@@ -158,6 +159,18 @@ def draw(axes, frame, colours, reference):
                                                edgecolors="#b0332a", linewidths=1.2 * width, linestyles=(0, (4, 3))))
 
 
+def draw_water(axes, directory):
+    """Phreatic lines of the scene, on or off, level beyond their ends."""
+    with open(directory / "scene.toml", "rb") as file:
+        tables = tomllib.load(file).get("water", {})
+    left, right = axes.get_xlim()
+    for table in tables.values():
+        x, y = np.array(table["phreatic"], dtype=float).T
+        inside = x[(x > left) & (x < right)]
+        at = np.concatenate(([left], inside, [right]))
+        axes.plot(at, np.interp(at, x, y), color="#2f7fd6", lw=1.2, ls=(0, (5, 2)), zorder=3)
+
+
 def grid_shape(number, size):
     """Rows and columns of panels: wide scenes one below the other, others side by side."""
     columns = 1 if size[0] > 1.8 * size[1] else min(number, 3)
@@ -189,6 +202,7 @@ def save_picture(frames, colours, arguments, reference):
     figure, panels = new_figure(frames, len(frames), colours, arguments.title)
     for axes, frame in zip(panels, frames):
         draw(axes, frame, colours, reference)
+        draw_water(axes, arguments.directory)
         axes.set_title(f"t = {frame.time:.4g} s", fontsize=9)
     figure.savefig(arguments.out, dpi=arguments.dpi, bbox_inches="tight", pad_inches=0.06)
 
