@@ -65,7 +65,7 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time)
 FrameContent last_frame(const fs::path &directory) {
   fs::path last;
   for (const fs::directory_entry &entry : fs::directory_iterator(directory / "frames")) {
-    const fs::path path = entry.path();
+    const fs::path &path = entry.path();
     if (path.filename().string().starts_with("frame_") && path.extension() == ".hdf" && path > last) {
       last = path;
     }
