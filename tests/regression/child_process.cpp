@@ -41,9 +41,13 @@ std::vector<std::string> clean_environment(const std::vector<std::string> &added
         "OMPI_MCA_pml=ob1", "OMPI_MCA_btl=self,vader", "OMPI_MCA_ess_singleton_isolated=1"}) {
     variables.emplace_back(needed);
   }
-  // Single ranks without a daemon all take the same name for their scratch files: not in one place, then.
+  // Single ranks without a daemon all take the same name for their scratch files: each has a place of its
+  // own.
   static const WorkFolder scratch;
-  variables.emplace_back("OMPI_MCA_orte_tmpdir_base=" + scratch.path().string());
+  static int num_children = 0;
+  const fs::path own = scratch / std::to_string(num_children++);
+  fs::create_directory(own);
+  variables.emplace_back("OMPI_MCA_orte_tmpdir_base=" + own.string());
   variables.insert(variables.end(), added.begin(), added.end());
   return variables;
 }
