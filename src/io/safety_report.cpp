@@ -4,7 +4,6 @@
 #include "json.hpp"
 
 #include "gcpdda/base/check.hpp"
-#include "gcpdda/geometry/aabb.hpp"
 
 #include <fmt/format.h>
 
@@ -24,11 +23,6 @@ namespace fs = std::filesystem;
 constexpr std::array<const char *, 5> own_names{"fos.txt", "fos.json", "fos_trials.csv", "fos_blocks.csv",
                                                 "fos.svg"};
 constexpr double degree = std::numbers::pi / 180.0;
-
-const char *word_of(Verdict verdict) {
-  constexpr std::array words{"undecided", "settled", "failed", "done"};
-  return words.at(static_cast<std::size_t>(verdict));
-}
 
 std::string factor_text(const SafetyReport &report) {
   if (report.holds && report.fails) {
@@ -159,46 +153,6 @@ std::string blocks_csv(const SafetyReport &report) {
   return text;
 }
 
-/// White to red with the motion, fixed blocks grey; arrows show where moving blocks went.
-std::string draw_mechanism(const SafetyReport &report) {
-  Aabb region;
-  double farthest = 0.0;
-  for (const FailingBlock &block : report.mechanism) {
-    region.include(bounding_box(block.vertices));
-    farthest = std::max(farthest, block.motion);
-  }
-  constexpr double longest_side = 1200.0; // pixels
-  constexpr double margin = 20.0;
-  constexpr double legend = 24.0;
-  const Vec2 extent = region.extent();
-  const double scale = longest_side / std::max(extent.x, extent.y);
-  const auto to_page = [&](Vec2 x) {
-    return Vec2{margin + scale * (x.x - region.low.x), margin + scale * (region.high.y - x.y)};
-  };
-  std::string text =
-      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\">\n"
-                  "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-                  scale * extent.x + 2.0 * margin, scale * extent.y + 2.0 * margin + legend);
-  for (const FailingBlock &block : report.mechanism) {
-    const double share = farthest > 0.0 ? block.motion / farthest : 0.0;
-    text += fmt::format(
-        "<polygon fill=\"{}\" stroke=\"#333\" stroke-width=\"0.5\" points=\"",
-        block.fixed ? std::string("#9a9a9a")
-                    : fmt::format("hsl({:.0f},85%,{:.0f}%)", 50.0 - 50.0 * share, 97.0 - 45.0 * share));
-    for (const Vec2 x : block.vertices) {
-      const Vec2 p = to_page(x);
-      text += fmt::format("{:.2f},{:.2f} ", p.x, p.y);
-    }
-    text += "\"/>\n";
-  }
-  text += fmt::format(
-      "<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"14\">at factor {:.5g}; "
-      "colour: motion since the strengths were lowered, white 0 to red {:.3g} m; grey: "
-      "fixed</text>\n</svg>\n",
-      margin, scale * extent.y + 2.0 * margin + 0.5 * legend, report.fails.value_or(0.0), farthest);
-  return text;
-}
-
 } // namespace
 
 std::string to_text(const SafetyReport &report) {
@@ -219,13 +173,13 @@ std::string to_text(const SafetyReport &report) {
   return text;
 }
 
-void write_safety_report(const fs::path &directory, const SafetyReport &report) {
+void write_safety_report(const fs::path &directory, const SafetyReport &report, const std::string &picture) {
   write_file(directory / "fos.txt", to_text(report));
   write_file(directory / "fos.json", json_text(report));
   write_file(directory / "fos_trials.csv", trials_csv(report));
   if (!report.mechanism.empty()) {
     write_file(directory / "fos_blocks.csv", blocks_csv(report));
-    write_file(directory / "fos.svg", draw_mechanism(report));
+    write_file(directory / "fos.svg", picture);
   }
 }
 

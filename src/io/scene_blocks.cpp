@@ -1,4 +1,3 @@
-#include "edit_distance.hpp"
 #include "scene_outline.hpp"
 #include "scene_parts.hpp"
 
@@ -174,26 +173,9 @@ private:
       return;
     }
     for (const toml::node &name : names) {
-      block.edge_joint.push_back(find_joint(name));
+      const bool is_blank = name.as_string()->get().empty();
+      block.edge_joint.push_back(is_blank ? -1 : find_joint(source_, name, *joints_).value_or(-1));
     }
-  }
-
-  /// -1 for an empty name, and for an unknown one.
-  std::int32_t find_joint(const toml::node &node) {
-    const std::string &name = node.as_string()->get();
-    std::vector<std::string> known;
-    for (const JointLaw &law : joints_->laws) {
-      known.push_back(law.name);
-    }
-    const auto found = std::find(known.begin(), known.end(), name);
-    if (name.empty() || found != known.end()) {
-      return name.empty() ? -1 : static_cast<std::int32_t>(found - known.begin());
-    }
-    const std::string near = nearest_word(name, known);
-    fault(node, fmt::format("no joint is named '{}'", name), "",
-          near.empty() ? fmt::format("add a table [joint.{}]", name)
-                       : fmt::format("did you mean '{}'?", near));
-    return -1;
   }
 
   void read_load(const Section &section, SceneBlock &block, bool has_outline) {

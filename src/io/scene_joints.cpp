@@ -1,3 +1,4 @@
+#include "edit_distance.hpp"
 #include "scene_parts.hpp"
 
 #include <fmt/format.h>
@@ -274,6 +275,37 @@ private:
 };
 
 } // namespace
+
+std::optional<std::int32_t> find_joint(const SceneSource &source, const toml::node &name,
+                                       const JointLaws &joints) {
+  const std::string &text = name.as_string()->get();
+  std::vector<std::string> known;
+  for (const JointLaw &law : joints.laws) {
+    known.push_back(law.name);
+  }
+  const auto found = std::find(known.begin(), known.end(), text);
+  if (found != known.end()) {
+    return static_cast<std::int32_t>(found - known.begin());
+  }
+  const std::string near = nearest_word(text, known);
+  source.faults.add(name.source(), fmt::format("no joint is named '{}'", text), "",
+                    near.empty() ? fmt::format("add a table [joint.{}]", text)
+                                 : fmt::format("did you mean '{}'?", near));
+  return std::nullopt;
+}
+
+std::vector<std::int32_t> find_joints(const SceneSource &source, const Section &section, std::string_view key,
+                                      const JointLaws &joints) {
+  std::vector<std::int32_t> laws;
+  const toml::node *names = section.sound(key);
+  for (std::size_t i = 0; names != nullptr && i < names->as_array()->size(); ++i) {
+    if (const auto law = find_joint(source, (*names->as_array())[i], joints)) {
+      laws.push_back(*law);
+    }
+  }
+  std::sort(laws.begin(), laws.end());
+  return laws;
+}
 
 JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materials) {
   return JointReader(source, materials).read();

@@ -5,8 +5,10 @@
 #include "gcpdda/model/scene.hpp"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gcpdda::scene_text {
@@ -69,6 +71,13 @@ std::int32_t find_material(const MaterialIndex &materials, const std::string &na
 RunSettings read_run(const SceneSource &source);
 OutputSettings read_output(const SceneSource &source, double duration);
 StrengthReduction read_reduction(const SceneSource &source, const JointLaws &joints);
+/// Number of the law that a name stands for; nothing, and a fault, where no joint is named so.
+std::optional<std::int32_t> find_joint(const SceneSource &source, const toml::node &name,
+                                       const JointLaws &joints);
+/// The same of a list of names, ascending.
+std::vector<std::int32_t> find_joints(const SceneSource &source, const Section &section, std::string_view key,
+                                      const JointLaws &joints);
+
 JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materials);
 
 /// The water of [water.NAME]; the faulty ones lack their faulty parts.

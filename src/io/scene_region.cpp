@@ -1,6 +1,5 @@
 // The region that joints cut into blocks: [region] and everything that lies in it.
 
-#include "edit_distance.hpp"
 #include "scene_outline.hpp"
 #include "scene_parts.hpp"
 #include "scene_shapes.hpp"
@@ -136,21 +135,8 @@ private:
   }
 
   std::int32_t joint_of(const Section &section) {
-    const auto name = section.text("joint");
-    if (!name) {
-      return -1;
-    }
-    std::vector<std::string> names;
-    for (std::size_t k = 0; k < joints_->laws.size(); ++k) {
-      if (joints_->laws[k].name == *name) {
-        return static_cast<std::int32_t>(k);
-      }
-      names.push_back(joints_->laws[k].name);
-    }
-    const std::string near = nearest_word(*name, names);
-    fault(section.given("joint")->source(), fmt::format("no joint law is named '{}'", *name), "",
-          near.empty() ? fmt::format("write [joint.{}]", *name) : fmt::format("did you mean '{}'?", near));
-    return -1;
+    const toml::node *name = section.sound("joint");
+    return name == nullptr ? -1 : find_joint(source_, *name, *joints_).value_or(-1);
   }
 
   /// @param deviation  key of the width of normal and lognormal

@@ -1,13 +1,11 @@
 // The tables [run], [output] and [fos].
 
-#include "edit_distance.hpp"
 #include "scene_parts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace gcpdda::scene_text {
@@ -118,7 +116,6 @@ OutputSettings read_output(const SceneSource &source, double duration) {
 StrengthReduction read_reduction(const SceneSource &source, const JointLaws &joints) {
   const Section fos = section(source.root, "fos", source.faulty);
   StrengthReduction reduction;
-  reduction.local_damping = 0.3; // blocks weakened at once swing beyond their new balance without
   fos.read("from", reduction.from);
   fos.read("to", reduction.to);
   fos.read("tolerance", reduction.tolerance);
@@ -131,24 +128,7 @@ StrengthReduction read_reduction(const SceneSource &source, const JointLaws &joi
           fmt::format("{} is {} and from is {}", fos.subject("to"), reduction.to, reduction.from),
           "the factor is searched from the one to the other", "exchange them");
   }
-  const toml::node *families = fos.sound("families");
-  for (std::size_t i = 0; families != nullptr && i < families->as_array()->size(); ++i) {
-    const toml::node &name = (*families->as_array())[i];
-    const auto law = std::find_if(joints.laws.begin(), joints.laws.end(), [&](const JointLaw &known) {
-      return known.name == name.as_string()->get();
-    });
-    if (law != joints.laws.end()) {
-      reduction.families.push_back(static_cast<std::int32_t>(law - joints.laws.begin()));
-      continue;
-    }
-    std::vector<std::string> names;
-    std::transform(joints.laws.begin(), joints.laws.end(), std::back_inserter(names),
-                   [](const JointLaw &known) { return known.name; });
-    const std::string near = nearest_word(name.as_string()->get(), names);
-    fault(source, name, fmt::format("no joint is named '{}'", name.as_string()->get()), "",
-          near.empty() ? fmt::format("known here: {}", fmt::join(names, " "))
-                       : fmt::format("did you mean '{}'?", near));
-  }
+  reduction.families = find_joints(source, fos, "families", joints);
   return reduction;
 }
 

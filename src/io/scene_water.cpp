@@ -1,11 +1,8 @@
 // [water.NAME]: phreatic lines.
 
-#include "edit_distance.hpp"
 #include "scene_parts.hpp"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace gcpdda::scene_text {
 
@@ -31,31 +28,6 @@ void expect_line(const SceneSource &source, const Section &section, const std::v
   }
 }
 
-std::vector<std::int32_t> find_laws(const SceneSource &source, const Section &section,
-                                    const JointLaws &joints) {
-  std::vector<std::int32_t> laws;
-  std::vector<std::string> names;
-  for (const JointLaw &law : joints.laws) {
-    names.push_back(law.name);
-  }
-  const toml::node *given = section.sound("joints");
-  for (std::size_t i = 0; given != nullptr && i < given->as_array()->size(); ++i) {
-    const toml::node &name = (*given->as_array())[i];
-    const std::string &text = name.as_string()->get();
-    const auto found = std::find(names.begin(), names.end(), text);
-    if (found != names.end()) {
-      laws.push_back(static_cast<std::int32_t>(found - names.begin()));
-      continue;
-    }
-    const std::string near = nearest_word(text, names);
-    source.faults.add(name.source(), fmt::format("no joint is named '{}'", text),
-                      fmt::format("{} lists laws of [joint]", section.subject("joints")),
-                      near.empty() ? "name one of [joint.NAME]" : fmt::format("did you mean '{}'?", near));
-  }
-  std::sort(laws.begin(), laws.end());
-  return laws;
-}
-
 } // namespace
 
 std::vector<Water> read_water(const SceneSource &source, const JointLaws &joints) {
@@ -72,7 +44,7 @@ std::vector<Water> read_water(const SceneSource &source, const JointLaws &joints
     section.read("density", water.density);
     section.read("active", water.active);
     expect_line(source, section, water.phreatic);
-    water.joints = find_laws(source, section, joints);
+    water.joints = find_joints(source, section, "joints", joints);
     if (run.known("gravity") && (gravity.x != 0.0 || gravity.y >= 0.0)) {
       source.faults.add(section.source(), fmt::format("{} needs gravity along -y", section.label()),
                         "its pressure grows downwards from a line of heights",

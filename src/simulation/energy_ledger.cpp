@@ -122,14 +122,15 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
     const CandidatePair &pair = simulation.candidates().pairs[k];
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
-    if (!simulation.counts_here(pair)) {
+    const bool is_dilated = simulation.history().is_dilated(k);
+    if (!simulation.counts_here(pair) || !(is_dilated || blocks.box[a].meets(blocks.box[b]))) {
       continue;
     }
     const BlockView first = view_of(blocks, a);
     const BlockView second = view_of(blocks, b);
-    if (simulation.history().is_dilated(k)) {
+    if (is_dilated) {
       sum.add(share * dilated_energy(simulation, k, first, second));
-    } else if (first.box.meets(second.box)) {
+    } else {
       const double half_stiffness =
           pair.is_mixed ? mean_stiffness(simulation, k, first, second) : pair.half_stiffness;
       sum.add(share * half_stiffness * overlap_energy(first, second));

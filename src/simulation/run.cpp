@@ -130,11 +130,6 @@ private:
                            result.moved));
   }
 
-  static std::string word_of(Verdict verdict) {
-    constexpr std::array words{"undecided", "settled", "failed", "done"};
-    return words.at(static_cast<std::size_t>(verdict));
-  }
-
   /// 7 where a limit was reached without a verdict.
   [[nodiscard]] int exit_code_of_stages() const {
     const StageState &stage = simulation_.stage();

@@ -8,6 +8,7 @@
 #include "gcpdda/simulation/simulation.hpp"
 #include "gcpdda/simulation/stop_signal.hpp"
 #include "rank_facts.hpp"
+#include "svg.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,8 @@
 #include <iostream>
 #include <iterator>
 #include <map>
+#include <numeric>
+#include <optional>
 
 namespace gcpdda {
 
@@ -254,7 +257,8 @@ private:
       if (report_.fails) {
         find_mechanism(*report_.fails);
       }
-      write_safety_report(options_.directory, report_);
+      write_safety_report(options_.directory, report_,
+                          report_.mechanism.empty() ? std::string() : draw_mechanism(report_));
       std::cout << to_text(report_) << std::flush;
     });
     return report_.is_found() ? 0 : 7;

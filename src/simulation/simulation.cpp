@@ -1,6 +1,5 @@
 #include "gcpdda/simulation/simulation.hpp"
 
-#include "gcpdda/dynamics/water_pressure.hpp"
 #include "gcpdda/parallel/migration.hpp"
 #include "gcpdda/simulation/half_works.hpp"
 
@@ -219,16 +218,18 @@ void Simulation::gather_forces() {
   contact_count_ = add_contacts(candidates_, contacts_, blocks_, forces_.rigid);
   contacts_.add_dilation_works(candidates_, blocks_);
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    gather_block(row, gravity_now);
+    const WaterLoad water =
+        scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -gravity_now.y);
+    gather_block(row, gravity_now, water);
     if (blocks_.is_deformable(row)) {
-      gather_gradient(row, gravity_now);
+      gather_gradient(row, water);
     }
     apply_local_damping(blocks_, row, forces_, local_damping_);
     add_half_works(row);
   }
 }
 
-void Simulation::gather_block(std::size_t row, Vec2 gravity_now) {
+void Simulation::gather_block(std::size_t row, Vec2 gravity_now, const WaterLoad &water) {
   const BlockProperties &block = blocks_.properties[row];
   BlockLedger &ledger = blocks_.ledger[row];
   if (block.keeps_its_velocity()) {
@@ -242,26 +243,20 @@ void Simulation::gather_block(std::size_t row, Vec2 gravity_now) {
     const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
     ledger.load_force += {load.force, cross(arm, load.force)};
   }
-  if (!scene_.water.empty()) {
-    const WaterLoad water = water_load(blocks_, row, scene_.water, -gravity_now.y);
-    ledger.load_force += {water.force, water.torque()};
-  }
+  ledger.load_force += {water.force, water.torque()};
   forces_.rigid[row] += ledger.load_force;
   forces_.rigid[row].u += ledger.gravity_force;
 }
 
 // What works on F; the moments of the rigid part are in it.
-void Simulation::gather_gradient(std::size_t row, Vec2 gravity_now) {
+void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   Deformation &d = blocks_.deformation_of(row);
   BlockLedger &ledger = blocks_.ledger[row];
   const BlockGradientSum sum = sum_gradient_forces(blocks_, candidates_, contacts_, row);
   d.shear_force = sum.shear;
   d.damping_force = sum.damping;
-  d.load_force = unloading_of(blocks_.properties[row].id).gradient;
-  if (!scene_.water.empty()) {
-    const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
-    d.load_force += water_load(blocks_, row, scene_.water, -gravity_now.y).dyad * transposed(to_reference);
-  }
+  const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
+  d.load_force = unloading_of(blocks_.properties[row].id).gradient + water.dyad * transposed(to_reference);
   for (const MaterialLoad &load : blocks_.loads_of(row)) {
     d.load_force += outer(load.force, load.point);
   }

@@ -1,50 +1,96 @@
 #include "svg.hpp"
 
+#include "gcpdda/geometry/aabb.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <span>
 
 namespace gcpdda {
 
 namespace {
 
+constexpr const char *fixed_colour = "#9a9a9a";
+
 /// Colours far apart for neighbouring numbers: golden angle around the colour circle.
 std::string colour_of(int subdomain) {
-  return subdomain < 0 ? "#9a9a9a"
+  return subdomain < 0 ? fixed_colour
                        : fmt::format("hsl({:.0f},60%,72%)", std::fmod(137.508 * subdomain, 360.0));
+}
+
+/// Polygons of the world on a page with a line of text below.
+class Page {
+public:
+  Page(const Aabb &region, double longest_side)
+      : region_(region), extent_(region.extent()), scale_(longest_side / std::max(extent_.x, extent_.y)),
+        text_(fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\">\n"
+                          "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+                          scale_ * extent_.x + 2.0 * margin, scale_ * extent_.y + 2.0 * margin + legend)) {}
+
+  void add(std::span<const Vec2> vertices, const std::string &fill, double outline) {
+    text_ += fmt::format("<polygon fill=\"{}\" stroke=\"#333\" stroke-width=\"{}\" points=\"", fill, outline);
+    for (const Vec2 p : vertices) {
+      text_ += fmt::format("{:.2f},{:.2f} ", margin + scale_ * (p.x - region_.low.x),
+                           margin + scale_ * (region_.high.y - p.y));
+    }
+    text_ += "\"/>\n";
+  }
+
+  [[nodiscard]] std::string with(const std::string &line) const {
+    return text_ +
+           fmt::format(
+               "<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"14\">{}</text>\n"
+               "</svg>\n",
+               margin, scale_ * extent_.y + 2.0 * margin + 0.5 * legend, line);
+  }
+
+private:
+  static constexpr double margin = 20.0; // pixels
+  static constexpr double legend = 24.0;
+  Aabb region_;
+  Vec2 extent_;
+  double scale_;
+  std::string text_;
+};
+
+template <class Block> Aabb region_of(const std::vector<Block> &blocks) {
+  Aabb region;
+  for (const Block &block : blocks) {
+    region.include(bounding_box(block.vertices));
+  }
+  return region;
 }
 
 } // namespace
 
 std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains) {
-  Aabb region;
+  const Aabb region = region_of(blocks);
+  Page page(region, 1600.0);
   for (const DrawnBlock &block : blocks) {
-    region.include(bounding_box(block.vertices));
+    page.add(block.vertices, colour_of(block.subdomain), block.deformable ? 1.5 : 0.5);
   }
-  constexpr double longest_side = 1600.0; // pixels
-  constexpr double margin = 20.0;
-  constexpr double legend = 24.0;
-  const Vec2 extent = region.extent();
-  const double scale = longest_side / std::max(extent.x, extent.y);
-  std::string text =
-      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\">\n"
-                  "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-                  scale * extent.x + 2.0 * margin, scale * extent.y + 2.0 * margin + legend);
-  for (const DrawnBlock &block : blocks) {
-    text += fmt::format("<polygon fill=\"{}\" stroke=\"#333\" stroke-width=\"{}\" points=\"",
-                        colour_of(block.subdomain), block.deformable ? 1.5 : 0.5);
-    for (const Vec2 p : block.vertices) {
-      text += fmt::format("{:.2f},{:.2f} ", margin + scale * (p.x - region.low.x),
-                          margin + scale * (region.high.y - p.y));
-    }
-    text += "\"/>\n";
+  return page.with(fmt::format(
+      "{} blocks, {} subdomain{}, {:.4g} m x {:.4g} m; grey: fixed; thick outline: deformable", blocks.size(),
+      num_subdomains, num_subdomains == 1 ? "" : "s", region.extent().x, region.extent().y));
+}
+
+std::string draw_mechanism(const SafetyReport &report) {
+  double farthest = 0.0;
+  for (const FailingBlock &block : report.mechanism) {
+    farthest = std::max(farthest, block.motion);
   }
-  text += fmt::format(
-      "<text x=\"{0:.0f}\" y=\"{1:.0f}\" font-family=\"sans-serif\" font-size=\"14\">{2} blocks, {3} "
-      "subdomain{4}, {5:.4g} m x {6:.4g} m; grey: fixed; thick outline: deformable</text>\n</svg>\n",
-      margin, scale * extent.y + 2.0 * margin + 0.5 * legend, blocks.size(), num_subdomains,
-      num_subdomains == 1 ? "" : "s", extent.x, extent.y);
-  return text;
+  Page page(region_of(report.mechanism), 1200.0);
+  for (const FailingBlock &block : report.mechanism) {
+    const double share = farthest > 0.0 ? block.motion / farthest : 0.0;
+    page.add(block.vertices,
+             block.fixed ? std::string(fixed_colour)
+                         : fmt::format("hsl({:.0f},85%,{:.0f}%)", 50.0 - 50.0 * share, 97.0 - 45.0 * share),
+             0.5);
+  }
+  return page.with(fmt::format("at factor {:.5g}; colour: motion since the strengths were lowered, white 0 "
+                               "to red {:.3g} m; grey: fixed",
+                               report.fails.value_or(0.0), farthest));
 }
 
 } // namespace gcpdda

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gcpdda/geometry/aabb.hpp"
 #include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/io/safety_report.hpp"
 
 #include <string>
 #include <vector>
@@ -17,5 +17,8 @@ struct DrawnBlock {
 
 /// Picture of blocks coloured by subdomain: fixed ones grey, deformable ones with a thick outline.
 std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains);
+
+/// Picture of how the blocks fail: white to red with the motion, fixed ones grey.
+std::string draw_mechanism(const SafetyReport &report);
 
 } // namespace gcpdda

@@ -4,6 +4,7 @@
 #include "gcpdda/simulation/region_slabs.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 #include "support/regions.hpp"
+#include "support/setting.hpp"
 
 #include <gtest/gtest.h>
 
@@ -92,13 +93,7 @@ TEST(Region, OpeningsAreExcavatedByName) {
   Simulation simulation(world, scene);
   const auto mobile = static_cast<std::int64_t>(simulation.blocks().num_owned);
   const std::int64_t before = agreed_sum(world, mobile);
-  for (simulation.end_stage(); !simulation.finished(); simulation.end_stage()) {
-    if (simulation.stage_is_over()) {
-      simulation.begin_next_stage();
-    } else {
-      simulation.step();
-    }
-  }
+  testing::run_stages(simulation);
   const std::vector<std::int64_t> &gone = simulation.scene().groups.at(0).blocks;
   EXPECT_EQ(agreed_sum(world, static_cast<std::int64_t>(simulation.blocks().num_owned)),
             before - std::ssize(gone));

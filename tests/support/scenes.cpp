@@ -25,6 +25,10 @@ Scene checked(SceneReading reading) {
   return reading.scene;
 }
 
+std::string path_of_shipped(const std::string &name) {
+  return std::string(GCPDDA_SOURCE_DIR) + "/run/scenes/" + name + ".toml";
+}
+
 // The standard distributions differ between libraries; the engine does not.
 double uniform(std::mt19937 &engine, double low, double high) {
   return low + (high - low) * (static_cast<double>(engine()) / 4294967296.0);
@@ -36,15 +40,19 @@ Scene scene_of(const std::string &toml, const std::vector<std::string> &sets) {
   return checked(read_scene(toml, "test.toml", sets));
 }
 
-Scene shipped_scene(const std::string &name, const std::vector<std::string> &sets) {
-  const std::string path = std::string(GCPDDA_SOURCE_DIR) + "/run/scenes/" + name + ".toml";
+std::string shipped_toml(const std::string &name) {
+  const std::string path = path_of_shipped(name);
   std::ifstream file(path);
   if (!file) {
     throw std::runtime_error("no scene " + path);
   }
   std::ostringstream text;
   text << file.rdbuf();
-  return checked(read_scene(text.str(), path, sets));
+  return text.str();
+}
+
+Scene shipped_scene(const std::string &name, const std::vector<std::string> &sets) {
+  return checked(read_scene(shipped_toml(name), path_of_shipped(name), sets));
 }
 
 std::string block_toml(const std::string &name, const std::vector<Vec2> &vertices, const std::string &extra) {

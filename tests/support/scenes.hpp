@@ -12,6 +12,8 @@ namespace gcpdda::testing {
 Scene scene_of(const std::string &toml, const std::vector<std::string> &sets = {});
 
 /// A scene that ships with the program, run/scenes/<name>.toml.
+/// The text of run/scenes/NAME.toml.
+std::string shipped_toml(const std::string &name);
 Scene shipped_scene(const std::string &name, const std::vector<std::string> &sets = {});
 
 /// All of a scene but its blocks: rigid rock with friction 30 degrees, one monitored block.

@@ -78,7 +78,7 @@ double log_slope(const std::vector<double> &x, const std::vector<double> &y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-void run_stages(Simulation &simulation) {
+void run_stages(Simulation &simulation, void (*step)(Simulation &)) {
   while (true) {
     simulation.end_stage();
     if (simulation.finished()) {
@@ -87,7 +87,7 @@ void run_stages(Simulation &simulation) {
     if (simulation.stage_is_over()) {
       simulation.begin_next_stage();
     } else {
-      simulation.step();
+      step(simulation);
     }
   }
 }

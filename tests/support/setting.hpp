@@ -40,8 +40,9 @@ const RigidDof &velocity_of(const Simulation &simulation, int block);
 /// Step to a time that is a whole number of steps, or to the next step after it; stops at a fault.
 void advance(Simulation &simulation, double time);
 
-/// All stages, as a run goes through them.
-void run_stages(Simulation &simulation);
+/// All stages, as a run goes through them, by steps of one's own kind.
+void run_stages(
+    Simulation &simulation, void (*step)(Simulation &) = [](Simulation &s) { s.step(); });
 /// A scene whose stages say how long they last.
 std::string without_duration(std::string toml);
 

@@ -267,13 +267,6 @@ residual_friction_angle_deg = 20
 dilation_angle_deg = 21
 dilation_limit = 0.01)",
      {R"(12:22: error: [joint.default] has a dilation angle above its residual friction angle, slip would do more work against the pressure than friction takes, lower it)"}},
-    {"SearchOfAnUnknownFamily", 17, R"(vertices = [[1, 1], [2, 1], [2, 2], [1, 2]]
-[fos]
-families = ["defalt", "default"]
-from = 2
-to = 1.5)",
-     {R"(19:13: error: no joint is named 'defalt', did you mean 'default'?)",
-      R"(21:6: error: 'to' in [fos] is 1.5 and from is 2, the factor is searched from the one to the other, exchange them)"}},
     {"RoughnessWithoutStrength", 8, R"(normal_stiffness = 1e9
 law = "barton-bandis"
 jrc = 8)",

@@ -148,7 +148,6 @@ face_angle_deg = 45
   }
 }
 
-// Areas of the shapes in closed form, approached from inside by n chords as 1 - (2 pi/n)^2/6.
 TEST(RegionScene, StagesExcavateOpeningsByName) {
   const std::string openings =
       "[[opening]]\nname = \"tunnel\"\nshape = \"circle\"\ncentre = [10, 5]\nwidth = 4\n"
@@ -170,6 +169,7 @@ TEST(RegionScene, StagesExcavateOpeningsByName) {
       << said[1];
 }
 
+// Areas of the shapes in closed form, approached from inside by n chords as 1 - (2 pi/n)^2/6.
 TEST(RegionScene, OpeningsHaveTheirShapes) {
   const auto area = [](const std::string &shape) {
     return signed_area(
@@ -198,7 +198,7 @@ TEST(RegionScene, FaultsAreNamedWithTheirPlaces) {
   EXPECT_EQ(
       faults(head + region +
              "[[joint_set]]\nname = \"beds\"\njoint = \"beding\"\ndip_deg = 10\nspacing = 0\n"),
-      (Strings{"16:9: error: no joint law is named 'beding', did you mean 'bedding'?",
+      (Strings{"16:9: error: no joint is named 'beding', did you mean 'bedding'?",
                "18:11: error: 'spacing' in joint_set 'beds' is 0, it must be above 0 and at most 1e+09, for "
                "example spacing = 2.0"}));
   EXPECT_EQ(

@@ -2,6 +2,8 @@
 
 #include "gcpdda/simulation/safety_factor.hpp"
 
+#include "scene_texts.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -147,6 +149,20 @@ TEST(WeakenedScene, DilatesNoMoreThanItsFrictionAllows) {
   const std::vector<JointLaw> laws = weakened_scene(staged_scene(), 2.0).stages.back().after->joints.laws;
   EXPECT_EQ(laws[0].tan_dilation, 0.35);
   EXPECT_EQ(weakened_scene(staged_scene(), 4.0).stages.back().after->joints.laws[0].tan_dilation, 0.2);
+}
+
+// What is said of [fos].
+TEST(SafetySearch, FaultsAreToldAllAtOnce) {
+  const std::string text = testing::small_scene + R"([fos]
+families = ["defalt", "default"]
+from = 2
+to = 1.5
+)";
+  const std::vector<std::string> expected{
+      "s.toml:12:13: error: no joint is named 'defalt', did you mean 'default'?",
+      "s.toml:14:6: error: 'to' in [fos] is 1.5 and from is 2, the factor is searched from the one to the "
+      "other, exchange them"};
+  EXPECT_EQ(testing::messages(read_scene(text, "s.toml", {})), expected);
 }
 
 } // namespace

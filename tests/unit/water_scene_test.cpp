@@ -36,8 +36,7 @@ joints = ["defult"]
       "end",
       "s.toml:14:29: error: point 2 of 'phreatic' in [water.back] does not lie to the right of the one "
       "before, the line gives one height for each x, write its points from left to right",
-      "s.toml:15:11: error: no joint is named 'defult', 'joints' in [water.back] lists laws of [joint], did "
-      "you mean 'default'?"};
+      "s.toml:15:11: error: no joint is named 'defult', did you mean 'default'?"};
   EXPECT_EQ(messages(read_scene(text, "s.toml", {})), expected);
 }
 

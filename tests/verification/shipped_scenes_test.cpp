@@ -27,17 +27,7 @@ Scene with_blocks(Scene scene) {
 
 /// All stages; the verdict of the last one that was begun.
 Verdict last_verdict(Simulation &simulation) {
-  while (true) {
-    simulation.end_stage();
-    if (simulation.finished()) {
-      break;
-    }
-    if (simulation.stage_is_over()) {
-      simulation.begin_next_stage();
-    } else {
-      step(simulation);
-    }
-  }
+  run_stages(simulation, step);
   EXPECT_FALSE(simulation.fault().has_value());
   return simulation.stage_results().back().verdict;
 }

@@ -182,7 +182,7 @@ limit = 20.0
 set = { "water.table.active" = true }
 )";
   Simulation simulation(Communicator::self(), scene_of(toml));
-  run_stages(simulation);
+  run_stages(simulation, step);
   ASSERT_EQ(simulation.stage_results().size(), 2U);
   EXPECT_EQ(simulation.stage_results()[0].verdict, Verdict::settled);
   EXPECT_EQ(simulation.stage_results()[1].verdict, Verdict::failed);

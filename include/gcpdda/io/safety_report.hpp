@@ -57,9 +57,10 @@ struct SafetyReport {
 /// What people read.
 std::string to_text(const SafetyReport &report);
 
-/// fos.txt, fos.json, fos_trials.csv, and with a mechanism fos_blocks.csv and fos.svg. Root only; throws
-/// FileError.
-void write_safety_report(const std::filesystem::path &directory, const SafetyReport &report);
+/// fos.txt, fos.json, fos_trials.csv, and with a mechanism fos_blocks.csv and fos.svg, the picture. Root
+/// only; throws FileError.
+void write_safety_report(const std::filesystem::path &directory, const SafetyReport &report,
+                         const std::string &picture);
 
 /// Makes the folder of a search. One that holds a search or a run is refused with FileError unless
 /// `overwrite`, which removes what a search writes. Root only.

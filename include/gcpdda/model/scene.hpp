@@ -137,7 +137,7 @@ struct StrengthReduction {
   double tolerance = 0.01;            ///< width of the last bracket over its lower end
   double limit = 0.0;                 ///< s a trial lasts at most; 0: as long as the last settle stage
   double failure_motion = 0.1;        ///< share of its size that a block moves when it fails
-  double local_damping = 0.0;
+  double local_damping = 0.3;         ///< without it blocks weakened at once swing beyond their new balance
 };
 
 class BlockSource;

@@ -6,6 +6,8 @@
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -24,6 +26,10 @@ enum class Verdict : std::int64_t {
   failed,    ///< blocks have moved far and go on moving
   done       ///< of a stage that takes no steps
 };
+inline const char *word_of(Verdict verdict) {
+  constexpr std::array words{"undecided", "settled", "failed", "done"};
+  return words.at(static_cast<std::size_t>(verdict));
+}
 
 /// Blocks by name and by place; where both are given, those of either.
 struct BlockSelection {

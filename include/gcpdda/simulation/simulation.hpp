@@ -5,6 +5,7 @@
 #include "gcpdda/contact/in_situ.hpp"
 #include "gcpdda/dynamics/integrate.hpp"
 #include "gcpdda/dynamics/scheme.hpp"
+#include "gcpdda/dynamics/water_pressure.hpp"
 #include "gcpdda/io/checkpoint.hpp"
 #include "gcpdda/model/generators.hpp"
 #include "gcpdda/model/scene.hpp"
@@ -221,8 +222,8 @@ private:
   void evaluate_contacts();
   void take(const ForceReport &report);
   void gather_forces();
-  void gather_block(std::size_t row, Vec2 gravity_now);
-  void gather_gradient(std::size_t row, Vec2 gravity_now);
+  void gather_block(std::size_t row, Vec2 gravity_now, const WaterLoad &water);
+  void gather_gradient(std::size_t row, const WaterLoad &water);
   void add_half_works(std::size_t row);
   void report();
   [[nodiscard]] double own_status();
