@@ -232,7 +232,7 @@ void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair 
       continue;
     }
     const BondOpening &stretched = bond.stretched;
-    RegionForce &force = forces_.emplace_back();
+    RegionForce &force = append_force();
     next_.regions.push_back(bond.memory);
     damping_dyad_ = {};
     force.pair = number;
@@ -276,7 +276,7 @@ void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair 
       force.shear_torque[k] += k == 0 ? torque : -torque;
     }
     if (system.is_deformable(pair.lower.value) || system.is_deformable(pair.higher.value)) {
-      bond_dyads_.resize(forces_.size());
+      bond_dyads_.resize(num_forces_);
       bond_dyads_.back() = pull_dyad;
     }
     note(system, pair, force);

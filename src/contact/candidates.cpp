@@ -377,7 +377,7 @@ Candidates make_candidates(const BlockSystem &system,
                                   static_cast<std::uint32_t>(candidates.chain_vertices.size()),
                                   static_cast<std::uint8_t>(lower_chain.count),
                                   static_cast<std::uint8_t>(higher_chain.count),
-                                  finder.is_deformable(lower.value, higher.value)});
+                                  finder.is_deformable(lower.value, higher.value), candidate.is_mixed});
       append_chain(system, lower.value, lower_chain, candidates.chain_vertices);
       append_chain(system, higher.value, higher_chain, candidates.chain_vertices);
     }

@@ -15,6 +15,18 @@ namespace gcpdda {
 
 namespace {
 
+/// Pairs between asking for what a pair alone has and using it; more than a batch, less than fills a cache.
+constexpr std::size_t ahead = 12;
+
+void fetch_pair(const Candidates &candidates, const ContactHistory &history, std::uint32_t pair) {
+  const char *constants = reinterpret_cast<const char *>(&candidates.pairs[pair]);
+  __builtin_prefetch(constants);
+  __builtin_prefetch(constants + sizeof(CandidatePair) - 1);
+  const char *memory = reinterpret_cast<const char *>(history.regions.data() + history.ranges[pair].begin);
+  __builtin_prefetch(memory);
+  __builtin_prefetch(memory + 63);
+}
+
 /// How a trial configuration moved since the one before, in a form without cancellation.
 TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
   const RigidDof step = system.trial[row] - system.trial_previous[row];
@@ -72,47 +84,67 @@ void ContactForces::find_increments(const BlockSystem &system, std::size_t first
   }
 }
 
+RegionForce &ContactForces::append_force(const RegionForce &force) {
+  make_room_for(1);
+  return forces_[num_forces_++] = force;
+}
+
 /// Up to as many entries of Candidates::plain as there are lanes.
 void ContactForces::evaluate_alike(const BlockSystem &system, const Candidates &candidates,
                                    const ContactHistory &history, std::span<const std::uint32_t> entries) {
-  std::array<CandidatePair, PlainBatch::most_lanes> own;
+  static_assert(std::tuple_size_v<decltype(own_)> == PlainBatch::most_lanes);
   std::array<const CandidatePair *, PlainBatch::most_lanes> constants;
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const std::uint32_t number = candidates.plain[entries[i]].pair;
-    const CandidatePair &pair = candidates.pairs[number];
-    constants[i] = &pair;
-    if (pair.is_mixed && history.ranges[number].count > 0) {
-      own[i] = constants_of(system, parameters_, pair, history.of_pair(number).front().law);
-      constants[i] = &own[i];
+    const PlainPair &plain = candidates.plain[entries[i]];
+    constants[i] = &candidates.pairs[plain.pair];
+    if (plain.is_mixed && history.ranges[plain.pair].count > 0) {
+      own_[i] = constants_of(system, parameters_, *constants[i], history.of_pair(plain.pair).front().law);
+      constants[i] = &own_[i];
     }
   }
   const PlainScene scene{system, candidates, history, increments_, deforming_, parameters_.damping_ratio};
-  batch_->evaluate(scene, entries, std::span(constants).first(entries.size()));
+  const unsigned touching = batch_->evaluate(scene, entries, std::span(constants).first(entries.size()));
+  if (touching == 0) {
+    return;
+  }
+  PlainBatch::Results results;
+  make_room_for(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (!batch_->touches(i)) {
+    const PlainPair &plain = candidates.plain[entries[i]];
+    if ((touching >> i & 1U) == 0) {
       continue;
     }
-    const std::uint32_t number = candidates.plain[entries[i]].pair;
-    const CandidatePair &pair = candidates.pairs[number];
-    const bool is_born = history.ranges[number].count == 0;
-    if (is_born && pair.is_mixed) {
-      births_.push_back(number);
+    const bool is_born = history.ranges[plain.pair].count == 0;
+    if (is_born && plain.is_mixed) {
+      births_.push_back(plain.pair);
       continue;
     }
-    ranges_[number] = {static_cast<std::uint32_t>(forces_.size()), 1};
-    RegionForce &force = forces_.emplace_back();
-    force.pair = number;
+    ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
+    RegionForce &force = forces_[num_forces_++];
+    force.pair = plain.pair;
     force.born = is_born;
-    RegionMemory &memory = next_.regions.emplace_back();
-    if (pair.is_mixed) {
-      memory.law = constants[i]->law;
+    force.bonded = false;
+    results.force[i] = &force;
+  }
+  next_.regions.resize(num_forces_);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (results.force[i] != nullptr) {
+      RegionMemory &memory = next_.regions[static_cast<std::size_t>(results.force[i] - forces_.data())];
+      memory.law = candidates.plain[entries[i]].is_mixed ? constants[i]->law : memory.law;
+      results.memory[i] = &memory;
     }
-    batch_->store(i, force, memory);
-    if (candidates.plain[entries[i]].is_deformable) {
-      damping_dyads_.resize(forces_.size());
+  }
+  batch_->store(results);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (results.force[i] == nullptr) {
+      continue;
+    }
+    const PlainPair &plain = candidates.plain[entries[i]];
+    if (plain.is_deformable) {
+      damping_dyads_.resize(static_cast<std::size_t>(results.force[i] - forces_.data()) + 1);
       damping_dyads_.back() = batch_->damping_dyad(i);
     }
-    note(system, pair, force);
+    note(system, candidates.pairs[plain.pair], *results.force[i]);
   }
 }
 
@@ -132,6 +164,9 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
   births_.clear();
   const std::size_t width = batch_->width();
   for (std::size_t begin = 0, end = 0; begin < num_meeting; begin = end) {
+    for (std::size_t k = begin + ahead; k < std::min(num_meeting, begin + ahead + width); ++k) {
+      fetch_pair(candidates, history, plain[meeting_[k]].pair);
+    }
     end = begin + 1;
     while (end < std::min(num_meeting, begin + width) && alike(begin, end)) {
       ++end;
@@ -139,9 +174,9 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     evaluate_alike(system, candidates, history, std::span(meeting_).subspan(begin, end - begin));
   }
   for (const std::uint32_t number : births_) {
-    const auto begin = static_cast<std::uint32_t>(forces_.size());
+    const auto begin = static_cast<std::uint32_t>(num_forces_);
     evaluate_pair(system, candidates, number, {});
-    ranges_[number] = {begin, static_cast<std::uint32_t>(forces_.size()) - begin};
+    ranges_[number] = {begin, static_cast<std::uint32_t>(num_forces_) - begin};
   }
 }
 
@@ -152,10 +187,10 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
     if (system.box[pair.lower.value].meets(system.box[pair.higher.value]) || history.has_bonds(k) ||
         history.is_dilated(k)) {
       ++report_.evaluations;
-      const auto begin = static_cast<std::uint32_t>(forces_.size());
+      const auto begin = static_cast<std::uint32_t>(num_forces_);
       evaluate_pair(system, candidates, k,
                     std::span(history.regions).subspan(history.ranges[k].begin, history.ranges[k].count));
-      ranges_[k] = {begin, static_cast<std::uint32_t>(forces_.size()) - begin};
+      ranges_[k] = {begin, static_cast<std::uint32_t>(num_forces_) - begin};
     }
   }
 }
@@ -165,7 +200,7 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   increments_.assign(system.num_rows(), {});
   deforming_.resize(system.deformation.size());
   find_increments(system, 0, system.num_owned);
-  forces_.clear();
+  num_forces_ = 0;
   damping_dyads_.clear();
   bond_dyads_.clear();
   dilation_works_.clear();

@@ -45,7 +45,11 @@ bool counts_here(const BlockSystem &system, const CandidatePair &pair) {
 ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts, BlockSystem &system,
                           std::span<RigidDof> forces) {
   ContactCount count;
+  constexpr std::size_t ahead = 8; // regions stand in the order of their evaluation
   for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
+    if (k + ahead < candidates.pairs.size()) {
+      contacts.fetch(k + ahead);
+    }
     const std::span<const RegionForce> regions = contacts.of_pair(k);
     if (regions.empty()) {
       continue;

@@ -151,10 +151,10 @@ void ContactForces::evaluate_dilated(const BlockSystem &system, const CandidateP
   if (!pair.is_convex) {
     memory.position = reference_point(system, pair.lower.value, force.point);
   }
-  forces_.push_back(force);
+  append_force(force);
   next_.regions.push_back(memory);
   const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, *region);
-  load_region(system, constants, *region, share, next_.regions.back(), forces_.back());
+  load_region(system, constants, *region, share, next_.regions.back(), forces_[num_forces_ - 1]);
 }
 
 // Without a force, as long as it is not open by as much again.
@@ -165,7 +165,7 @@ void ContactForces::keep_open(const BlockSystem &system, const CandidatePair &pa
   if (region == nullptr || !measure(*region, nearest)) {
     return;
   }
-  RegionForce &force = forces_.emplace_back();
+  RegionForce &force = append_force();
   force.pair = number;
   force.point = nearest.point;
   force.origin = nearest.point;

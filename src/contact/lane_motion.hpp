@@ -15,14 +15,12 @@ using Rows = std::array<std::size_t, num_lanes>;
 
 /// A dyad or a gradient, by entries xx, xy, yx, yy.
 struct LaneMat {
-  std::array<Lanes, 4> entry;
+  FourLanes entry;
 
   /// Lane i holds *get(i).
   template <class Get> [[gnu::always_inline]] static LaneMat of(Get &&get) {
-    const LaneVec first = LaneVec::of([&](std::size_t i) { return &get(i)->xx; });
-    const LaneVec second = LaneVec::of([&](std::size_t i) { return &get(i)->yx; });
     LaneMat result;
-    result.entry = {first.x, first.y, second.x, second.y};
+    result.entry = load_by_lane([&](std::size_t i) { return &get(i)->xx; });
     return result;
   }
   [[gnu::always_inline]] LaneVec operator()(const LaneVec &a) const {
@@ -43,8 +41,9 @@ inline void load_side(const BlockSystem &system, const Rows &rows, const Chains 
     side.slope[k] = side.normal[k];
     side.length[k] = Lanes::of([&](std::size_t i) { return system.edge_length[chain[i][k]]; });
   }
-  side.low = LaneVec::of([&](std::size_t i) { return &system.box[rows[i]].low; });
-  side.high = LaneVec::of([&](std::size_t i) { return &system.box[rows[i]].high; });
+  const FourLanes box = load_by_lane([&](std::size_t i) { return &system.box[rows[i]].low.x; });
+  side.low = {box[0], box[1]};
+  side.high = {box[2], box[3]};
 }
 
 /// Depths inside a deformable block are those in its reference polygon over J.
@@ -80,8 +79,6 @@ struct TranslatingMotion {
     higher_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[b[i]]; });
     lower_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[a[i]].u; });
     higher_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[b[i]].u; });
-    lower_step = LaneVec::of([&](std::size_t i) { return &scene.increments[a[i]].u; });
-    higher_step = LaneVec::of([&](std::size_t i) { return &scene.increments[b[i]].u; });
   }
 };
 
@@ -95,13 +92,17 @@ struct RigidMotion : TranslatingMotion {
   Lanes higher_versine;
 
   RigidMotion(const PlainScene &scene, const Rows &a, const Rows &b) : TranslatingMotion(scene, a, b) {
-    const std::span<const TrialIncrement> increments = scene.increments;
     lower_spin = Lanes::of([&](std::size_t i) { return scene.system.velocity[a[i]].r; });
     higher_spin = Lanes::of([&](std::size_t i) { return scene.system.velocity[b[i]].r; });
-    lower_sine = Lanes::of([&](std::size_t i) { return increments[a[i]].turn.yx; });
-    higher_sine = Lanes::of([&](std::size_t i) { return increments[b[i]].turn.yx; });
-    lower_versine = Lanes::of([&](std::size_t i) { return increments[a[i]].turn.xx; });
-    higher_versine = Lanes::of([&](std::size_t i) { return increments[b[i]].turn.xx; });
+    take_increments(scene, a, lower_step, lower_sine, lower_versine);
+    take_increments(scene, b, higher_step, higher_sine, higher_versine);
+  }
+  [[gnu::always_inline]] static void take_increments(const PlainScene &scene, const Rows &rows, LaneVec &step,
+                                                     Lanes &sine, Lanes &versine) {
+    const FourLanes increment = load_by_lane([&](std::size_t i) { return &scene.increments[rows[i]].u.x; });
+    step = {increment[0], increment[1]};
+    versine = increment[2]; // a small turn is {versine, -sine; sine, versine}
+    sine = -increment[3];
   }
   /// Of the lower block's material point against the higher one's.
   [[nodiscard, gnu::always_inline]] LaneVec velocity_at(const LaneVec &x) const {
@@ -140,6 +141,8 @@ struct DeformingMotion : TranslatingMotion {
     };
     lower_rate = rates_of(a);
     higher_rate = rates_of(b);
+    lower_step = LaneVec::of([&](std::size_t i) { return &scene.increments[a[i]].u; });
+    higher_step = LaneVec::of([&](std::size_t i) { return &scene.increments[b[i]].u; });
     lower_turn = LaneMat::of([&](std::size_t i) { return &scene.increments[a[i]].turn; });
     higher_turn = LaneMat::of([&](std::size_t i) { return &scene.increments[b[i]].turn; });
   }

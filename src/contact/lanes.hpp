@@ -6,6 +6,7 @@
 // This and all that is made of it is compiled once for each set of instructions (plain_batch_*.cpp), in a
 // namespace of that set's name: GCPDDA_INSTRUCTIONS, with GCPDDA_NUM_LANES doubles in a register.
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -24,21 +25,22 @@ struct Mask {
   [[gnu::always_inline]] friend Mask operator&(const Mask &a, const Mask &b) { return {a.bits & b.bits}; }
   [[gnu::always_inline]] friend Mask operator|(const Mask &a, const Mask &b) { return {a.bits | b.bits}; }
   [[gnu::always_inline]] friend Mask operator!(const Mask &a) { return {~a.bits}; }
-  [[nodiscard, gnu::always_inline]] bool any() const {
+  /// Bit i is lane i.
+  [[nodiscard, gnu::always_inline]] unsigned by_lane() const {
 #if defined(__x86_64__) && GCPDDA_NUM_LANES == 4
-    return __builtin_ia32_movmskpd256(reinterpret_cast<LaneValues>(bits)) != 0; // the signs
+    return static_cast<unsigned>(__builtin_ia32_movmskpd256(reinterpret_cast<LaneValues>(bits)));
 #elif defined(__x86_64__)
-    return __builtin_ia32_movmskpd(reinterpret_cast<LaneValues>(bits)) != 0;
+    return static_cast<unsigned>(__builtin_ia32_movmskpd(reinterpret_cast<LaneValues>(bits)));
 #else
-    auto all = bits[0];
-    for (std::size_t i = 1; i < num_lanes; ++i) {
-      all |= bits[i];
+    unsigned all = 0;
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      all |= bits[i] != 0 ? 1U << i : 0U;
     }
-    return all != 0;
+    return all;
 #endif
   }
-  [[nodiscard, gnu::always_inline]] bool operator[](std::size_t lane) const {
-    return bits[lane] != 0;
+  [[nodiscard, gnu::always_inline]] bool any() const {
+    return by_lane() != 0;
   }
 };
 
@@ -103,7 +105,16 @@ public:
   }
   [[gnu::always_inline]] friend Lanes abs(const Lanes &a) { return max(a, -a); }
   [[gnu::always_inline]] friend Lanes sqrt(const Lanes &a) {
+#if defined(__x86_64__) && GCPDDA_NUM_LANES == 4
+    return Lanes(__builtin_ia32_sqrtpd256(a.values_));
+#elif defined(__x86_64__)
+    return Lanes(__builtin_ia32_sqrtpd(a.values_));
+#else
     return of([&](std::size_t i) { return std::sqrt(a.values_[i]); });
+#endif
+  }
+  [[nodiscard, gnu::always_inline]] const LaneValues &values() const {
+    return values_;
   }
 
 private:
@@ -164,5 +175,56 @@ struct LaneVec {
     return {select(mask, a.x, b.x), select(mask, a.y, b.y)};
   }
 };
+
+/// Four numbers that stand together, by number and lane.
+using FourLanes = std::array<Lanes, 4>;
+
+/// Lane i holds those from get(i) on.
+template <class Get> [[gnu::always_inline]] inline FourLanes load_by_lane(Get &&get) {
+#if GCPDDA_NUM_LANES == 4
+  using Unaligned [[gnu::may_alias, gnu::aligned(sizeof(double))]] = LaneValues;
+  const LaneValues row[] = {
+      *reinterpret_cast<const Unaligned *>(get(0)), *reinterpret_cast<const Unaligned *>(get(1)),
+      *reinterpret_cast<const Unaligned *>(get(2)), *reinterpret_cast<const Unaligned *>(get(3))};
+  const LaneValues even_01 = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6);
+  const LaneValues odd_01 = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
+  const LaneValues even_23 = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6);
+  const LaneValues odd_23 = __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+  return {Lanes(__builtin_shufflevector(even_01, even_23, 0, 1, 4, 5)),
+          Lanes(__builtin_shufflevector(odd_01, odd_23, 0, 1, 4, 5)),
+          Lanes(__builtin_shufflevector(even_01, even_23, 2, 3, 6, 7)),
+          Lanes(__builtin_shufflevector(odd_01, odd_23, 2, 3, 6, 7))};
+#else
+  const LaneVec first = LaneVec::of([&](std::size_t i) { return get(i); });
+  const LaneVec second = LaneVec::of([&](std::size_t i) { return get(i) + 2; });
+  return {first.x, first.y, second.x, second.y};
+#endif
+}
+
+/// Lane i of a, b, c and d one after the other at to[i] + offset.
+[[gnu::always_inline]] inline void store_by_lane(const std::array<std::byte *, num_lanes> &to,
+                                                 std::size_t offset, const Lanes &a, const Lanes &b,
+                                                 const Lanes &c, const Lanes &d) {
+  using Unaligned [[gnu::may_alias, gnu::aligned(sizeof(double))]] = LaneValues;
+  const auto put = [&](std::size_t lane, const LaneValues &row, std::size_t behind = 0)
+      __attribute__((always_inline)) {
+    *reinterpret_cast<Unaligned *>(to[lane] + offset + behind) = row;
+  };
+#if GCPDDA_NUM_LANES == 4
+  const LaneValues ab_even = __builtin_shufflevector(a.values(), b.values(), 0, 4, 2, 6);
+  const LaneValues ab_odd = __builtin_shufflevector(a.values(), b.values(), 1, 5, 3, 7);
+  const LaneValues cd_even = __builtin_shufflevector(c.values(), d.values(), 0, 4, 2, 6);
+  const LaneValues cd_odd = __builtin_shufflevector(c.values(), d.values(), 1, 5, 3, 7);
+  put(0, __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5));
+  put(1, __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5));
+  put(2, __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7));
+  put(3, __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7));
+#else
+  put(0, __builtin_shufflevector(a.values(), b.values(), 0, 2), 0);
+  put(0, __builtin_shufflevector(c.values(), d.values(), 0, 2), sizeof(LaneValues));
+  put(1, __builtin_shufflevector(a.values(), b.values(), 1, 3), 0);
+  put(1, __builtin_shufflevector(c.values(), d.values(), 1, 3), sizeof(LaneValues));
+#endif
+}
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -222,7 +222,7 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
     force.shear_torque[k] = sign * cross(force.point - system.trial_centroid[row], force.shear_force);
     force.damping_torque[k] = torque(damping_dyad_, force.damping_force);
     if (system.is_deformable(row)) {
-      damping_dyads_.resize(forces_.size());
+      damping_dyads_.resize(num_forces_);
       damping_dyads_.back() = damping_dyad_;
     }
   }
@@ -247,9 +247,9 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &c
     find_bonds(system, pair, touches ? overlap_.pieces() : std::span<const Piece>(), bonds);
   }
   for (const Region &region : touches ? overlap_.regions() : std::span<const Region>()) {
-    RegionForce &force = forces_.emplace_back();
+    RegionForce &force = append_force();
     if (!measure(region, force)) {
-      forces_.pop_back();
+      drop_last_force();
       continue;
     }
     force.pair = number;
@@ -261,7 +261,7 @@ void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &c
     } else {
       recall(system, pair, region, old, memory, force);
       if (memory.is_dilated()) { // on its own below
-        forces_.pop_back();
+        drop_last_force();
         next_.regions.pop_back();
         continue;
       }

@@ -5,6 +5,7 @@
 
 #include "gcpdda/contact/contact_forces.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,12 +33,17 @@ public:
   static constexpr std::size_t most_lanes = 4;
   /// Evaluate up to width() entries of Candidates::plain with like numbers of edges, all rigid or none, with
   /// the constants that go with each.
-  virtual void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
-                        std::span<const CandidatePair *const> constants) = 0;
-  [[nodiscard]] virtual bool touches(std::size_t lane) const = 0;
-  /// Write the result of a lane that touches: all of the force but its pair and its birth, and what of the
+  /// @return bit i is set where entry i touches
+  virtual unsigned evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
+                            std::span<const CandidatePair *const> constants) = 0;
+  /// Where results go, by lane; null where no one asks.
+  struct Results {
+    std::array<RegionForce *, most_lanes> force{};
+    std::array<RegionMemory *, most_lanes> memory{};
+  };
+  /// Write the results of lanes that touch: all of a force but its pair, birth and bond, and what of the
   /// memory two convex blocks have.
-  virtual void store(std::size_t lane, RegionForce &force, RegionMemory &memory) const = 0;
+  virtual void store(const Results &results) = 0;
   /// Of a lane that touches where a block is deformable.
   [[nodiscard]] virtual Mat2 damping_dyad(std::size_t lane) const = 0;
 };

@@ -18,7 +18,7 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// a b^T added by entries xx, xy, yx, yy.
-[[gnu::always_inline]] inline void add_outer(std::array<Lanes, 4> &dyad, const LaneVec &a, const LaneVec &b) {
+[[gnu::always_inline]] inline void add_outer(FourLanes &dyad, const LaneVec &a, const LaneVec &b) {
   dyad[0] += a.x * b.x;
   dyad[1] += a.x * b.y;
   dyad[2] += a.y * b.x;
@@ -66,10 +66,9 @@ class LaneBatch final : public PlainBatch {
 public:
   static_assert(num_lanes <= most_lanes);
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
-  void evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
-                std::span<const CandidatePair *const> constants) override;
-  [[nodiscard]] bool touches(std::size_t lane) const override { return touches_[lane]; }
-  void store(std::size_t lane, RegionForce &force, RegionMemory &memory) const override;
+  unsigned evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
+                    std::span<const CandidatePair *const> constants) override;
+  void store(const Results &results) override;
   [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const override;
 
 private:
@@ -93,7 +92,7 @@ private:
   Mask undefined_;
   LaneVec origin_;
   LaneVec force_;
-  std::array<Lanes, 4> dyad_;
+  FourLanes dyad_;
   Lanes pressure_;
   LaneVec point_;
   LaneVec normal_;
@@ -108,10 +107,11 @@ private:
   Lanes cap_;
   Mask slips_;
   LaneVec damping_force_;
-  std::array<Lanes, 4> damping_dyad_; ///< of pairs with a deformable block
+  FourLanes damping_dyad_; ///< of pairs with a deformable block
   Torques torque_;
   Torques shear_torque_;
   Torques damping_torque_;
+  RegionForce unwanted_; ///< takes what lanes write that no one asks
 };
 
 struct LaneBatch::Constants {
@@ -136,7 +136,7 @@ inline void LaneBatch::integrate() {
     origin_ = select(on_lower_[k].valid, on_lower_[k].begin, origin_);
   }
   force_ = {0.0, 0.0};
-  dyad_.fill(0.0);
+  FourLanes dyad{0.0, 0.0, 0.0, 0.0};
   pressure_ = 0.0;
   LaneVec pressure_moment{0.0, 0.0};
   const auto add = [&](const LaneStretch &stretch, const LaneVec &normal, const LaneVec &direction) {
@@ -146,7 +146,7 @@ inline void LaneBatch::integrate() {
     const LaneVec arm = stretch.begin - origin_;
     const LaneVec moment = stretch.pressure * arm + stretch.moment * perp(normal);
     force_ += stretch.pressure * direction;
-    add_outer(dyad_, moment, direction);
+    add_outer(dyad, moment, direction);
     pressure_ += stretch.pressure;
     pressure_moment += moment;
   };
@@ -156,6 +156,7 @@ inline void LaneBatch::integrate() {
   for (std::size_t k = 0; k < higher_.edges; ++k) {
     add(on_higher_[k], higher_.normal[k], higher_.normal[k]);
   }
+  dyad_ = dyad;
   touches_ = pressure_ > 0.0;
   const Lanes resultant = sqrt(dot(force_, force_));
   undefined_ = touches_ & (resultant <= Lanes(ContactForces::least_resultant) * pressure_);
@@ -234,8 +235,8 @@ template <class AnyMotion> void LaneBatch::add_friction(const Constants &constan
   shear_torque_ = {-elastic_ * lower_lever, elastic_ * higher_lever};
   damping_torque_ = {-viscous * lower_lever, viscous * higher_lever};
   damping_force_ = -viscous * tangent;
-  damping_dyad_.fill(0.0);
   if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
+    damping_dyad_ = {0.0, 0.0, 0.0, 0.0};
     add_outer(damping_dyad_, point_ - origin_, damping_force_);
   }
 }
@@ -313,8 +314,8 @@ void LaneBatch::add_friction_and_dashpots(const Constants &constants, const AnyM
   torque_[1] = -about_origin - cross(origin_ - motion.higher_centroid, force_);
 }
 
-inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
-                                std::span<const CandidatePair *const> given) {
+inline unsigned LaneBatch::evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
+                                    std::span<const CandidatePair *const> given) {
   const BlockSystem &system = scene.system;
   Rows a;
   Rows b;
@@ -347,23 +348,25 @@ inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::ui
   cut_edges(higher_, lower_, on_higher_);
   origin_ = lower_.vertex[0];
   integrate();
-  if (!touches_.any()) {
-    return;
+  const unsigned touching = touches_.by_lane();
+  if (touching == 0) {
+    return 0;
   }
-  const auto constant = [&](double CandidatePair::*field) {
-    return Lanes::of([&](std::size_t i) { return candidate[i]->*field; });
-  };
-  const Constants constants{constant(&CandidatePair::half_stiffness),
-                            constant(&CandidatePair::tangential_stiffness),
-                            constant(&CandidatePair::tan_friction),
-                            constant(&CandidatePair::cohesion),
-                            constant(&CandidatePair::damping),
-                            constant(&CandidatePair::mass),
+  const FourLanes strength =
+      load_by_lane([&](std::size_t i) { return &candidate[i]->half_stiffness; }); // and what stands behind it
+  const LaneVec dashpot = LaneVec::of([&](std::size_t i) { return &candidate[i]->damping; });
+  const FourLanes known = load_by_lane([&](std::size_t i) { return &memory[i]->shear; });
+  const Constants constants{strength[0],
+                            strength[1],
+                            strength[2],
+                            strength[3],
+                            dashpot.x,
+                            dashpot.y,
                             scene.damping_ratio,
                             Lanes::of([&](std::size_t i) { return was_there[i]; }),
-                            Lanes::of([&](std::size_t i) { return memory[i]->shear; }),
-                            Lanes::of([&](std::size_t i) { return memory[i]->longest; }),
-                            Lanes::of([&](std::size_t i) { return memory[i]->slip; })};
+                            known[0],
+                            known[1],
+                            known[2]};
   force_ = constants.half_stiffness * force_;
   for (Lanes &entry : dyad_) {
     entry = constants.half_stiffness * entry;
@@ -375,36 +378,41 @@ inline void LaneBatch::evaluate(const PlainScene &scene, std::span<const std::ui
   } else {
     add_friction_and_dashpots(constants, RigidMotion(scene, a, b));
   }
+  return touching;
 }
 
-inline void LaneBatch::store(std::size_t lane, RegionForce &force, RegionMemory &memory) const {
-  const auto vec = [&](const LaneVec &v) { return Vec2{v.x[lane], v.y[lane]}; };
-  const auto mat = [&](const std::array<Lanes, 4> &m) {
-    return Mat2{m[0][lane], m[1][lane], m[2][lane], m[3][lane]};
+inline void LaneBatch::store(const Results &results) {
+  std::array<std::byte *, num_lanes> to;
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    to[i] = reinterpret_cast<std::byte *>(results.force[i] != nullptr ? results.force[i] : &unwanted_);
+  }
+  const auto put = [&](std::size_t offset, const Lanes &a, const Lanes &b, const Lanes &c, const Lanes &d)
+      __attribute__((always_inline)) {
+    store_by_lane(to, offset, a, b, c, d);
   };
-  const Vec2 normal = vec(normal_);
-  force.normal_undefined = undefined_[lane];
-  force.origin = vec(origin_);
-  force.force = vec(force_);
-  force.dyad = mat(dyad_);
-  force.shear_force = -elastic_[lane] * perp(normal);
-  force.damping_force = vec(damping_force_);
-  const auto torques = [&](const Torques &t) { return PairTorques{t[0][lane], t[1][lane]}; };
-  force.torque = torques(torque_);
-  force.shear_torque = torques(shear_torque_);
-  force.damping_torque = torques(damping_torque_);
-  force.point = vec(point_);
-  force.normal = normal;
-  force.normal_force = normal_force_[lane];
-  force.shear = shear_[lane];
-  force.cap = cap_[lane];
-  force.overlap = overlap_[lane];
-  force.extent_begin = undefined_[lane] ? 0.0 : extent_begin_[lane];
-  force.extent_end = undefined_[lane] ? 0.0 : extent_end_[lane];
-  memory.shear = elastic_[lane];
-  memory.longest = longest_[lane];
-  memory.slip = slip_[lane];
-  memory.state = slips_[lane] ? ContactState::slip : ContactState::stick;
+  const LaneVec shear_force = -elastic_ * perp(normal_);
+  put(offsetof(RegionForce, force), force_.x, force_.y, torque_[0], torque_[1]);
+  put(offsetof(RegionForce, shear_force), shear_force.x, shear_force.y, shear_torque_[0], shear_torque_[1]);
+  put(offsetof(RegionForce, damping_force), damping_force_.x, damping_force_.y, damping_torque_[0],
+      damping_torque_[1]);
+  put(offsetof(RegionForce, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
+  put(offsetof(RegionForce, origin), origin_.x, origin_.y, point_.x, point_.y);
+  put(offsetof(RegionForce, normal), normal_.x, normal_.y, normal_force_, shear_);
+  put(offsetof(RegionForce, cap), cap_, overlap_, select(undefined_, 0.0, extent_begin_),
+      select(undefined_, 0.0, extent_end_));
+  const unsigned undefined = undefined_.by_lane();
+  const unsigned slips = slips_.by_lane();
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    if (results.force[i] == nullptr) {
+      continue;
+    }
+    results.force[i]->normal_undefined = (undefined >> i & 1U) != 0;
+    RegionMemory &memory = *results.memory[i];
+    memory.shear = elastic_[i];
+    memory.longest = longest_[i];
+    memory.slip = slip_[i];
+    memory.state = (slips >> i & 1U) != 0 ? ContactState::slip : ContactState::stick;
+  }
 }
 
 inline Mat2 LaneBatch::damping_dyad(std::size_t lane) const {

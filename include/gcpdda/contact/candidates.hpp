@@ -40,6 +40,7 @@ struct PlainPair {
   std::uint8_t lower_edges = 0;
   std::uint8_t higher_edges = 0;
   bool is_deformable = false; ///< at least one block is
+  bool is_mixed = false;      ///< CandidatePair::is_mixed
 
   /// May share an evaluation.
   [[nodiscard]] bool is_like(const PlainPair &other) const {

@@ -51,14 +51,15 @@ struct RegionForce {
   bool born = false;             ///< not there at the evaluation before
   bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
   bool bonded = false; ///< a bond (bonds.hpp): normal_force is minus its tension, which joins shear_force
-  Vec2 force;          ///< normal, friction and dashpot, N/m
+  // Four numbers each: the lanes write them so (plain_kernel.hpp).
+  Vec2 force; ///< normal, friction and dashpot, N/m
   PairTorques torque{};
   Vec2 shear_force; ///< elastic part of friction in `force`; acts at `point`
   PairTorques shear_torque{};
   Vec2 damping_force; ///< dashpots in `force`
   PairTorques damping_torque{};
-  Vec2 origin;               ///< what dyads are about
   Mat2 dyad;                 ///< int (x - origin) df^T, N
+  Vec2 origin;               ///< what dyads are about
   Vec2 point;                ///< x_r
   Vec2 normal;               ///< n_r
   double normal_force = 0.0; ///< |N|
@@ -145,10 +146,16 @@ public:
                               ContactHistory &history);
 
   /// All touching regions, those of a pair together; region i is that of history.regions[i].
-  [[nodiscard]] std::span<const RegionForce> regions() const { return forces_; }
+  [[nodiscard]] std::span<const RegionForce> regions() const { return {forces_.data(), num_forces_}; }
   /// Those of one pair.
   [[nodiscard]] std::span<const RegionForce> of_pair(std::size_t pair) const {
     return {forces_.data() + ranges_[pair].begin, ranges_[pair].count};
+  }
+  /// Say that its sums will be asked for soon.
+  void fetch(std::size_t pair) const {
+    const auto *region = reinterpret_cast<const char *>(forces_.data() + ranges_[pair].begin);
+    __builtin_prefetch(region);
+    __builtin_prefetch(region + 64);
   }
 
   /// Dyad of `damping_force`; only pairs with a deformable block have one that is not 0.
@@ -192,6 +199,14 @@ private:
                             std::size_t first, std::size_t last);
   void evaluate_alike(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                       std::span<const std::uint32_t> entries);
+  /// References to other regions hold until the next one is appended.
+  RegionForce &append_force(const RegionForce &force = {});
+  void drop_last_force() { --num_forces_; }
+  void make_room_for(std::size_t more) {
+    if (forces_.size() < num_forces_ + more) {
+      forces_.resize(num_forces_ + more);
+    }
+  }
   void recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
               std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const;
   /// Normal force for k_n/2 = 1, direction and size of a region; false if it carries nothing.
@@ -233,7 +248,10 @@ private:
   std::unique_ptr<PlainBatch> batch_;
   std::vector<std::uint32_t> meeting_; ///< entries of Candidates::plain whose boxes meet
   std::vector<std::uint32_t> births_;  ///< plain pairs whose new regions must choose among laws
+  std::array<CandidatePair, 4> own_;   ///< constants of mixed pairs at hand, by lane
+  /// The first num_forces_ of them; the others are of evaluations before and spare making new ones.
   std::vector<RegionForce> forces_;
+  std::size_t num_forces_ = 0;
   std::vector<RegionRange> ranges_; ///< of forces_, one a pair
   ForceReport report_;              ///< of what has been evaluated so far
   ContactHistory next_;
