@@ -37,8 +37,10 @@ std::vector<std::string> clean_environment(const std::vector<std::string> &added
   for (const char *needed :
        {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_mpi_yield_when_idle=1",
         "OMPI_MCA_btl_vader_single_copy_mechanism=none", "OMP_NUM_THREADS=1",
-        // Most of a small run is its start: one node, shared memory, no daemon for a single rank.
-        "OMPI_MCA_pml=ob1", "OMPI_MCA_btl=self,vader", "OMPI_MCA_ess_singleton_isolated=1"}) {
+        // Most of a small run is its start and its end: one node, shared memory, no daemon for a single rank,
+        // and after a failure no two seconds of waiting for ranks that have all said why and gone.
+        "OMPI_MCA_pml=ob1", "OMPI_MCA_btl=self,vader", "OMPI_MCA_ess_singleton_isolated=1",
+        "OMPI_MCA_odls_base_sigkill_timeout=0"}) {
     variables.emplace_back(needed);
   }
   // Single ranks without a daemon all take the same name for their scratch files: each has a place of its

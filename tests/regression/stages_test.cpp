@@ -32,8 +32,8 @@ density = 2600.0
 normal_stiffness = 1e9
 friction_angle_deg = 35.0
 [output]
-interval = 0.03
-checkpoint_interval = 0.03
+interval = 0.02
+checkpoint_interval = 0.02
 [[block]]
 name = "floor"
 material = "rock"
@@ -43,7 +43,7 @@ vertices = [[-1, -1], [9, -1], [9, 0], [-1, 0]]
 name = "w"
 material = "rock"
 origin = [0.0, 0.0]
-rows = 8
+rows = 4
 columns = 8
 block_size = [1.0, 0.5]
 [[monitor]]
@@ -51,13 +51,13 @@ block = "w.1.5"
 )";
 
 const std::vector<std::string> stages{
-    "[[stage]]\nname = \"gravity\"\nkind = \"settle\"\nlimit = 1.98\n",
+    "[[stage]]\nname = \"gravity\"\nkind = \"settle\"\nlimit = 1.98\ntolerance = 1e-3\n",
     "[[stage]]\nname = \"opening\"\nkind = \"excavate\"\nregion = [[3, 0], [5, 0], [5, 1], [3, 1]]\nrelax = "
-    "0.03\n",
-    "[[stage]]\nkind = \"run\"\nduration = 0.06\n",
+    "0.02\n",
+    "[[stage]]\nkind = \"run\"\nduration = 0.04\n",
     "[[stage]]\nkind = \"change\"\nset = { \"joint.default.friction_angle_deg\" = 20.0, "
     "\"joint.default.normal_stiffness\" = 5e8 }\n",
-    "[[stage]]\nname = \"weak\"\nkind = \"run\"\nduration = 0.06\n"};
+    "[[stage]]\nname = \"weak\"\nkind = \"run\"\nduration = 0.04\n"};
 
 std::string scene_of_stages(std::size_t count) {
   std::string text = wall;
@@ -110,7 +110,7 @@ TEST(StagedRun, WithoutAVerdictEndsWithSeven) {
   ASSERT_EQ(whole.exit_code, 0) << whole.err;
   EXPECT_EQ(summary_text(folder / "whole", "verdict"), "\"settled\"");
   const Outcome brief =
-      run_gcpdda(2, {"run", "scene.toml", "--out", "brief", "--set", "stage.gravity.limit=0.06"}, folder);
+      run_gcpdda(2, {"run", "scene.toml", "--out", "brief", "--set", "stage.gravity.limit=0.04"}, folder);
   EXPECT_EQ(brief.exit_code, 7) << brief.err;
   EXPECT_EQ(summary_text(folder / "brief", "verdict"), "\"undecided\"");
   EXPECT_EQ(run_gcpdda(0, {"restart", "brief"}, folder).exit_code, 7);
