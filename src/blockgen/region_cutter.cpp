@@ -83,7 +83,7 @@ RegionCutter::Made RegionCutter::make(std::int64_t first, std::int64_t last, Cut
     }
     std::vector<blockgen::Trace> near;
     for (std::size_t k = 0; k < traces.size(); ++k) {
-      if (k < region_.outline.size() || traces[k].box().meets(box)) { // the outline always: traces_in()
+      if (k < region_.outline.size() || traces[k].meets(box)) { // the outline always: traces_in()
         near.push_back(traces[k]);
       }
     }

@@ -42,29 +42,12 @@ Aabb moved(const Aabb &box, Vec2 by) {
   return {box.low + by, box.high + by};
 }
 
-/// Whether a segment has a point in the box: the stretch that lies between its sides in x does so in y.
-bool passes(Vec2 from, Vec2 to, const Aabb &box) {
-  double first = 0.0;
-  double last = 1.0;
-  const auto keep = [&](double at, double along, double low, double high) {
-    if (along == 0.0) {
-      return low <= at && at <= high;
-    }
-    const auto [enters, leaves] = std::minmax({(low - at) / along, (high - at) / along});
-    first = std::max(first, enters);
-    last = std::min(last, leaves);
-    return first <= last;
-  };
-  return keep(from.x, to.x - from.x, box.low.x, box.high.x) &&
-         keep(from.y, to.y - from.y, box.low.y, box.high.y);
-}
-
 /// Whether a face has a point in the box. What lies around all that is known of a tile is one face with a
 /// hole, in which the tile lies: its box says nothing.
 bool meets(const PlaneFace &shape, const Aabb &box) {
   const auto ring_passes = [&](const Ring &ring) {
     for (std::size_t k = 0; k < ring.size(); ++k) {
-      if (passes(ring[k], ring[(k + 1) % ring.size()], box)) {
+      if (Trace{ring[k], ring[(k + 1) % ring.size()]}.meets(box)) {
         return true;
       }
     }
@@ -232,7 +215,7 @@ std::vector<Trace> TileCutter::traces_in(const Aabb &box) const {
       site -= origin_;
     }
     for (Trace &edge : graph_.voronoi_edges(sites)) {
-      if (edge.box().meets(box)) {
+      if (edge.meets(box)) {
         edge.joint = cells.joint;
         traces.push_back(edge);
       }

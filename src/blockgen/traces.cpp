@@ -53,7 +53,7 @@ public:
   void add_ring(const std::vector<Vec2> &outline, std::int32_t joint, bool always) {
     for (std::size_t k = 0; k < outline.size(); ++k) {
       const Trace edge{outline[k], outline[(k + 1) % outline.size()], joint};
-      if (always || edge.box().meets(box_)) {
+      if (always || edge.meets(box_)) {
         traces_.push_back(edge);
       }
     }
@@ -110,13 +110,13 @@ public:
 
 private:
   void add(const Trace &trace) {
-    if (trace.box().meets(box_) && trace.from != trace.to) {
+    if (trace.from != trace.to && trace.meets(box_)) {
       traces_.push_back(trace);
     }
   }
 
   void add(const JointSet &set, const Trace &trace) {
-    if (!trace.box().meets(box_)) {
+    if (!trace.meets(box_)) {
       return;
     }
     if (set.within.empty()) {
@@ -215,6 +215,23 @@ private:
 
 Aabb Trace::box() const {
   return {{std::min(from.x, to.x), std::min(from.y, to.y)}, {std::max(from.x, to.x), std::max(from.y, to.y)}};
+}
+
+// The stretch that lies between the sides of the box in x does so in y.
+bool Trace::meets(const Aabb &box) const {
+  double first = 0.0;
+  double last = 1.0;
+  const auto keep = [&](double at, double along, double low, double high) {
+    if (along == 0.0) {
+      return low <= at && at <= high;
+    }
+    const auto [enters, leaves] = std::minmax({(low - at) / along, (high - at) / along});
+    first = std::max(first, enters);
+    last = std::min(last, leaves);
+    return first <= last;
+  };
+  return keep(from.x, to.x - from.x, box.low.x, box.high.x) &&
+         keep(from.y, to.y - from.y, box.low.y, box.high.y);
 }
 
 std::vector<Trace> traces_in(const RockRegion &region, const Aabb &box) {

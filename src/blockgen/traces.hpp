@@ -15,6 +15,8 @@ struct Trace {
   std::int32_t joint = -1; ///< index into JointLaws::laws, -1: by the materials
 
   [[nodiscard]] Aabb box() const;
+  /// It has a point in the box.
+  [[nodiscard]] bool meets(const Aabb &box) const;
 };
 
 /// Everything that cuts the region and reaches into `box`, whole, always in the same order: outlines of the
