@@ -5,10 +5,12 @@
     run/plot.py results/wall --frame 0,last --field stress --out before_after.png
     run/plot.py results/wall --frame all --field velocity --out wall.gif
 
-Fixed blocks are grey and hatched, phreatic lines blue and dashed. Panels and pictures of one call share axes and colour scale.
+Fixed blocks are grey and hatched, phreatic lines blue and dashed, bolts orange, as thick as they are loaded, red
+where they have yielded, dotted where they are broken. Panels and pictures of one call share axes and colour scale.
 """
 
 import argparse
+import csv
 import pathlib
 import sys
 import tomllib
@@ -171,6 +173,24 @@ def draw_water(axes, directory):
         axes.plot(at, np.interp(at, x, y), color="#2f7fd6", lw=1.2, ls=(0, (5, 2)), zorder=3)
 
 
+def draw_bolts(axes, directory, time):
+    """Bolts in place at a time, by their largest tension."""
+    path = directory / "history" / "bolts.csv"
+    if not path.exists():
+        return
+    with open(path, newline="") as file:
+        rows = [row for row in csv.DictReader(file)]
+    largest = max((abs(float(row["axial[N]"])) for row in rows), default=0.0) or 1.0
+    for row in rows:
+        if not np.isclose(float(row["time[s]"]), time, rtol=1e-9, atol=1e-12):
+            continue
+        colour = "#c81e1e" if int(row["yielded"]) else "#f08c1a"
+        style = ":" if int(row["broken"]) else "-"
+        width = 0.6 + 1.6 * max(float(row["axial[N]"]), 0.0) / largest
+        axes.plot([float(row["x_head[m]"]), float(row["x_tip[m]"])], [float(row["y_head[m]"]), float(row["y_tip[m]"])],
+                  color=colour, lw=width, ls=style, solid_capstyle="round", zorder=4)
+
+
 def grid_shape(number, size):
     """Rows and columns of panels: wide scenes one below the other, others side by side."""
     columns = 1 if size[0] > 1.8 * size[1] else min(number, 3)
@@ -203,6 +223,7 @@ def save_picture(frames, colours, arguments, reference):
     for axes, frame in zip(panels, frames):
         draw(axes, frame, colours, reference)
         draw_water(axes, arguments.directory)
+        draw_bolts(axes, arguments.directory, frame.time)
         axes.set_title(f"t = {frame.time:.4g} s", fontsize=9)
     figure.savefig(arguments.out, dpi=arguments.dpi, bbox_inches="tight", pad_inches=0.06)
 
@@ -213,7 +234,10 @@ def save_movie(frames, colours, arguments, reference):
     def show(frame):
         for old in list(axes.collections):
             old.remove()
+        for old in list(axes.lines):
+            old.remove()
         draw(axes, frame, colours, reference)
+        draw_bolts(axes, arguments.directory, frame.time)
         axes.set_title(f"t = {frame.time:.3f} s", fontsize=9)
 
     movie = matplotlib.animation.FuncAnimation(figure, show, frames=frames, init_func=lambda: None)

@@ -7,7 +7,7 @@ namespace gcpdda {
 namespace {
 
 double rigid_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
-                   double tangential_stiffness) {
+                   double tangential_stiffness, std::span<const PointSpring> springs) {
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
     const Vec2 n = system.reference_normal[k];
@@ -23,6 +23,12 @@ double rigid_bound(const BlockSystem &system, std::size_t row, double normal_sti
           weight * (normal_stiffness * b_n * b_n.transpose() + tangential_stiffness * b_t * b_t.transpose());
     }
   }
+  for (const PointSpring &spring : springs) {
+    for (const Vec2 d : {Vec2{1.0, 0.0}, Vec2{0.0, 1.0}}) {
+      const Eigen::Vector3d b(d.x, d.y, cross(spring.point, d));
+      stiffness += spring.stiffness * b * b.transpose();
+    }
+  }
   const BlockProperties &p = system.properties[row];
   const Eigen::Vector3d scale(1.0 / std::sqrt(p.mass), 1.0 / std::sqrt(p.mass), 1.0 / std::sqrt(p.inertia));
   const Eigen::Matrix3d scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
@@ -33,6 +39,11 @@ double rigid_bound(const BlockSystem &system, std::size_t row, double normal_sti
 /// int (k_n b_n b_n^T + k_t b_t b_t^T) ds over a deformable block's boundary; unknowns (u, F11, F12, F21,
 /// F22), in which a traction d at X works as (d, d X^T).
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
+void add_spring(double spring, Vec2 d, Vec2 x, Matrix6 &stiffness) {
+  Eigen::Matrix<double, 6, 1> b;
+  b << d.x, d.y, d.x * x.x, d.x * x.y, d.y * x.x, d.y * x.y;
+  stiffness += spring * b * b.transpose();
+}
 Matrix6 boundary_stiffness(std::span<const Vec2> vertices, double normal_stiffness,
                            double tangential_stiffness) {
   Matrix6 stiffness = Matrix6::Zero();
@@ -42,23 +53,23 @@ Matrix6 boundary_stiffness(std::span<const Vec2> vertices, double normal_stiffne
     const Vec2 t = (1.0 / length) * edge;
     for (const double gauss : {-1.0, 1.0}) { // as above
       const Vec2 x = vertices[k] + (0.5 + gauss / std::sqrt(12.0)) * edge;
-      const auto add = [&](double spring, Vec2 d) {
-        Eigen::Matrix<double, 6, 1> b;
-        b << d.x, d.y, d.x * x.x, d.x * x.y, d.y * x.x, d.y * x.y;
-        stiffness += 0.5 * length * spring * b * b.transpose();
-      };
-      add(normal_stiffness, -perp(t));
-      add(tangential_stiffness, t);
+      add_spring(0.5 * length * normal_stiffness, -perp(t), x, stiffness);
+      add_spring(0.5 * length * tangential_stiffness, t, x, stiffness);
     }
   }
   return stiffness;
 }
 
 double deformable_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
-                        double tangential_stiffness, Elasticity elasticity) {
+                        double tangential_stiffness, Elasticity elasticity,
+                        std::span<const PointSpring> springs) {
   const Deformation &d = system.deformation_of(row);
   Matrix6 stiffness = 2.0 * boundary_stiffness(system.of_row(system.reference_vertex, row), normal_stiffness,
                                                tangential_stiffness);
+  for (const PointSpring &spring : springs) {
+    add_spring(2.0 * spring.stiffness, {1.0, 0.0}, spring.point, stiffness);
+    add_spring(2.0 * spring.stiffness, {0.0, 1.0}, spring.point, stiffness);
+  }
   if (elasticity == Elasticity::explicit_) {
     Eigen::Matrix<double, 3, 4> strain; // eps_x, eps_y, gamma_xy of F - I
     strain << 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0;
@@ -81,13 +92,14 @@ double deformable_bound(const BlockSystem &system, std::size_t row, double norma
 } // namespace
 
 double contact_frequency_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
-                               double tangential_stiffness, Elasticity elasticity) {
+                               double tangential_stiffness, Elasticity elasticity,
+                               std::span<const PointSpring> springs) {
   if (system.properties[row].keeps_its_velocity()) {
     return 0.0;
   }
   return system.is_deformable(row)
-             ? deformable_bound(system, row, normal_stiffness, tangential_stiffness, elasticity)
-             : rigid_bound(system, row, normal_stiffness, tangential_stiffness);
+             ? deformable_bound(system, row, normal_stiffness, tangential_stiffness, elasticity, springs)
+             : rigid_bound(system, row, normal_stiffness, tangential_stiffness, springs);
 }
 
 } // namespace gcpdda

@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 inline constexpr const char *format = "gcpdda checkpoint";
-inline constexpr std::int64_t version = 3; ///< since 3 joints dilate
+inline constexpr std::int64_t version = 4; ///< since 4 there are bolts
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -39,6 +39,8 @@ inline constexpr const char *frame_times = "/run/frame_times";
 inline constexpr const char *ledger = "/run/ledger";
 inline constexpr const char *stage_counts = "/stage/counts";
 inline constexpr const char *stage_numbers = "/stage/numbers";
+inline constexpr const char *bolt_counts = "/bolt/counts";
+inline constexpr const char *bolt_numbers = "/bolt/numbers";
 
 struct WholeFact {
   const char *name;
@@ -185,8 +187,8 @@ static_assert(sizeof(BlockLedger) == 18 * sizeof(double));
 static_assert(sizeof(Deformation) == (13 * 4 + 3) * sizeof(double));
 static_assert(sizeof(RegionMemory) == 9 * sizeof(double));
 
-inline constexpr std::array<const char *, 7> groups{"/clock", "/run",         "/stage", "/scene",
-                                                    "/block", "/deformation", "/region"};
+inline constexpr std::array<const char *, 8> groups{"/clock", "/run",   "/stage",       "/bolt",
+                                                    "/scene", "/block", "/deformation", "/region"};
 inline constexpr const char *checksum = "/checksum";
 
 /// A checksum of numbers in named places: summed modulo 2^64, so that it may be summed over ranks in any

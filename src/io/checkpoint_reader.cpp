@@ -74,6 +74,8 @@ Found look_at(const fs::path &path) {
   facts.ledger = hdf5::read_numbers<double>(file, checkpoint::ledger);
   facts.stage_counts = hdf5::read_numbers<std::int64_t>(file, checkpoint::stage_counts);
   facts.stage_numbers = hdf5::read_numbers<double>(file, checkpoint::stage_numbers);
+  facts.bolt_counts = hdf5::read_numbers<std::int64_t>(file, checkpoint::bolt_counts);
+  facts.bolt_numbers = hdf5::read_numbers<double>(file, checkpoint::bolt_numbers);
   found.checksum = only_number(file, checkpoint::checksum);
   return found;
 }
@@ -144,6 +146,8 @@ private:
     sum_.add(checkpoint::ledger, 0, std::span<const double>(facts.ledger));
     sum_.add(checkpoint::stage_counts, 0, std::span<const std::int64_t>(facts.stage_counts));
     sum_.add(checkpoint::stage_numbers, 0, std::span<const double>(facts.stage_numbers));
+    sum_.add(checkpoint::bolt_counts, 0, std::span<const std::int64_t>(facts.bolt_counts));
+    sum_.add(checkpoint::bolt_numbers, 0, std::span<const double>(facts.bolt_numbers));
   }
 
   Communicator communicator_;
@@ -323,6 +327,8 @@ void share(const Communicator &communicator, Found &found) {
   share(communicator, facts.ledger);
   share(communicator, facts.stage_counts);
   share(communicator, facts.stage_numbers);
+  share(communicator, facts.bolt_counts);
+  share(communicator, facts.bolt_numbers);
   facts.frame_times.resize((bytes.size() - fixed) / sizeof(double));
   if (!facts.frame_times.empty()) {
     std::memcpy(facts.frame_times.data(), bytes.data() + fixed, bytes.size() - fixed);

@@ -120,6 +120,8 @@ private:
     list(checkpoint::ledger, facts.ledger);
     list(checkpoint::stage_counts, facts.stage_counts);
     list(checkpoint::stage_numbers, facts.stage_numbers);
+    list(checkpoint::bolt_counts, facts.bolt_counts);
+    list(checkpoint::bolt_numbers, facts.bolt_numbers);
   }
 
   template <class Table, class Owner>

@@ -26,7 +26,11 @@ constexpr const char *point_header = "time[s],x[m],y[m],vx[m/s],vy[m/s]\n";
 constexpr const char *energy_header =
     "time[s],kinetic[J/m],strain[J/m],contact_normal[J/m],contact_stick[J/m],gravity[J/m],friction_loss[J/m],"
     "damping_loss[J/m],boundary_work[J/m],residual[J/m],unbalanced_ratio[-],max_speed[m/s]\n";
+constexpr const char *support_columns = ",support[J/m],support_loss[J/m]";
+constexpr const char *bolt_header = "time[s],bolt,x_head[m],y_head[m],x_tip[m],y_tip[m],axial[N],shear[N],"
+                                    "extension[m],slide[m],joints,yielded,broken\n";
 constexpr const char *energy_name = "energy";
+constexpr const char *bolts_name = "bolts";
 
 void append_row(std::string &text, std::initializer_list<double> values) {
   const char *separator = "";
@@ -66,11 +70,14 @@ std::string rows_until(const std::filesystem::path &path, const std::string &hea
 
 } // namespace
 
-HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors)
-    : HistoryWriter(std::move(directory), std::move(monitors), -std::numeric_limits<double>::infinity()) {}
+HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, bool has_bolts)
+    : HistoryWriter(std::move(directory), std::move(monitors), -std::numeric_limits<double>::infinity(),
+                    has_bolts) {}
 
-HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time)
-    : directory_(std::move(directory)), monitors_(std::move(monitors)), pending_(monitors_.size() + 1) {
+HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time,
+                             bool has_bolts)
+    : directory_(std::move(directory)), monitors_(std::move(monitors)), has_bolts_(has_bolts),
+      pending_(monitors_.size() + (has_bolts ? 2 : 1)) {
   expect(std::none_of(monitors_.begin(), monitors_.end(),
                       [](const Monitor &monitor) { return monitor.name == energy_name; }),
          "no monitor by the name of the energy history");
@@ -86,13 +93,20 @@ HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monito
 }
 
 std::string HistoryWriter::header_of(std::size_t history) const {
-  return history == monitors_.size()   ? energy_header
-         : monitors_[history].is_point ? point_header
-                                       : block_header;
+  if (history < monitors_.size()) {
+    return monitors_[history].is_point ? point_header : block_header;
+  }
+  if (history > monitors_.size()) {
+    return bolt_header;
+  }
+  std::string header = energy_header;
+  return has_bolts_ ? header.insert(header.size() - 1, support_columns) : header;
 }
 
 std::filesystem::path HistoryWriter::path_of(std::size_t history) const {
-  const std::string name = history < monitors_.size() ? monitors_[history].name : energy_name;
+  const std::string name = history < monitors_.size()    ? monitors_[history].name
+                           : history == monitors_.size() ? energy_name
+                                                         : bolts_name;
   return directory_ / "history" / (name + ".csv");
 }
 
@@ -108,9 +122,24 @@ void HistoryWriter::write_monitor(std::size_t monitor, double time, const BlockH
 }
 
 void HistoryWriter::write_energy(double time, const EnergyRow &row) {
-  append_row(pending_.back(), {time, row.kinetic, row.strain, row.contact_normal, row.contact_stick,
-                               row.gravity, row.friction_loss, row.damping_loss, row.boundary_work,
-                               row.residual, row.unbalanced_ratio, row.max_speed});
+  std::string &text = pending_[monitors_.size()];
+  append_row(text, {time, row.kinetic, row.strain, row.contact_normal, row.contact_stick, row.gravity,
+                    row.friction_loss, row.damping_loss, row.boundary_work, row.residual,
+                    row.unbalanced_ratio, row.max_speed});
+  if (has_bolts_) {
+    text.pop_back();
+    text += fmt::format(",{:.17g},{:.17g}\n", row.support, row.support_loss);
+  }
+}
+
+void HistoryWriter::write_bolts(double time, const std::vector<BoltHistoryRow> &rows) {
+  expect(has_bolts_, "a history of bolts");
+  for (const BoltHistoryRow &row : rows) {
+    pending_.back() +=
+        fmt::format("{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{}\n",
+                    time, row.name, row.head.x, row.head.y, row.tip.x, row.tip.y, row.axial, row.shear,
+                    row.extension, row.slide, row.links, row.yielded, row.broken);
+  }
 }
 
 void HistoryWriter::flush() {

@@ -65,6 +65,15 @@ private:
     source_.faults.add(where, std::move(what), std::move(why), std::move(hint));
   }
 
+  /// The name of another history.
+  bool is_taken(const std::string &name) const {
+    return name == "energy" || (name == "bolts" && !scene_->bolts.empty());
+  }
+  static std::string why_taken(const std::string &name) {
+    return fmt::format("history/{}.csv holds the {} of the scene", name,
+                       name == "energy" ? "energies" : name);
+  }
+
   std::optional<Monitor> read_block(const Section &section) {
     const std::string name = *section.text("block");
     const toml::source_region &where = section.given("block")->source();
@@ -80,9 +89,9 @@ private:
       fault(where, fmt::format("no block is named '{}'", name), "", hint_for(name));
       return std::nullopt;
     }
-    if (name == "energy") {
-      fault(where, "a block named 'energy' cannot be monitored",
-            "history/energy.csv holds the energies of the scene", "choose another name for the block");
+    if (is_taken(name)) {
+      fault(where, fmt::format("a block named '{}' cannot be monitored", name), why_taken(name),
+            "choose another name for the block");
       return std::nullopt;
     }
     if (const auto [first, is_new] = first_of_name_.emplace(name, First{where, false}); !is_new) {
@@ -116,9 +125,9 @@ private:
     monitor.is_point = true;
     section.read("point", monitor.point);
     monitor.where = source_.faults.origins().position(section.given("point")->source());
-    if (monitor.name == "energy") {
-      fault(where, "a point named 'energy' cannot be monitored",
-            "history/energy.csv holds the energies of the scene", "choose another name");
+    if (is_taken(monitor.name)) {
+      fault(where, fmt::format("a point named '{}' cannot be monitored", monitor.name),
+            why_taken(monitor.name), "choose another name");
       return std::nullopt;
     }
     if (const auto [first, is_new] = first_of_name_.emplace(monitor.name, First{where, true}); !is_new) {

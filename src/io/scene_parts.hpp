@@ -83,6 +83,12 @@ JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materi
 /// The water of [water.NAME]; the faulty ones lack their faulty parts.
 std::vector<Water> read_water(const SceneSource &source, const JointLaws &joints);
 
+/// [support.NAME]; the faulty ones lack their faulty parts.
+std::vector<SupportType> read_supports(const SceneSource &source);
+/// Every [[bolt]], then those of each [[bolt_pattern]]; none where it cannot be placed.
+/// @param scene  with supports and region
+std::vector<Bolt> read_bolts(const SceneSource &source, const Scene &scene);
+
 /// One SceneBlock per [[block]]; the faulty ones lack their faulty parts.
 std::vector<SceneBlock> read_blocks(const SceneSource &source, Materials &materials, Names &names,
                                     Fidelity of_run, const JointLaws &joints);

@@ -41,6 +41,8 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.generators = read_generators(source, materials, names, fidelity, scene.blocks);
   scene.block_file = read_block_file_table(source, materials, fidelity, file);
   scene.region = read_region(source, materials, scene.joints, file);
+  scene.supports = read_supports(source);
+  scene.bolts = read_bolts(source, scene);
   add_rollers(source, scene);
   if (source.root.contains("stage")) {
     scene.run.duration = duration_of_stages(source);

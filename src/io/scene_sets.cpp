@@ -148,7 +148,7 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
 
 bool is_named_list(std::string_view key) {
   return key == "block" || key == "wall" || key == "pyramid" || key == "joint_set" || key == "fault" ||
-         key == "opening" || key == "stage";
+         key == "opening" || key == "stage" || key == "bolt" || key == "bolt_pattern";
 }
 
 // Finds the block, wall, joint set or other element with a name that path[1], or path[1] to path[k] joined by
@@ -205,6 +205,12 @@ bool can_change(const Path &path) {
       return path.size() == 3 && find_key(std::string(whole) + ".*", last) != nullptr;
     }
   }
+  if (path.front() == "support") {
+    return path.size() == 3 && !is_one_of({"kind"}) && find_key("support.*", last) != nullptr;
+  }
+  if (path.front() == "bolt" || path.front() == "bolt_pattern") {
+    return path.size() > 2 && is_one_of({"active"});
+  }
   return path.front() == "block" && path.size() > 2 && is_one_of({"fixed", "load"});
 }
 
@@ -258,7 +264,8 @@ void apply_change(toml::table &root, const toml::key &dotted, toml::node &value,
   const auto path = split(trimmed(dotted.str()));
   if (!path || !can_change(*path)) {
     faults.add(dotted.source(), fmt::format("a stage cannot set '{}'", shown(dotted.str())),
-               "it sets values of joints, materials and water, block.NAME.fixed, block.NAME.load and some of [run]",
+               "it sets values of joints, materials, water and support, block.NAME.fixed, block.NAME.load, "
+               "bolt.NAME.active, bolt_pattern.NAME.active and some of [run]",
                "for example set = { \"joint.default.friction_angle_deg\" = 25.0 }");
     return;
   }

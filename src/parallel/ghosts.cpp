@@ -192,12 +192,19 @@ struct Arrivals {
 
 } // namespace
 
-void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes) {
+void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span<const FarGhost> far) {
   expect(system.num_ghosts == 0, "ghosts are rebuilt from owned blocks alone");
   if (communicator_.size() == 1) {
     return;
   }
-  const auto rows = border_rows(communicator_, system, boxes);
+  auto rows = border_rows(communicator_, system, boxes);
+  for (const FarGhost &ghost : far) {
+    std::vector<std::uint32_t> &of_rank = rows[static_cast<std::size_t>(ghost.rank)];
+    const auto place = std::lower_bound(of_rank.begin(), of_rank.end(), ghost.row);
+    if (place == of_rank.end() || *place != ghost.row) {
+      of_rank.insert(place, ghost.row);
+    }
+  }
   std::vector<Bytes> messages(rows.size());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (const std::uint32_t row : rows[r]) {

@@ -22,10 +22,11 @@ struct Terms {
   ExactSum shear_work;
   ExactSum damping_work;
   ExactSum load_work;
+  LinkEnergies support;
 
   void agree(const Communicator &communicator) {
-    for (ExactSum *sum :
-         {&kinetic, &strain, &normal, &stick, &gravity, &shear_work, &damping_work, &load_work}) {
+    for (ExactSum *sum : {&kinetic, &strain, &normal, &stick, &gravity, &shear_work, &damping_work,
+                          &load_work, &support.stored, &support.dissipated}) {
       communicator.sum(sum->limbs());
     }
   }
@@ -203,6 +204,7 @@ Terms initial_terms(const Simulation &simulation) {
   add_strain(blocks, Moment::now, terms.strain);
   add_normal(simulation, 1.0, terms.normal);
   add_stick(simulation, Moment::now, terms.stick);
+  simulation.bolts().add_energies(1.0, terms.support);
   return terms;
 }
 
@@ -224,8 +226,10 @@ Terms current_terms(Simulation &simulation) {
     add_strain(blocks, Moment::middle, terms.strain);
     add_normal(simulation, 0.5, terms.normal);
     add_stick(simulation, Moment::middle, terms.stick);
+    simulation.bolts().add_energies_at(blocks, 0.5, terms.support);
   });
   add_normal(simulation, 0.5, terms.normal);
+  simulation.bolts().add_energies(0.5, terms.support);
   return terms;
 }
 
@@ -262,7 +266,8 @@ EnergyLedger::EnergyLedger(Simulation &simulation) {
   Terms terms = initial_terms(simulation);
   terms.agree(simulation.communicator());
   stick_at_start_ = terms.stick.value();
-  total_at_start_ = terms.kinetic.value() + terms.strain.value() + terms.normal.value() + terms.stick.value();
+  total_at_start_ = terms.kinetic.value() + terms.strain.value() + terms.normal.value() +
+                    terms.stick.value() + terms.support.stored.value();
 }
 
 EnergyRow EnergyLedger::row(Simulation &simulation) const {
@@ -279,8 +284,11 @@ EnergyRow EnergyLedger::row(Simulation &simulation) const {
   row.friction_loss = stick_at_start_ - terms.stick.value() - terms.shear_work.value();
   row.damping_loss = -terms.damping_work.value();
   row.boundary_work = terms.load_work.value();
+  row.support = terms.support.stored.value();
+  row.support_loss = terms.support.dissipated.value();
   row.residual = row.kinetic + row.strain + row.contact_normal + row.contact_stick + row.gravity +
-                 row.friction_loss + row.damping_loss - row.boundary_work - total_at_start_;
+                 row.friction_loss + row.damping_loss + row.support + row.support_loss - row.boundary_work -
+                 total_at_start_;
   if (!before_.empty()) {
     for (std::size_t k = 0; k < carried.size(); ++k) {
       row.*carried[k] += before_[k];

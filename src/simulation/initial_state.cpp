@@ -116,6 +116,7 @@ void Simulation::find_initial_state() {
   check_bonds(); // told with the other faults of the initial state
   bond_joints(blocks_, candidates_, contacts_.parameters().joints, pressed_, history_);
   take(contacts_.evaluate(blocks_, candidates_, history_)); // ghosts are whole copies yet
+  evaluate_bolts();
   check_initial_overlaps();
   if (scene_.in_situ.present) {
     put_initial_shear();

@@ -107,6 +107,27 @@ void compare_blocks(const Scene &before, const Scene &after, Diagnostics &faults
   }
 }
 
+/// The checkpoint knows bolts by their numbers; further ones may come, put in by a stage.
+void compare_bolts(const Scene &before, const Scene &after, Diagnostics &faults) {
+  bool same = before.bolts.size() <= after.bolts.size();
+  for (std::size_t i = 0; i < before.bolts.size() && same; ++i) {
+    const Bolt &a = before.bolts[i];
+    const Bolt &b = after.bolts[i];
+    same = a.name == b.name && a.from == b.from && a.to == b.to && a.active == b.active &&
+           before.supports[static_cast<std::size_t>(a.support)].kind ==
+               after.supports[static_cast<std::size_t>(b.support)].kind;
+  }
+  for (std::size_t i = before.bolts.size(); i < after.bolts.size() && same; ++i) {
+    same = !after.bolts[i].active;
+  }
+  if (!same) {
+    faults.push_back(
+        refused({}, "bolts that are there, or put in others at the start",
+                "the checkpoint holds those in place; further ones stand behind them with active "
+                "= false and are put in by a stage"));
+  }
+}
+
 /// A run that reached its end and left no checkpoint.
 bool is_finished(const Communicator &communicator, const std::filesystem::path &directory) {
   std::int64_t finished = 0;
@@ -125,6 +146,7 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
   compare_materials(before.materials, after.materials, faults);
   compare_joints(before.joints, after.joints, faults);
   compare_blocks(before, after, faults);
+  compare_bolts(before, after, faults);
   const auto in_situ = [](const Scene &scene) {
     const InSituStress &stress = scene.in_situ;
     return std::tuple(stress.present, stress.at_level, stress.growth, stress.down, stress.level);

@@ -230,4 +230,18 @@ std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
   return rows;
 }
 
+std::vector<BoltHistoryRow> collect_bolts(const Simulation &simulation) {
+  std::vector<BoltHistoryRow> rows;
+  if (simulation.bolts().empty()) {
+    return rows;
+  }
+  const Scene &scene = simulation.scene();
+  for (const BoltReport &bolt :
+       simulation.bolts().report(simulation.communicator(), scene, simulation.blocks())) {
+    rows.push_back({scene.bolts[static_cast<std::size_t>(bolt.bolt)].name, bolt.head, bolt.tip, bolt.axial,
+                    bolt.shear, bolt.extension, bolt.slide, bolt.links, bolt.yielded, bolt.broken});
+  }
+  return rows;
+}
+
 } // namespace gcpdda

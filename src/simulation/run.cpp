@@ -10,6 +10,7 @@
 #include "gcpdda/simulation/stop_signal.hpp"
 #include "rank_facts.hpp"
 #include "run_log.hpp"
+#include "run_words.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -110,6 +111,7 @@ private:
            !simulation_.stop_agreed()) {
       simulation_.begin_next_stage();
       ledger_->step_over(simulation_);
+      tell_of_bolts();
       if (simulation_.stage_is_over()) {
         log_stage();
       }
@@ -140,7 +142,7 @@ private:
   void begin_results(const Scene &scene, const RunOptions &options) {
     on_root(communicator_, [&] {
       prepare_result_directory(directory_, options.overwrite, scene.resolved);
-      histories_.emplace(directory_, scene.monitors);
+      histories_.emplace(directory_, scene.monitors, !scene.bolts.empty());
     });
     log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet);
     frames_.emplace(communicator_, directory_, simulation_.num_blocks());
@@ -154,8 +156,10 @@ private:
     on_root(communicator_, [&] { reopen_result_directory(directory_, scene.resolved); });
     frames_.emplace(communicator_, directory_, simulation_.num_blocks());
     frames_->continue_behind(facts.frame_times);
-    on_root(communicator_,
-            [&] { histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step); });
+    on_root(communicator_, [&] {
+      histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step,
+                         !scene.bolts.empty());
+    });
     log_.emplace(communicator_.is_root(), directory_, std::ios::app);
     for (const std::string &rejected : restored.rejected) {
       log_->line("warning: a checkpoint is not used, " + rejected);
@@ -174,9 +178,7 @@ private:
         counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.candidates().pairs.size()));
     const StepBound &bound = simulation_.bound();
     const Scene &scene = simulation_.scene();
-    for (const Diagnostic &note : simulation_.notes()) {
-      log_->diagnostic(note);
-    }
+    tell_notes();
     const auto mobile = std::accumulate(owned.begin(), owned.end(), std::int64_t{0});
     log_->line(fmt::format(
         "gcpdda: {} rank{}, {} mobile and {} fixed blocks, {} to {} per rank, imbalance {:.3f} ({})",
@@ -199,6 +201,23 @@ private:
           law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion));
     }
     report_fidelity(scene.run);
+    tell_of_bolts();
+  }
+
+  /// Whenever more or fewer are in place, and what is odd about new ones.
+  void tell_of_bolts() {
+    tell_notes();
+    const std::size_t links = simulation_.bolts().links().size();
+    if (links != num_links_) {
+      log_->line(words_on_bolts(simulation_));
+      num_links_ = links;
+    }
+  }
+
+  void tell_notes() {
+    for (; num_notes_ < simulation_.notes().size(); ++num_notes_) {
+      log_->diagnostic(simulation_.notes()[num_notes_]);
+    }
   }
 
   void report_fidelity(const RunSettings &run) {
@@ -297,6 +316,7 @@ private:
 
   void write_history(bool failed) {
     const std::vector<BlockHistoryRow> rows = collect_monitors(simulation_);
+    const std::vector<BoltHistoryRow> bolts = collect_bolts(simulation_);
     contacts_at_end_ = count_contacts();
     if (!failed) { // the energies of a broken state say nothing
       energy_ = ledger_->row(simulation_);
@@ -310,6 +330,9 @@ private:
       }
       if (!failed) {
         histories_->write_energy(simulation_.time(), energy_);
+      }
+      if (!bolts.empty()) {
+        histories_->write_bolts(simulation_.time(), bolts);
       }
       histories_->flush();
     });
@@ -337,28 +360,6 @@ private:
     });
   }
 
-  std::string fault_message() const {
-    const Fault &fault = *simulation_.fault();
-    const auto name = [&](BlockId id) { return block_name(simulation_.scene(), id.value); };
-    const std::string where =
-        fmt::format("block '{}' at t = {:.9g} s", name(fault.block), simulation_.time());
-    switch (fault.cause) {
-    case Fault::Cause::too_deep:
-      return fmt::format(
-          "{}: overlaps block '{}' by {:.4g} m, deeper than half the narrowest width {:.4g} m, where the "
-          "contact force reverses; try a larger joint.normal_stiffness or a smaller run.time_step",
-          where, name(fault.other), fault.value, fault.limit);
-    case Fault::Cause::too_fast:
-      return fmt::format(
-          "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "
-          "could pass through a block; try a smaller run.time_step",
-          where, fault.value, fault.limit);
-    case Fault::Cause::not_finite:
-      break;
-    }
-    return fmt::format("{}: its state is no longer finite; try a smaller run.time_step", where);
-  }
-
   RunOutcome finish() {
     const bool failed = simulation_.fault().has_value();
     const bool stopped = !simulation_.finished();
@@ -366,7 +367,7 @@ private:
     const bool waited = simulation_.is_staged() && !failed && !stopped && last_stage().until_verdict;
     const Verdict verdict = simulation_.stage().verdict;
     summary.verdict = failed ? "failed" : stopped ? "stopped" : waited ? word_of(verdict) : "completed";
-    summary.message = failed   ? fault_message()
+    summary.message = failed   ? fault_message(simulation_)
                       : waited ? fmt::format("stage '{}' {} at t = {:g} s", last_stage().name,
                                              verdict == Verdict::undecided ? "reached its limit undecided"
                                              : verdict == Verdict::failed  ? "has failed"
@@ -468,6 +469,8 @@ private:
   std::optional<CheckpointWriter> checkpoints_;
   EnergyRow energy_;
   int num_frames_ = 0;
+  std::size_t num_notes_ = 0; ///< that have been told
+  std::size_t num_links_ = 0;
   std::int64_t first_step_ = 0; ///< of this part of the run
   std::int64_t contacts_at_end_ = 0;
   double set_up_seconds_ = 0.0;

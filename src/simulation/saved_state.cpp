@@ -47,6 +47,7 @@ RunFacts Simulation::facts() const {
   StageNumbers numbers = to_numbers(stage_);
   facts.stage_counts = std::move(numbers.counts);
   facts.stage_numbers = std::move(numbers.reals);
+  Bolts::to_numbers(bolts_.shared(communicator_), facts.bolt_counts, facts.bolt_numbers);
   facts.time = time();
   facts.time_step = plan_.time_step;
   facts.contact_steps = counters_.contact_steps;

@@ -90,6 +90,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
   plan_all_stages();
   stop_on_errors(notes_);
   distribute(restart_from);
+  restored_ ? bolts_.take_laws(scene_) : change_bolts({});
   scale_masses();
   find_bound();
   plan_stage();
@@ -346,14 +347,21 @@ std::vector<std::int64_t> Simulation::count_contact_work() {
   return weights_by_cell(communicator_, map_.grid, centroids, work_of_blocks(blocks_, candidates));
 }
 
+double Simulation::frequency_bound_of(std::size_t row, std::span<const PointSpring> springs) const {
+  const StiffnessBound stiffness =
+      stiffness_bound(scene_.joints, blocks_.properties[row].material, blocks_.edge_joints(row));
+  return contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential,
+                                 elasticity_of(scheme_, scene_.run.elasticity), springs);
+}
+
 void Simulation::find_bound() {
   double omega_squared = 0.0;
+  double without_bolts = 0.0;
   std::int64_t limiting = std::numeric_limits<std::int64_t>::max();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    const StiffnessBound stiffness =
-        stiffness_bound(scene_.joints, blocks_.properties[row].material, blocks_.edge_joints(row));
-    const double own = contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential,
-                                               elasticity_of(scheme_, scene_.run.elasticity));
+    const std::span<const PointSpring> springs = bolts_.springs_at(blocks_.properties[row].id.value);
+    const double own = frequency_bound_of(row, springs);
+    without_bolts = std::max(without_bolts, springs.empty() ? own : frequency_bound_of(row, {}));
     if (own > omega_squared) {
       omega_squared = own;
       limiting = blocks_.properties[row].id.value;
@@ -366,6 +374,8 @@ void Simulation::find_bound() {
   bound_.block = minus_id == -num_blocks() ? -1 : -minus_id;
   // A block that is alone can never touch.
   bound_.omega_max = num_blocks() > 1 ? std::sqrt(omega_squared) : 0.0;
+  bound_.without_bolts =
+      bolts_.empty() ? bound_.omega_max : std::sqrt(agreed_max(communicator_, without_bolts));
 
   // In a system of blocks the fastest mode is damped more than one joint.
   const double modal_damping_factor = fidelity_.num_deformable > 0 ? 2.4 : 1.4;

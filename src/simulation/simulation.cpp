@@ -66,6 +66,7 @@ Vec2 Simulation::gravity() const {
 // state.
 void Simulation::refresh(std::vector<RegionRecord> memory) {
   const auto scope = phases_.measure(Phase::refresh);
+  bolts_.share(communicator_);
   const std::int64_t left = migrate(communicator_, map_, blocks_, memory);
 
   // Fast blocks would use up the usual skin at once: it grows so that half of it outlasts several steps.
@@ -89,11 +90,12 @@ void Simulation::refresh(std::vector<RegionRecord> memory) {
 
   // A joint is remembered until it is open by twice that; only one of its blocks may be inflated.
   const double reach_skin = skin_ + 4.0 * dilation;
-  ghosts_.rebuild(blocks_, reach_boxes(blocks_, reach_skin));
+  ghosts_.rebuild(blocks_, reach_boxes(blocks_, reach_skin), bolts_.partners(communicator_, blocks_));
   candidates_ = {}; // the old and the new list together would be the largest thing in memory
   candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, reach_skin)),
                                 contacts_.parameters(), std::move(memory), history_, skin_);
   pose(blocks_, 0, blocks_.num_rows());
+  bolts_.connect(blocks_);
   stale_ = false;
   if (step_count_ > 0) {
     counters_.migrations += left;
@@ -191,6 +193,13 @@ void Simulation::evaluate_contacts() {
   finish_ghosts();
   const auto scope = phases_.measure(Phase::forces);
   take(contacts_.evaluate_border(blocks_, candidates_, history_));
+  evaluate_bolts();
+}
+
+void Simulation::evaluate_bolts() {
+  if (!bolts_.empty()) {
+    bolts_.evaluate(blocks_);
+  }
 }
 
 void Simulation::take(const ForceReport &report) {
@@ -217,6 +226,7 @@ void Simulation::gather_forces() {
   }
   contact_count_ = add_contacts(candidates_, contacts_, blocks_, forces_.rigid);
   contacts_.add_dilation_works(candidates_, blocks_);
+  bolts_.add_forces(blocks_, forces_.rigid);
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const WaterLoad water =
         scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -gravity_now.y);
@@ -261,6 +271,9 @@ void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
     d.load_force += outer(load.force, load.point);
   }
   forces_.gradient[blocks_.deformation_begin[row]] = sum.force + d.load_force;
+  if (!bolts_.empty()) {
+    forces_.gradient[blocks_.deformation_begin[row]] += bolts_.gradient_force(blocks_.deformation_begin[row]);
+  }
   for (RigidDof *force : {&ledger.shear_force, &ledger.damping_force, &ledger.load_force}) {
     force->r = 0.0;
   }

@@ -110,7 +110,8 @@ void Simulation::scale_masses() {
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const StiffnessBound stiffness = stiffness_bound(scene_.joints, blocks_.properties[row].material);
     squared[row] = contact_frequency_bound(blocks_, row, stiffness.normal, stiffness.tangential,
-                                           elasticity_of(scheme_, scene_.run.elasticity));
+                                           elasticity_of(scheme_, scene_.run.elasticity),
+                                           bolts_.springs_at(blocks_.properties[row].id.value));
     if (squared[row] > 0.0) {
       minus_slowest = std::max(minus_slowest, -squared[row]);
     }
@@ -158,6 +159,7 @@ void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, 
   }
   remove_blocks(saved.removed);
   stage_ = saved;
+  bolts_ = Bolts::from_numbers(facts.bolt_counts, facts.bolt_numbers);
 }
 
 bool Simulation::is_removed(std::int64_t block) const {
@@ -177,6 +179,8 @@ void Simulation::adopt(const Scene &after) {
   scene_.run = after.run;
   contacts_ = ContactForces({scene_.joints, scene_.run.contact_damping, scene_.run.potential});
   scene_.water = after.water;
+  scene_.supports = after.supports;
+  scene_.bolts = after.bolts;
   adopt_materials(std::exchange(scene_.materials, after.materials));
   for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
     const auto id = static_cast<std::int64_t>(i);
@@ -185,6 +189,26 @@ void Simulation::adopt(const Scene &after) {
     }
   }
   scene_.blocks = after.blocks;
+}
+
+// Those that are in place now and were not are put in where the blocks are; those that are no longer, and all
+// at blocks that are gone, are taken out.
+void Simulation::change_bolts(const std::vector<Bolt> &before) {
+  if (scene_.bolts.empty()) {
+    return;
+  }
+  std::vector<std::int64_t> added;
+  for (std::size_t i = 0; i < scene_.bolts.size(); ++i) {
+    if (scene_.bolts[i].active && !(i < before.size() && before[i].active)) {
+      added.push_back(static_cast<std::int64_t>(i));
+    }
+  }
+  bolts_.remove([&](const BoltLink &link) {
+    return !scene_.bolts[static_cast<std::size_t>(link.bolt)].active || is_removed(link.end[0].block) ||
+           is_removed(link.end[1].block);
+  });
+  bolts_.install(communicator_, scene_, blocks_, added, notes_);
+  bolts_.take_laws(scene_);
 }
 
 void Simulation::adopt_materials(const std::vector<Material> &before) {

@@ -204,6 +204,7 @@ void Simulation::evaluate_still() {
     d.trial_previous = d.trial;
   }
   take(contacts_.evaluate(blocks_, candidates_, history_));
+  evaluate_bolts();
 }
 
 void Simulation::begin_next_stage() {
@@ -233,9 +234,12 @@ void Simulation::begin_next_stage() {
   if (stage.kind == StageKind::excavate) {
     remove_blocks(stage_.removed);
   }
+  bolts_.share(communicator_);
+  const std::vector<Bolt> bolts_before = scene_.bolts;
   if (stage.after) {
     adopt(*stage.after);
   }
+  change_bolts(bolts_before);
   scale_masses();
   find_bound();
   plan_stage();

@@ -146,8 +146,9 @@ struct Arms {
 };
 using AllArms = std::array<Arms, num_columns + 2>; ///< by number, from 1
 
-/// What the lowest column pushes with, kN/m: each column slides or topples, whichever takes more force.
-double toe_force(double friction_tan, const AllArms &arms) {
+/// What column `last` pushes the one below with, kN/m: each column slides or topples, whichever takes more
+/// force.
+double force_below(int last, double friction_tan, const AllArms &arms) {
   constexpr std::array<double, num_columns> heights{4,  8,  12, 16, 20, 24, 28, 32,
                                                     36, 40, 34, 28, 22, 16, 10, 4};
   constexpr double width = 10.0;
@@ -156,7 +157,7 @@ double toe_force(double friction_tan, const AllArms &arms) {
   const double sine = 0.5;
   const double cosine = 0.5 * std::sqrt(3.0);
   double push = 0.0;
-  for (int n = num_columns; n >= 1; --n) {
+  for (int n = num_columns; n >= last; --n) {
     const auto i = static_cast<std::size_t>(n);
     const double height = heights[i - 1];
     const double weight = 25.0 * width * height;
@@ -179,7 +180,7 @@ double limit_angle(const AllArms &arms) {
   double high = 42.0;
   while (high - low > 1e-9) {
     const double middle = 0.5 * (low + high);
-    (toe_force(std::tan(middle * degree), arms) > 1e-6 ? low : high) = middle;
+    (force_below(1, std::tan(middle * degree), arms) > 1e-6 ? low : high) = middle;
   }
   return high;
 }
@@ -228,6 +229,46 @@ TEST(TopplingSlope, LimitingFrictionAngle) {
       write_forces(bracket);
     }
   }
+}
+
+/// Tension of a horizontal cable through the toe column that keeps it from sliding, kN/m: what the second
+/// column pushes with, and the toe column's own balance along and across the base.
+double cable_force(double friction_tan, const AllArms &arms) {
+  const double sine = 0.5;
+  const double cosine = 0.5 * std::sqrt(3.0);
+  const double toe_weight = 25.0 * 10.0 * 4.0;
+  return (force_below(2, friction_tan, arms) * (1.0 - friction_tan * friction_tan) -
+          toe_weight * (friction_tan * cosine - sine)) /
+         (friction_tan * sine + cosine);
+}
+
+// The slope settles with enough friction, gets a cable without tension at the toe, and loses friction step by
+// step down to tan(phi) = 0.65, where limit equilibrium asks for 2013 kN/m: the columns lean on the cable,
+// which so comes to bear what they lack.
+TEST(TopplingSlope, CableAtTheToe) {
+  const double friction = 0.65;
+  expect_value("C2 cable at tan(phi) = 0.65 by limit equilibrium, kN/m", 2013.0, cable_force(friction, {}),
+               1e-4);
+  std::string toml =
+      without_duration(shipped_toml("goodman_bray")) +
+      "[support.cable]\nkind = \"anchored\"\naxial_stiffness = 5e8\n"
+      "[[bolt]]\nsupport = \"cable\"\nfrom = [-0.66, 4.23]\nto = [11.0, 4.23]\nactive = false\n"
+      "[[stage]]\nkind = \"settle\"\nlimit = 60.0\n";
+  std::string set = "\"bolt.bolt0.active\" = true, ";
+  for (const double lowered : {0.80, 0.75, 0.70, friction}) {
+    toml += fmt::format("[[stage]]\nkind = \"settle\"\nlimit = 60.0\nset = {{ {}"
+                        "\"joint.default.friction_angle_deg\" = {:.17g} }}\n",
+                        set, std::atan(lowered) / degree);
+    set.clear();
+  }
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  run_stages(simulation, [](Simulation &s) { step(s); });
+  EXPECT_EQ(simulation.stage().verdict, Verdict::settled);
+  ASSERT_EQ(simulation.bolts().links().size(), 1U);
+  const double tension = 1e-3 * simulation.bolts().links()[0].memory.axial;
+  const double with_arms = cable_force(friction, arms_of(supports_of(simulation)));
+  expect_value("C2 cable at tan(phi) = 0.65, tension against limit equilibrium, kN/m", 2013.0, tension, 0.1);
+  expect_value("C2 the same against limit equilibrium with the model's arms, kN/m", with_arms, tension, 0.1);
 }
 
 } // namespace

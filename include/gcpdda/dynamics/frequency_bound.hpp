@@ -2,7 +2,15 @@
 
 #include "gcpdda/model/block_system.hpp"
 
+#include <span>
+
 namespace gcpdda {
+
+/// A spring to another block that holds a material point (reference axes) in every direction.
+struct PointSpring {
+  Vec2 point;
+  double stiffness = 0.0; ///< Pa
+};
 
 /// Upper bound of the square of the largest contact frequency (1/s2) that one block can take part in,
 ///
@@ -19,7 +27,9 @@ namespace gcpdda {
 ///
 /// @param normal_stiffness, tangential_stiffness  Pa/m
 /// @param elasticity  where it is taken indeed, see elasticity_of()
+/// @param springs  of bolts; they join K
 double contact_frequency_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
-                               double tangential_stiffness, Elasticity elasticity = Elasticity::implicit);
+                               double tangential_stiffness, Elasticity elasticity = Elasticity::implicit,
+                               std::span<const PointSpring> springs = {});
 
 } // namespace gcpdda

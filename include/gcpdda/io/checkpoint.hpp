@@ -43,6 +43,8 @@ struct RunFacts {
   std::int64_t more_mobile = 0;           ///< mobile blocks now, beyond those of the scene; not written
   std::vector<std::int64_t> stage_counts; ///< where the run stands in its stages (simulation/stages.hpp)
   std::vector<double> stage_numbers;
+  std::vector<std::int64_t> bolt_counts; ///< links of the bolts in place (simulation/bolts.hpp)
+  std::vector<double> bolt_numbers;
   std::vector<double> frame_times; ///< of the frames written, s
 };
 

@@ -117,17 +117,36 @@ struct EnergyRow {
   double residual = 0.0;
   double unbalanced_ratio = 0.0;
   double max_speed = 0.0;
+  double support = 0.0; ///< this and the next in scenes with bolts only
+  double support_loss = 0.0;
+};
+
+/// One row of history/bolts.csv: largest values over the joints that one bolt crosses.
+struct BoltHistoryRow {
+  std::string name;
+  Vec2 head; ///< m
+  Vec2 tip;
+  double axial = 0.0;     ///< N, tension
+  double shear = 0.0;     ///< N
+  double extension = 0.0; ///< m
+  double slide = 0.0;     ///< m
+  std::int64_t links = 0;
+  std::int64_t yielded = 0;
+  std::int64_t broken = 0;
 };
 
 /// Writes history/*.csv. Lives on the root rank only; no member is collective.
 class HistoryWriter {
 public:
-  HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors);
+  /// @param has_bolts  there is a history of bolts, and energies have their columns
+  HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, bool has_bolts = false);
   /// Go on with the histories of a run: rows later than `last_time` (s) are cut off, and a last row that was
   /// not written to its end.
-  HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time);
+  HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time,
+                bool has_bolts = false);
   void write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row);
   void write_energy(double time, const EnergyRow &row);
+  void write_bolts(double time, const std::vector<BoltHistoryRow> &rows);
   /// What has been written is on its way to the disk; throws FileError when the disk is full.
   void flush();
   /// What has been flushed is on the disk. Throws FileError.
@@ -139,7 +158,8 @@ private:
 
   std::filesystem::path directory_;
   std::vector<Monitor> monitors_;
-  std::vector<std::string> pending_; ///< text not yet appended, per monitor; energy last
+  bool has_bolts_;
+  std::vector<std::string> pending_; ///< text not yet appended, per monitor, of energy, and of bolts if any
 };
 
 /// Everything summary.json holds (interface.md).

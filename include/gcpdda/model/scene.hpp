@@ -6,6 +6,7 @@
 #include "gcpdda/model/joint_law.hpp"
 #include "gcpdda/model/rock_region.hpp"
 #include "gcpdda/model/stage.hpp"
+#include "gcpdda/model/support.hpp"
 #include "gcpdda/model/water.hpp"
 
 #include <array>
@@ -149,6 +150,8 @@ struct Scene {
   std::vector<Material> materials; ///< in file order
   JointLaws joints;
   std::vector<Water> water; ///< in file order
+  std::vector<SupportType> supports;
+  std::vector<Bolt> bolts; ///< single ones, then those of patterns, in file order
   InSituStress in_situ;
   std::vector<SceneBlock> blocks;                   ///< of the scene file, the first BlockIds
   std::vector<BrickGenerator> generators;           ///< the next ones

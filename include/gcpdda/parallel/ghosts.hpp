@@ -20,6 +20,12 @@
 
 namespace gcpdda {
 
+/// An owned row that a rank needs, however far away its blocks are.
+struct FarGhost {
+  int rank = 0;
+  std::uint32_t row = 0;
+};
+
 /// The plan of ghost messages; rebuilt at every refresh, used at every step.
 class Ghosts {
 public:
@@ -29,7 +35,8 @@ public:
   /// before.
   ///
   /// @param boxes  reach boxes of the owned rows
-  void rebuild(BlockSystem &system, std::span<const Aabb> boxes);
+  /// @param far  further rows to send, in any order
+  void rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span<const FarGhost> far = {});
 
   /// Owners' trial configurations and velocities set out to their ghosts, by requests that were prepared at
   /// the rebuild. Until finish() ghost rows keep the old ones, and owned rows may be read.

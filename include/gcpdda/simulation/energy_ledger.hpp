@@ -13,7 +13,9 @@
 // contact_normal is the true potential of the contact pressure, (k_n/2) int_S (d_A + d_B) dA, not an
 // accumulated work: the residual shows what the time steps made of it, O(dt^2), plus the offset of O(dt^2)
 // between t_n and the middle. friction_loss is the work against friction
-// and bonds that is not stored in stick springs and bonds: what a broken bond held is in it.
+// and bonds that is not stored in stick springs and bonds: what a broken bond held is in it. Bolts enter like
+// contact pressure, by their potential (support) and by what yielding and rupture have taken (support_loss),
+// as the means of both trial configurations.
 
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/simulation/simulation.hpp"
@@ -50,9 +52,9 @@ private:
   double total_at_start_ = 0.0;
   double stick_at_start_ = 0.0;
   /// Columns that go on through such changes.
-  static constexpr std::array<double EnergyRow::*, 5> carried{
-      &EnergyRow::gravity, &EnergyRow::friction_loss, &EnergyRow::damping_loss, &EnergyRow::boundary_work,
-      &EnergyRow::residual};
+  static constexpr std::array<double EnergyRow::*, 6> carried{
+      &EnergyRow::gravity,       &EnergyRow::friction_loss, &EnergyRow::damping_loss,
+      &EnergyRow::boundary_work, &EnergyRow::support_loss,  &EnergyRow::residual};
   std::vector<double> before_; ///< what these leave out since then; empty before the first change
   std::vector<double> at_end_; ///< of the last stage that has ended
 };

@@ -15,6 +15,9 @@ FrameData collect_frame(const Simulation &simulation);
 /// Touching regions this rank writes.
 std::vector<ContactRow> collect_contacts(const Simulation &simulation);
 
+/// Rows of the bolts that are in place; complete on every rank. Collective.
+std::vector<BoltHistoryRow> collect_bolts(const Simulation &simulation);
+
 /// Rows of the scene's monitors, in their order; complete on every rank. Collective.
 std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation);
 

@@ -13,6 +13,7 @@
 #include "gcpdda/parallel/ghosts.hpp"
 #include "gcpdda/partition/domain_map.hpp"
 #include "gcpdda/simulation/balance.hpp"
+#include "gcpdda/simulation/bolts.hpp"
 #include "gcpdda/simulation/stages.hpp"
 #include "gcpdda/simulation/time_plan.hpp"
 
@@ -65,6 +66,7 @@ struct StepBound {
   double time_step = 0.0;     ///< safety * limit / omega_max, s
   double damping_ratio = 0.0; ///< modal ratio the limit was computed with
   std::int64_t block = -1;    ///< the one that sets omega_max; the first of several
+  double without_bolts = 0.0; ///< what omega_max would be then, rad/s
 };
 
 /// Which blocks the scene's fidelity made rigid and which deformable; all ranks together.
@@ -126,6 +128,7 @@ public:
   [[nodiscard]] const ContactHistory &history() const { return history_; }
   [[nodiscard]] const ContactForces &contacts() const { return contacts_; }
   [[nodiscard]] const BlockForces &forces() const { return forces_; }
+  [[nodiscard]] const Bolts &bolts() const { return bolts_; }
   [[nodiscard]] const DomainMap &domain_map() const { return map_; }
   [[nodiscard]] const PartitionReport &partition() const { return partition_; }
   [[nodiscard]] const Ghosts &ghosts() const { return ghosts_; }
@@ -177,6 +180,7 @@ private:
   void mark_stage();
   void evaluate_still();
   void adopt(const Scene &after);
+  void change_bolts(const std::vector<Bolt> &before);
   void adopt_materials(const std::vector<Material> &before);
   void adopt_block(std::int64_t id, const SceneBlock &before, const SceneBlock &after);
   void free_block(std::int64_t id, const SceneBlock &block);
@@ -200,6 +204,7 @@ private:
   void place_monitors(std::span<const SceneBlock> slab);
   [[nodiscard]] std::vector<std::int64_t> count_contact_work();
   void find_bound();
+  [[nodiscard]] double frequency_bound_of(std::size_t row, std::span<const PointSpring> springs) const;
   [[nodiscard]] Vec2 gravity() const;
   void find_initial_state();
   void check_bonds();
@@ -220,6 +225,7 @@ private:
   void prescribe_trials();
   void prescribe_motion();
   void evaluate_contacts();
+  void evaluate_bolts();
   void take(const ForceReport &report);
   void gather_forces();
   void gather_block(std::size_t row, Vec2 gravity_now, const WaterLoad &water);
@@ -240,6 +246,7 @@ private:
   Candidates candidates_;
   ContactHistory history_;
   ContactForces contacts_;
+  Bolts bolts_;
   BlockForces forces_; ///< at the last evaluation
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;

@@ -1,0 +1,119 @@
+// Where a bolt crosses which blocks.
+
+#include "gcpdda/geometry/aabb.hpp"
+#include "gcpdda/geometry/holds_point.hpp"
+#include "gcpdda/simulation/bolts.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr double least_share = 1e-9; ///< of a bolt's length: shorter stretches are none
+
+/// One link over `length` about `middle` of the bolt, between the blocks on its head's and its tip's side.
+BoltLink link_between(std::int64_t bolt, std::int64_t head_block, std::int64_t tip_block, Vec2 middle,
+                      Vec2 direction, double length) {
+  BoltLink link;
+  link.bolt = static_cast<std::int32_t>(bolt);
+  link.head_first = head_block < tip_block;
+  link.length = length;
+  const std::size_t head = link.head_first ? 0 : 1;
+  const Vec2 along = link.head_first ? direction : -direction;
+  link.end[head] = {head_block, middle - (0.5 * length) * direction, along};
+  link.end[1 - head] = {tip_block, middle + (0.5 * length) * direction, along};
+  return link;
+}
+
+/// Along a joint two blocks hold the same stretch: the lower id has it.
+void drop_doubles(std::vector<BoltPiece> &pieces) {
+  std::sort(pieces.begin(), pieces.end(), [](const BoltPiece &a, const BoltPiece &b) {
+    return std::tuple(a.begin + a.end, a.block) < std::tuple(b.begin + b.end, b.block);
+  });
+  std::vector<BoltPiece> kept;
+  for (const BoltPiece &piece : pieces) {
+    if (kept.empty() || 0.5 * (piece.begin + piece.end) > kept.back().end) {
+      kept.push_back(piece);
+    }
+  }
+  pieces = std::move(kept);
+}
+
+} // namespace
+
+void append_pieces(const Bolt &bolt, std::int64_t index, std::span<const Vec2> polygon, std::int64_t block,
+                   std::vector<BoltPiece> &pieces) {
+  const std::array<Vec2, 2> ends{bolt.from, bolt.to};
+  if (!bounding_box(polygon).meets(bounding_box(ends))) {
+    return;
+  }
+  const Vec2 line = bolt.to - bolt.from;
+  std::vector<double> cuts{0.0, 1.0};
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 begin = polygon[k] - bolt.from;
+    const Vec2 edge = polygon[(k + 1) % polygon.size()] - polygon[k];
+    const double turn = cross(line, edge);
+    const double on_bolt = cross(begin, edge) / turn;
+    const double on_edge = cross(begin, line) / turn;
+    if (turn != 0.0 && on_bolt > 0.0 && on_bolt < 1.0 && on_edge > -least_share && on_edge < 1.0 + least_share) {
+      cuts.push_back(on_bolt);
+    }
+  }
+  std::sort(cuts.begin(), cuts.end());
+  bool goes_on = false;
+  for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+    if (cuts[k + 1] - cuts[k] < least_share) {
+      continue;
+    }
+    const bool inside = holds_point(polygon, bolt.from + (0.5 * (cuts[k] + cuts[k + 1])) * line);
+    if (inside && goes_on) {
+      pieces.back().end = cuts[k + 1];
+    } else if (inside) {
+      pieces.push_back({index, block, cuts[k], cuts[k + 1]});
+    }
+    goes_on = inside;
+  }
+}
+
+std::vector<BoltLink> links_of(const Bolt &bolt, std::int64_t index, const SupportType &support,
+                               std::vector<BoltPiece> &pieces) {
+  drop_doubles(pieces);
+  std::vector<BoltLink> links;
+  if (pieces.empty()) {
+    return links;
+  }
+  const Vec2 line = bolt.to - bolt.from;
+  const double length = norm(line);
+  const Vec2 direction = (1.0 / length) * line;
+  const BoltPiece &first = pieces.front();
+  const BoltPiece &last = pieces.back();
+  if (support.kind == SupportType::Kind::anchored) {
+    if (first.block != last.block) {
+      const double middle = 0.5 * (first.begin + last.end);
+      links.push_back(link_between(index, first.block, last.block, bolt.from + middle * line, direction,
+                                   (last.end - first.begin) * length));
+    }
+    return links;
+  }
+  for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
+    const BoltPiece &head = pieces[k];
+    const BoltPiece &tip = pieces[k + 1];
+    if (head.block == tip.block || (tip.begin - head.end) * length > support.active_length) {
+      continue; // in and out of one block, or through a void
+    }
+    const double middle = 0.5 * (head.end + tip.begin);
+    BoltLink link = link_between(index, head.block, tip.block, bolt.from + middle * line, direction,
+                                 support.active_length);
+    const double to_head = (middle - first.begin) * length;
+    const double to_tip = (last.end - middle) * length;
+    link.bond_length = std::min(support.plate ? std::numeric_limits<double>::infinity() : to_head, to_tip);
+    link.overhang = {to_head - 0.5 * link.length, to_tip - 0.5 * link.length};
+    links.push_back(link);
+  }
+  return links;
+}
+
+} // namespace gcpdda

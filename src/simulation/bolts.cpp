@@ -1,0 +1,373 @@
+#include "gcpdda/simulation/bolts.hpp"
+
+#include "gcpdda/base/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace gcpdda {
+
+namespace {
+
+/// Row of a block in a range sorted by id; none where it is not there.
+std::optional<std::size_t> row_between(const BlockSystem &system, std::size_t first, std::size_t last,
+                                       std::int64_t id) {
+  const auto begin = system.properties.begin();
+  const auto end = begin + static_cast<std::ptrdiff_t>(last);
+  const auto found =
+      std::lower_bound(begin + static_cast<std::ptrdiff_t>(first), end, id,
+                       [](const BlockProperties &p, std::int64_t wanted) { return p.id.value < wanted; });
+  return found == end || found->id.value != id ? std::nullopt
+                                               : std::optional(static_cast<std::size_t>(found - begin));
+}
+
+std::optional<std::size_t> owned_row(const BlockSystem &system, std::int64_t id) {
+  return row_between(system, 0, system.num_owned, id);
+}
+
+std::optional<std::size_t> fixed_row(const BlockSystem &system, std::int64_t id) {
+  return row_between(system, system.first_fixed(), system.num_rows(), id);
+}
+
+/// Of an owned, ghost or fixed block.
+std::size_t any_row(const BlockSystem &system, std::int64_t id) {
+  auto row = owned_row(system, id);
+  row = row ? row : row_between(system, system.num_owned, system.first_fixed(), id);
+  row = row ? row : fixed_row(system, id);
+  expect(row.has_value(), "the blocks of a bolt are seen by the owners of either");
+  return *row;
+}
+
+/// Of t_n.
+LinkEnd in_reference_axes(const BlockSystem &system, std::size_t row, const LinkEnd &world) {
+  Mat2 back;
+  if (system.is_deformable(row)) {
+    back = inverse(system.deformation_of(row).gradient);
+  } else {
+    const Rotation turn = Rotation::of(system.displacement[row].r);
+    back = {turn.c, turn.s, -turn.s, turn.c};
+  }
+  return {world.block, back(world.point - system.centroid(row)), back(world.along)};
+}
+
+struct LinkRecord {
+  std::uint32_t link = 0;
+  LinkMemory memory;
+};
+struct EndRecord {
+  std::uint32_t link = 0;
+  std::uint32_t side = 0;
+  LinkEnd end;
+};
+
+Diagnostic remark(const Bolt &bolt, Severity severity, const char *what, const char *why, const char *hint) {
+  return {severity, bolt.where, fmt::format("bolt '{}' {}", bolt.name, what), why, hint};
+}
+
+/// What is odd about a bolt that has been put in.
+void note_bolt(const Bolt &bolt, const std::vector<BoltPiece> &pieces, bool has_links, Diagnostics &notes) {
+  if (pieces.empty()) {
+    notes.push_back(remark(bolt, Severity::warning, "lies outside the blocks", "it holds nothing",
+                           "check 'from' and 'to'"));
+  } else if (!has_links) {
+    notes.push_back(remark(bolt, Severity::warning, "crosses no joint", "it acts only between two blocks",
+                           "make it longer, or leave it out"));
+  } else if (pieces.back().end < 1.0 - 1e-6) {
+    notes.push_back(remark(bolt, Severity::warning, "ends outside the blocks",
+                           "its tip is taken to be where it leaves the last one", "check 'to'"));
+  }
+}
+
+} // namespace
+
+void Bolts::install(const Communicator &communicator, const Scene &scene, const BlockSystem &system,
+                    std::span<const std::int64_t> which, Diagnostics &notes) {
+  std::vector<BoltPiece> mine;
+  for (std::size_t row = 0; row < system.num_rows() && !which.empty(); ++row) {
+    const bool tells = row < system.num_owned || (system.is_fixed(row) && communicator.is_root());
+    const std::vector<Vec2> polygon = tells ? current_vertices(system, row) : std::vector<Vec2>();
+    for (std::size_t k = 0; k < which.size() && tells; ++k) {
+      append_pieces(scene.bolts[static_cast<std::size_t>(which[k])], which[k], polygon,
+                    system.properties[row].id.value, mine);
+    }
+  }
+  std::vector<BoltPiece> all;
+  for (const auto &theirs : communicator.all_gather(mine)) {
+    all.insert(all.end(), theirs.begin(), theirs.end());
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const BoltPiece &a, const BoltPiece &b) { return a.bolt < b.bolt; });
+  const std::size_t first = links_.size();
+  auto piece = all.begin();
+  for (const std::int64_t index : which) {
+    const Bolt &bolt = scene.bolts[static_cast<std::size_t>(index)];
+    std::vector<BoltPiece> pieces;
+    for (; piece != all.end() && piece->bolt == index; ++piece) {
+      pieces.push_back(*piece);
+    }
+    const std::vector<BoltLink> links =
+        links_of(bolt, index, scene.supports[static_cast<std::size_t>(bolt.support)], pieces);
+    note_bolt(bolt, pieces, !links.empty(), notes);
+    links_.insert(links_.end(), links.begin(), links.end());
+  }
+  find_ends(communicator, system, first);
+  std::stable_sort(links_.begin(), links_.end(),
+                   [](const BoltLink &a, const BoltLink &b) { return a.bolt < b.bolt; });
+  connected_ = false;
+}
+
+// The owner of a block knows its axes; fixed ones are the same everywhere.
+void Bolts::find_ends(const Communicator &communicator, const BlockSystem &system, std::size_t first) {
+  std::vector<EndRecord> mine;
+  for (std::size_t k = first; k < links_.size(); ++k) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      LinkEnd &end = links_[k].end[side];
+      if (const auto owned = owned_row(system, end.block)) {
+        mine.push_back({static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(side),
+                        in_reference_axes(system, *owned, end)});
+      } else if (const auto fixed = fixed_row(system, end.block)) {
+        end = in_reference_axes(system, *fixed, end);
+      }
+    }
+  }
+  for (const auto &theirs : communicator.all_gather(mine)) {
+    for (const EndRecord &record : theirs) {
+      links_[record.link].end[record.side] = record.end;
+    }
+  }
+}
+
+void Bolts::remove(const std::function<bool(const BoltLink &)> &is_gone) {
+  std::erase_if(links_, is_gone);
+  connected_ = false;
+}
+
+void Bolts::take_laws(const Scene &scene) {
+  laws_.clear();
+  for (const BoltLink &link : links_) {
+    const Bolt &bolt = scene.bolts[static_cast<std::size_t>(link.bolt)];
+    laws_.push_back(law_of(scene.supports[static_cast<std::size_t>(bolt.support)], link));
+  }
+  std::vector<std::pair<std::int64_t, PointSpring>> all;
+  for (std::size_t k = 0; k < 2 * links_.size(); ++k) {
+    for (const PointSpring &spring : springs_of(laws_[k / 2], links_[k / 2], k % 2)) {
+      all.emplace_back(links_[k / 2].end[k % 2].block, spring);
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+  spring_block_.clear();
+  springs_.clear();
+  for (const auto &[block, spring] : all) {
+    spring_block_.push_back(block);
+    springs_.push_back(spring);
+  }
+}
+
+void Bolts::share(const Communicator &communicator) {
+  if (connected_) {
+    links_ = shared(communicator);
+  }
+}
+
+std::vector<BoltLink> Bolts::shared(const Communicator &communicator) const {
+  std::vector<BoltLink> links = links_;
+  if (!connected_ || links.empty()) {
+    return links;
+  }
+  std::vector<LinkRecord> mine;
+  for (const Here &here : here_) {
+    if (here.counts) {
+      mine.push_back({here.link, links_[here.link].memory});
+    }
+  }
+  for (const auto &theirs : communicator.all_gather(mine)) {
+    for (const LinkRecord &record : theirs) {
+      links[record.link].memory = record.memory;
+    }
+  }
+  return links;
+}
+
+std::vector<FarGhost> Bolts::partners(const Communicator &communicator, const BlockSystem &system) const {
+  std::vector<FarGhost> far;
+  if (links_.empty() || communicator.size() == 1) {
+    return far;
+  }
+  std::vector<std::int64_t> owner(2 * links_.size(), -1);
+  for (std::size_t k = 0; k < owner.size(); ++k) {
+    if (owned_row(system, links_[k / 2].end[k % 2].block)) {
+      owner[k] = communicator.rank();
+    }
+  }
+  communicator.max(owner);
+  for (std::size_t k = 0; k < owner.size(); ++k) {
+    const std::int64_t other = owner[k ^ 1U];
+    if (owner[k] == communicator.rank() && other >= 0 && other != owner[k]) {
+      const std::size_t row = *owned_row(system, links_[k / 2].end[k % 2].block);
+      far.push_back({static_cast<int>(other), static_cast<std::uint32_t>(row)});
+    }
+  }
+  return far;
+}
+
+void Bolts::connect(const BlockSystem &system) {
+  here_.clear();
+  for (std::size_t k = 0; k < links_.size(); ++k) {
+    const auto first = owned_row(system, links_[k].end[0].block);
+    const auto second = owned_row(system, links_[k].end[1].block);
+    if (first || second) {
+      here_.push_back({static_cast<std::uint32_t>(k),
+                       {any_row(system, links_[k].end[0].block), any_row(system, links_[k].end[1].block)},
+                       first || fixed_row(system, links_[k].end[0].block)});
+    }
+  }
+  forces_.resize(here_.size());
+  gradient_.assign(links_.empty() ? 0 : system.deformation.size(), {});
+  connected_ = true;
+}
+
+void Bolts::evaluate(const BlockSystem &system) {
+  for (std::size_t k = 0; k < here_.size(); ++k) {
+    const auto &[number, rows, counts] = here_[k];
+    BoltLink &link = links_[number];
+    const LinkPose pose = pose_of(system, link, rows);
+    link.memory = respond(laws_[number], link.memory, pose.extension, pose.slide);
+    forces_[k] = force_of(system, link, rows, pose, link.memory);
+  }
+  std::fill(gradient_.begin(), gradient_.end(), Mat2{});
+  for (std::size_t k = 0; k < here_.size(); ++k) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const std::size_t row = here_[k].rows[side];
+      if (row < system.num_owned && system.is_deformable(row)) {
+        gradient_[system.deformation_begin[row]] += forces_[k].gradient[side];
+      }
+    }
+  }
+}
+
+void Bolts::add_forces(const BlockSystem &system, std::span<RigidDof> forces) const {
+  for (std::size_t k = 0; k < here_.size(); ++k) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (const std::size_t row = here_[k].rows[side]; row < system.num_owned) {
+        forces[row] += forces_[k].rigid[side];
+      }
+    }
+  }
+}
+
+std::span<const PointSpring> Bolts::springs_at(std::int64_t block) const {
+  const auto [first, last] = std::equal_range(spring_block_.begin(), spring_block_.end(), block);
+  return {springs_.data() + (first - spring_block_.begin()), static_cast<std::size_t>(last - first)};
+}
+
+void Bolts::add_energies(double share, LinkEnergies &sums) const {
+  for (const Here &here : here_) {
+    if (here.counts) {
+      const LinkMemory &memory = links_[here.link].memory;
+      sums.stored.add(share * stored_energy(laws_[here.link], memory));
+      sums.dissipated.add(share * memory.dissipated);
+    }
+  }
+}
+
+void Bolts::add_energies_at(const BlockSystem &system, double share, LinkEnergies &sums) const {
+  for (const Here &here : here_) {
+    if (here.counts) {
+      const BoltLink &link = links_[here.link];
+      const LinkPose pose = pose_of(system, link, here.rows);
+      const LinkMemory then = respond(laws_[here.link], link.memory, pose.extension, pose.slide);
+      sums.stored.add(share * stored_energy(laws_[here.link], then));
+      sums.dissipated.add(share * then.dissipated);
+    }
+  }
+}
+
+std::vector<BoltReport> Bolts::report(const Communicator &communicator, const Scene &scene,
+                                      const BlockSystem &system) const {
+  struct Where {
+    std::uint32_t link;
+    Vec2 head;
+    Vec2 tip;
+    LinkMemory memory;
+  };
+  std::vector<Where> mine;
+  for (const Here &here : here_) {
+    const BoltLink &link = links_[here.link];
+    const std::size_t head = link.head_first ? 0 : 1;
+    const double sign = link.head_first ? 1.0 : -1.0; // of the bolt's direction in D
+    const auto position = [&](std::size_t side, double beyond) {
+      return trial_position(system, here.rows[side],
+                            link.end[side].point + (sign * beyond) * link.end[side].along);
+    };
+    if (here.counts) {
+      mine.push_back(
+          {here.link, position(head, -link.overhang[0]), position(1 - head, link.overhang[1]), link.memory});
+    }
+  }
+  std::vector<Where> all;
+  for (const auto &theirs : communicator.all_gather(mine)) {
+    all.insert(all.end(), theirs.begin(), theirs.end());
+  }
+  std::sort(all.begin(), all.end(), [](const Where &a, const Where &b) { return a.link < b.link; });
+  std::vector<BoltReport> reports;
+  for (const auto &[number, head, tip, memory] : all) {
+    const std::int64_t bolt = links_[number].bolt;
+    if (reports.empty() || reports.back().bolt != bolt) {
+      BoltReport &fresh = reports.emplace_back();
+      fresh.bolt = bolt;
+      fresh.head = head;
+      fresh.axial = memory.axial;
+      fresh.extension = memory.extension;
+    }
+    BoltReport &report = reports.back();
+    report.tip = tip;
+    report.axial = std::max(report.axial, memory.axial);
+    report.shear = std::max(report.shear, std::abs(memory.shear));
+    report.extension = std::max(report.extension, memory.extension);
+    report.slide = std::max(report.slide, std::abs(memory.slide));
+    ++report.links;
+    report.yielded += memory.yielded || memory.broken ? 1 : 0;
+    report.broken += memory.broken ? 1 : 0;
+  }
+  for (BoltReport &report : reports) {
+    const auto support = static_cast<std::size_t>(scene.bolts[static_cast<std::size_t>(report.bolt)].support);
+    report.axial *= scene.supports[support].spacing;
+    report.shear *= scene.supports[support].spacing;
+  }
+  return reports;
+}
+
+void Bolts::to_numbers(const std::vector<BoltLink> &links, std::vector<std::int64_t> &counts,
+                       std::vector<double> &numbers) {
+  for (const BoltLink &link : links) {
+    const auto &[a, b] = link.end;
+    const LinkMemory &m = link.memory;
+    counts.insert(counts.end(), {link.bolt, a.block, b.block, link.head_first ? 1 : 0, m.yielded ? 1 : 0,
+                                 m.broken ? 1 : 0});
+    numbers.insert(numbers.end(),
+                   {a.point.x, a.point.y, a.along.x, a.along.y, b.point.x, b.point.y, b.along.x, b.along.y,
+                    link.length, link.bond_length, link.overhang[0], link.overhang[1], m.axial_slip,
+                    m.shear_slip, m.dissipated, m.axial, m.shear, m.extension, m.slide});
+  }
+}
+
+Bolts Bolts::from_numbers(std::span<const std::int64_t> counts, std::span<const double> numbers) {
+  Bolts bolts;
+  const std::size_t count = counts.size() / counts_per_link;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto c = counts.subspan(k * counts_per_link, counts_per_link);
+    const auto x = numbers.subspan(k * numbers_per_link, numbers_per_link);
+    BoltLink &link = bolts.links_.emplace_back();
+    link.bolt = static_cast<std::int32_t>(c[0]);
+    link.end = {LinkEnd{c[1], {x[0], x[1]}, {x[2], x[3]}}, LinkEnd{c[2], {x[4], x[5]}, {x[6], x[7]}}};
+    link.head_first = c[3] != 0;
+    link.length = x[8];
+    link.bond_length = x[9];
+    link.overhang = {x[10], x[11]};
+    link.memory = {x[12], x[13], x[14], x[15], x[16], x[17], x[18], c[4] != 0, c[5] != 0};
+  }
+  return bolts;
+}
+
+} // namespace gcpdda

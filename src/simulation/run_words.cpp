@@ -1,0 +1,36 @@
+#include "run_words.hpp"
+
+#include <fmt/format.h>
+
+namespace gcpdda {
+
+std::string fault_message(const Simulation &simulation) {
+  const Fault &fault = *simulation.fault();
+  const auto name = [&](BlockId id) { return block_name(simulation.scene(), id.value); };
+  const std::string where = fmt::format("block '{}' at t = {:.9g} s", name(fault.block), simulation.time());
+  switch (fault.cause) {
+  case Fault::Cause::too_deep:
+    return fmt::format(
+        "{}: overlaps block '{}' by {:.4g} m, deeper than half the narrowest width {:.4g} m, where the "
+        "contact force reverses; try a larger joint.normal_stiffness or a smaller run.time_step",
+        where, name(fault.other), fault.value, fault.limit);
+  case Fault::Cause::too_fast:
+    return fmt::format(
+        "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "
+        "could pass through a block; try a smaller run.time_step",
+        where, fault.value, fault.limit);
+  case Fault::Cause::not_finite:
+    break;
+  }
+  return fmt::format("{}: its state is no longer finite; try a smaller run.time_step", where);
+}
+
+std::string words_on_bolts(const Simulation &simulation) {
+  const StepBound &bound = simulation.bound();
+  return fmt::format("bolts: {} in the scene, springs in place: {}; omega_max {:.6g} rad/s with them, {:.6g} "
+                     "rad/s without",
+                     simulation.scene().bolts.size(), simulation.bolts().links().size(), bound.omega_max,
+                     bound.without_bolts);
+}
+
+} // namespace gcpdda

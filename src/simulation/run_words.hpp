@@ -1,0 +1,15 @@
+#pragma once
+
+#include "gcpdda/simulation/simulation.hpp"
+
+#include <string>
+
+namespace gcpdda {
+
+/// Why a run cannot go on.
+std::string fault_message(const Simulation &simulation);
+
+/// How many bolts there are, and what they do to the step.
+std::string words_on_bolts(const Simulation &simulation);
+
+} // namespace gcpdda

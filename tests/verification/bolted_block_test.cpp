@@ -1,0 +1,201 @@
+// Bolts: a hung block, blocks on a slope held by cables and dowels, and the cable at the toe of Goodman and
+// Bray's slope.
+
+#include "problem.hpp"
+
+#include "gcpdda/simulation/energy_ledger.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gcpdda::testing::bolted_block_test {
+namespace {
+
+constexpr double weight = rock_density * earth_gravity; ///< of a unit square, N/m
+
+std::string support_toml(const std::string &keys) {
+  return "[support.steel]\n" + keys;
+}
+
+std::string bolt_toml(Vec2 from, Vec2 to) {
+  return fmt::format("[[bolt]]\nsupport = \"steel\"\nfrom = [{:.17g}, {:.17g}]\nto = [{:.17g}, {:.17g}]\n",
+                     from.x, from.y, to.x, to.y);
+}
+
+/// A unit square that hangs from a beam by a cable from its centre, and falls into it.
+std::string hung_toml(double duration, double stiffness, const std::string &strength,
+                      const std::string &fidelity = "rigid") {
+  return head({.duration = duration, .fidelity = fidelity, .youngs_modulus = 1e9, .poissons_ratio = 0.25}) +
+         block_toml("beam", rectangle({-2.0, 5.0}, {2.0, 6.0}), "fixed = true") +
+         block_toml("square", rectangle({-0.5, 0.0}, {0.5, 1.0})) +
+         support_toml(
+             fmt::format("kind = \"anchored\"\naxial_stiffness = {:.17g}\n{}", stiffness, strength)) +
+         bolt_toml({0.0, 0.5}, {0.0, 5.5});
+}
+
+// The cable is put in without tension, so the block oscillates about W/k with that amplitude.
+TEST(BoltedBlock, HangsOnASpring) {
+  const double stiffness = 1e7;
+  Simulation simulation(Communicator::self(), scene_of(hung_toml(0.5, stiffness, "")));
+  EnergyLedger ledger(simulation);
+  const double omega = std::sqrt(stiffness / rock_density);
+  double deepest = 0.0;
+  double worst_residual = 0.0;
+  double half_turns = 0.0;
+  double last_turn = 0.0;
+  double before = 0.0;
+  while (!simulation.finished()) {
+    step(simulation);
+    const double speed = velocity_of(simulation, 1).u.y;
+    if (before < 0.0 && speed >= 0.0) {
+      last_turn = simulation.time() - simulation.plan().time_step * speed / (speed - before);
+      half_turns += half_turns == 0.0 ? 1.0 : 2.0;
+    }
+    before = speed;
+    deepest = std::min(deepest, displacement_of(simulation, 1).u.y);
+    if (simulation.step_count() % 20 == 0) {
+      const EnergyRow row = ledger.row(simulation);
+      worst_residual = std::max(worst_residual, std::abs(row.residual));
+      EXPECT_EQ(row.support_loss, 0.0);
+    }
+  }
+  const double step_length = omega * simulation.plan().time_step;
+  // The leapfrog's frequency is too high by (omega dt)^2/24.
+  expect_value("bolts: hung square, half a period, s", std::numbers::pi / omega, last_turn / half_turns,
+               step_length * step_length);
+  expect_value("bolts: hung square, deepest point, m", -2.0 * weight / stiffness, deepest,
+               step_length * step_length);
+  // Energies of the trials are off by (omega dt)^2 of what swings, W^2/(2 k).
+  expect_below("bolts: hung square, largest energy residual over the energy that swings",
+               step_length * step_length, worst_residual / (0.5 * weight * weight / stiffness));
+  expect_above("bolts: hung square, frequency the step allows for, over its own", 1.0,
+               simulation.bound().omega_max / omega);
+}
+
+// A capacity of 1.5 W stops the fall after x = T^2/(2 k (T - W)) = 2.25 W/k, of which 0.75 W/k is plastic.
+TEST(BoltedBlock, FallsIntoAYieldingCable) {
+  const double stiffness = 1e7;
+  const double unit = weight / stiffness; // m
+  for (const char *fidelity : {"rigid", "deformable"}) {
+    Simulation simulation(
+        Communicator::self(),
+        scene_of(hung_toml(0.2, stiffness, fmt::format("axial_yield = {:.17g}\n", 1.5 * weight), fidelity)));
+    EnergyLedger ledger(simulation);
+    double deepest = 0.0;
+    while (!simulation.finished()) {
+      step(simulation);
+      deepest = std::min(deepest, displacement_of(simulation, 1).u.y);
+    }
+    const EnergyRow row = ledger.row(simulation);
+    // W/E = 2.6e-5 m of 5e-3 m is the block's own.
+    expect_value(fmt::format("bolts: {} square in a yielding cable, deepest point, m", fidelity),
+                 -2.25 * unit, deepest, 0.01);
+    expect_value(fmt::format("bolts: {} square in a yielding cable, energy lost in it, J/m", fidelity),
+                 1.125 * weight * unit, row.support_loss, 0.01);
+    expect_below(
+        fmt::format("bolts: {} square in a yielding cable, energy residual over what is lost", fidelity),
+        1e-3, std::abs(row.residual) / row.support_loss);
+    EXPECT_TRUE(simulation.bolts().links()[0].memory.yielded);
+  }
+}
+
+constexpr double slope = 40.0 * degree;
+constexpr double friction = 30.0 * degree;
+/// What friction lacks to hold a unit square on that slope, N/m.
+const double missing = weight * (std::sin(slope) - std::cos(slope) * std::tan(friction));
+
+std::vector<Vec2> on_slope(const std::vector<Vec2> &points) {
+  return placed(points, slope, {0.0, 0.0});
+}
+
+/// The square on the slope, a wall 3 m uphill, and a bolt.
+/// @param from, to  along the slope and outwards, from the middle of the square's base
+std::string slope_toml(const std::string &support, Vec2 from, Vec2 to) {
+  const std::vector<Vec2> ends = on_slope({from, to});
+  return head({.duration = 1.0, .friction_deg = friction / degree}) +
+         block_toml("ground", on_slope(rectangle({-5.0, -5.0}, {8.0, 0.0})), "fixed = true") +
+         block_toml("wall", on_slope(rectangle({3.5, 0.0}, {8.0, 3.0})), "fixed = true") +
+         block_toml("square", on_slope(rectangle({-0.5, 0.0}, {0.5, 1.0}))) + support_toml(support) +
+         bolt_toml(ends[0], ends[1]);
+}
+
+/// A cable through the centre of the square, `lift` above the uphill direction, whose tension is constant:
+/// it yields at its pre-tension.
+struct Cable {
+  double lift = 0.0; ///< rad; negative: into the slope
+
+  [[nodiscard]] double needed() const {
+    return missing / (std::cos(lift) - std::sin(lift) * std::tan(friction));
+  }
+  [[nodiscard]] std::string toml(double tension) const {
+    const Vec2 line{std::cos(lift), std::sin(lift)};
+    const Vec2 centre{0.0, 0.5};
+    const double to_face = 0.499 / std::max(std::abs(line.x), std::abs(line.y));
+    return slope_toml(fmt::format("kind = \"anchored\"\naxial_stiffness = 1e5\naxial_yield = {0:.17g}\n"
+                                  "pretension = {0:.17g}\n",
+                                  tension),
+                      centre - to_face * line, centre + 4.0 * line);
+  }
+};
+
+Vec2 downhill() {
+  return {-std::cos(slope), -std::sin(slope)};
+}
+
+// Limit equilibrium: T (cos(lift) - sin(lift) tan(phi)) = W (sin(slope) - cos(slope) tan(phi)). At right
+// angles to the plane, along it, and at phi to it, where the least force is needed.
+TEST(BoltedBlock, OnASlopeNeedsTheForceOfLimitEquilibrium) {
+  for (const double lift : {-90.0 * degree, 0.0, -30.0 * degree}) {
+    const Cable cable{lift};
+    const std::string what = fmt::format("bolts: cable at {:g} degrees to the slope", lift / degree);
+    for (const double share : {0.5, 0.99, 1.01}) {
+      Simulation simulation(Communicator::self(), scene_of(cable.toml(share * cable.needed())));
+      ASSERT_EQ(simulation.bolts().links().size(), 1U);
+      run_until(simulation, 0.5);
+      const double early = dot(velocity_of(simulation, 2).u, downhill());
+      run_until(simulation, 1.0);
+      const double late = dot(velocity_of(simulation, 2).u, downhill());
+      const double slid = dot(displacement_of(simulation, 2).u, downhill());
+      if (share == 0.5) {
+        // The cable turns by up to 0.35 m in 4.5 m while the block slides.
+        expect_value(what + ", half the force needed, acceleration, m/s2", 0.5 * missing / rock_density,
+                     (late - early) / 0.5, 0.1);
+      } else if (share < 1.0) {
+        expect_above(what + ", 1 % too weak, slid, m", 0.5 * 0.5 * 0.01 * missing / rock_density, slid);
+      } else {
+        // The joint's own stretch: cap/(k_t l).
+        expect_below(what + ", 1 % too strong, slid, m", 1e-4, slid);
+        expect_below(what + ", 1 % too strong, speed, m/s", 1e-3, std::abs(late));
+      }
+    }
+  }
+}
+
+// A dowel across the joint bears what friction lacks, by its shear; one 2 % too weak lets the block go.
+TEST(BoltedBlock, IsHeldByADowel) {
+  for (const double share : {0.98, 1.02, 5.0}) {
+    const std::string toml =
+        slope_toml(fmt::format("kind = \"grouted\"\naxial_stiffness = 1e8\nshear_stiffness = 1e7\n"
+                               "active_length = 0.2\nshear_yield = {:.17g}\n",
+                               share * missing),
+                   {0.0, 0.9}, {0.0, -2.0});
+    Simulation simulation(Communicator::self(), scene_of(toml, {"run.local_damping=0.8"}));
+    run(simulation);
+    const double speed = norm(velocity_of(simulation, 2).u);
+    const LinkMemory &memory = simulation.bolts().links().at(0).memory;
+    if (share < 1.0) {
+      expect_above("bolts: dowel 2 % too weak, speed, m/s", 1e-3, speed);
+    } else {
+      expect_below(fmt::format("bolts: dowel of {:g} times the force needed, speed, m/s", share), 1e-6,
+                   speed);
+      expect_value(fmt::format("bolts: dowel of {:g} times the force needed, its shear, N/m", share), missing,
+                   std::abs(memory.shear), 0.03);
+    }
+  }
+}
+
+} // namespace
+} // namespace gcpdda::testing::bolted_block_test
