@@ -86,7 +86,13 @@ void ContactForces::evaluate_alike(const BlockSystem &system, const Candidates &
       constants[i] = &own[i];
     }
   }
-  const PlainScene scene{system, candidates, history, increments_, deforming_, parameters_.damping_ratio};
+  const PlainScene scene{system,
+                         candidates,
+                         history,
+                         increments_,
+                         deforming_,
+                         parameters_.damping_ratio,
+                         parameters_.stiffness_damping};
   batch_->evaluate(scene, entries, std::span(constants).first(entries.size()));
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (!batch_->touches(i)) {
