@@ -4,6 +4,8 @@
     run/plot.py results/wall --frame last --field displacement --out wall.png
     run/plot.py results/wall --frame 0,last --field stress --out before_after.png
     run/plot.py results/wall --frame all --field velocity --out wall.gif
+    run/plot.py results/seismic_slope --field permanent --since shaking --out permanent.png
+    run/plot.py results/seismic_slope --rayleigh --out damping.png
 
 Fixed blocks are grey and hatched, phreatic lines blue and dashed, bolts orange, as thick as they are loaded, red
 where they have yielded, dotted where they are broken. Panels and pictures of one call share axes and colour scale.
@@ -11,6 +13,7 @@ where they have yielded, dotted where they are broken. Panels and pictures of on
 
 import argparse
 import csv
+import json
 import pathlib
 import sys
 import tomllib
@@ -41,6 +44,7 @@ def largest_compression(data):
 # name: (values of a CellData group, label, unit, signed)
 FIELDS = {
     "displacement": (lambda d: np.hypot(*d["displacement"][:, :2].T), "displacement", "m", False),
+    "permanent": (lambda d: d["displacement"][:, :2], "displacement since the stage began", "m", False),
     "velocity": (lambda d: np.hypot(*d["velocity"][:, :2].T), "speed", "m/s", False),
     "rotation": (lambda d: np.degrees(d["rotation"][:]), "rotation, counter-clockwise", "°", True),
     "contact_force": (lambda d: np.hypot(*d["contact_force"][:, :2].T), "resultant of contact forces", "N/m", False),
@@ -85,6 +89,48 @@ def chosen_frames(directory, words):
         else:
             sys.exit(f"plot.py: no frame {word}: there are {min(by_number)} to {max(by_number)}, first, last, all")
     return chosen
+
+
+def frame_before(directory, stage):
+    """The last frame that is not later than the beginning of a stage."""
+    stages = json.loads((directory / "summary.json").read_text()).get("stages", [])
+    names = [entry["name"] for entry in stages]
+    if stage not in names:
+        sys.exit(f"plot.py: no stage {stage}: there are {', '.join(names) or 'none'}")
+    number = names.index(stage)
+    begin = stages[number - 1]["time"] if number > 0 else 0.0
+    paths = chosen_frames(directory, "all")
+    times = [h5py.File(path)["VTKHDF"].attrs["time"] for path in paths]
+    return paths[max(i for i, time in enumerate(times) if time <= begin + 1e-9 * max(begin, 1.0))]
+
+
+def make_permanent(frames, reference):
+    """Sizes of the displacements since the reference frame, whose blocks may have gone since."""
+    known = dict(zip(reference.blocks.tolist(), reference.values))
+    for frame in frames:
+        start = np.array([known[block] for block in frame.blocks.tolist()])
+        frame.values = np.hypot(*(frame.values - start).T)
+
+
+def draw_rayleigh(directory, out, dpi):
+    """Damping ratio over frequency of run.rayleigh, and the shares of alpha and beta."""
+    with open(directory / "scene.toml", "rb") as file:
+        rayleigh = tomllib.load(file)["run"].get("rayleigh")
+    if rayleigh is None:
+        sys.exit(f"plot.py: {directory / 'scene.toml'} has no run.rayleigh")
+    ratio, least = float(rayleigh["ratio"]), float(rayleigh["frequency"])
+    f = np.geomspace(0.1 * least, 10.0 * least, 400)
+    by_mass, by_stiffness = 0.5 * ratio * least / f, 0.5 * ratio * f / least
+    figure, axes = plt.subplots(figsize=(5.2, 3.4), layout="constrained")
+    axes.plot(f, by_mass + by_stiffness, color=EDGE, lw=1.4, label="both")
+    axes.plot(f, by_mass, color="#2f7fd6", lw=1.0, ls=(0, (5, 2)), label="alpha M")
+    axes.plot(f, by_stiffness, color="#b0332a", lw=1.0, ls=(0, (5, 2)), label="beta K")
+    axes.plot([least], [ratio], "o", color=EDGE, ms=4)
+    axes.annotate(f"{ratio:g} at {least:g} Hz", (least, ratio), xytext=(0, 8), textcoords="offset points", ha="center")
+    axes.set(xscale="log", xlabel="frequency (Hz)", ylabel="damping ratio", xlim=(f[0], f[-1]), ylim=(0.0, None))
+    axes.set_title(f"alpha = {2.0 * np.pi * least * ratio:.4g} 1/s, beta = {ratio / (2.0 * np.pi * least):.4g} s", fontsize=9)
+    axes.legend(frameon=False)
+    figure.savefig(out, dpi=dpi)
 
 
 def view(frames):
@@ -252,6 +298,8 @@ def main():
     parser.add_argument("--out", required=True, type=pathlib.Path, help="FILE.png, .pdf, .svg; FILE.gif is animated")
     parser.add_argument("--scale", type=float, default=1.0, help="draw the motion since the first frame so many times")
     parser.add_argument("--compare", choices=["first"], help="outline the blocks as they were in the first frame")
+    parser.add_argument("--since", metavar="STAGE", help="stage from whose beginning --field permanent counts")
+    parser.add_argument("--rayleigh", action="store_true", help="draw the damping ratio of run.rayleigh instead of blocks")
     parser.add_argument("--title")
     parser.add_argument("--dpi", type=float, default=160)
     parser.add_argument("--fps", type=float, default=12)
@@ -259,11 +307,18 @@ def main():
 
     plt.rcParams.update({"font.size": 9, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6,
                          "axes.spines.top": False, "axes.spines.right": False})
+    if arguments.rayleigh:
+        draw_rayleigh(arguments.directory, arguments.out, arguments.dpi)
+        return
+    if (arguments.field == "permanent") != (arguments.since is not None):
+        parser.error("--field permanent and --since STAGE belong together")
     frames = [Frame(path, arguments.field) for path in chosen_frames(arguments.directory, arguments.frame)]
     first = Frame(chosen_frames(arguments.directory, "first")[0], arguments.field)
     for frame in frames:
         start = first.points_of(frame.blocks)
         frame.points = start + arguments.scale * (frame.points - start)
+    if arguments.since:
+        make_permanent(frames, Frame(frame_before(arguments.directory, arguments.since), arguments.field))
     colours = Colours(arguments.field, frames)
     save = save_movie if arguments.out.suffix == ".gif" else save_picture
     save(frames, colours, arguments, first if arguments.compare else None)

@@ -1,5 +1,7 @@
 #include "gcpdda/blockgen/joint_map.hpp"
 
+#include "gcpdda/base/text.hpp"
+
 #include <geos_c.h>
 
 #include <fmt/format.h>
@@ -18,26 +20,11 @@ namespace {
 constexpr double largest_coordinate = 1e9;
 constexpr std::size_t most_faults = 20;
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  const std::size_t last = text.find_last_not_of(" \t\r");
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
-}
-
 std::optional<double> to_coordinate(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();
   return whole && std::abs(value) <= largest_coordinate ? std::optional(value) : std::nullopt;
-}
-
-/// Text of a file as it may stand in a message.
-std::string shown(std::string_view text) {
-  std::string result(text.substr(0, 40));
-  for (char &c : result) {
-    c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  }
-  return result;
 }
 
 class CsvReader {

@@ -260,9 +260,10 @@ void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair 
     force.dyad += outer(drag_moment, stretched.normal);
     add_damping(force, drag.total * stretched.normal, drag_moment, stretched.normal);
     double viscous = 0.0;
-    if (parameters_.damping_ratio > 0.0) {
-      viscous = 2.0 * parameters_.damping_ratio *
-                std::sqrt(bond.constants.tangential_stiffness * bond.memory.longest * pair.mass) *
+    if (parameters_.has_dashpots()) {
+      const double stiffness = bond.constants.tangential_stiffness * bond.memory.longest;
+      viscous = (2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) +
+                 parameters_.stiffness_damping * stiffness) *
                 dot(velocity.at({}), perp(force.normal));
     }
     add_shear(force, bond.memory.shear, viscous);

@@ -102,7 +102,13 @@ void ContactForces::evaluate_alike(const BlockSystem &system, const Candidates &
       constants[i] = &own_[i];
     }
   }
-  const PlainScene scene{system, candidates, history, increments_, deforming_, parameters_.damping_ratio};
+  const PlainScene scene{system,
+                         candidates,
+                         history,
+                         increments_,
+                         deforming_,
+                         parameters_.damping_ratio,
+                         parameters_.stiffness_damping};
   const unsigned touching = batch_->evaluate(scene, entries, std::span(constants).first(entries.size()));
   if (touching == 0) {
     return;

@@ -147,8 +147,9 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
     }
   }
   double viscous = 0.0;
-  if (parameters_.damping_ratio > 0.0) {
-    const double drag = 2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) *
+  if (parameters_.has_dashpots()) {
+    const double drag = (2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) +
+                         parameters_.stiffness_damping * stiffness) *
                         dot(velocity.at(force.point - force.origin), tangent);
     viscous = std::clamp(memory.shear + drag, -force.cap, force.cap) - memory.shear;
   }

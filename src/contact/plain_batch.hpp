@@ -21,6 +21,7 @@ struct PlainScene {
   std::span<const TrialIncrement> increments;
   std::span<const DeformingBlock> deforming; ///< by entry of BlockSystem::deformation
   double damping_ratio = 0.0;
+  double stiffness_damping = 0.0;
 };
 
 /// Evaluates as many pairs at once as the registers of its instructions hold. All instructions give the same

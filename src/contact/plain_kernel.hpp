@@ -122,6 +122,7 @@ struct LaneBatch::Constants {
   Lanes damping;
   Lanes mass;
   double damping_ratio;
+  double stiffness_damping;
   Lanes was_there; ///< 1 where the region has a memory
   Lanes shear;
   Lanes longest;
@@ -219,10 +220,11 @@ template <class AnyMotion> void LaneBatch::add_friction(const Constants &constan
   shear = select(breaks, select(shear < 0.0, -cap_, cap_), shear);
   elastic_ = select(holds, shear, 0.0);
   Lanes viscous = 0.0;
-  if (constants.damping_ratio > 0.0) {
+  if (constants.damping_ratio > 0.0 || constants.stiffness_damping > 0.0) {
     const LaneVec velocity = motion.velocity_at(point_);
-    const Lanes drag =
-        Lanes(2.0 * constants.damping_ratio) * sqrt(stiffness * constants.mass) * dot(velocity, tangent);
+    const Lanes drag = (Lanes(2.0 * constants.damping_ratio) * sqrt(stiffness * constants.mass) +
+                        Lanes(constants.stiffness_damping) * stiffness) *
+                       dot(velocity, tangent);
     viscous = select(holds, clamp(elastic_ + drag, -cap_, cap_) - elastic_, 0.0);
   }
   shear_ = elastic_ + viscous;
@@ -306,7 +308,7 @@ template <class AnyMotion> void LaneBatch::add_dashpot(const Constants &constant
 template <class AnyMotion>
 void LaneBatch::add_friction_and_dashpots(const Constants &constants, const AnyMotion &motion) {
   add_friction(constants, motion);
-  if (constants.damping_ratio > 0.0) {
+  if (constants.damping_ratio > 0.0 || constants.stiffness_damping > 0.0) {
     add_dashpot(constants, motion);
   }
   const Lanes about_origin = dyad_[1] - dyad_[2];
@@ -363,6 +365,7 @@ inline unsigned LaneBatch::evaluate(const PlainScene &scene, std::span<const std
                             dashpot.x,
                             dashpot.y,
                             scene.damping_ratio,
+                            scene.stiffness_damping,
                             Lanes::of([&](std::size_t i) { return was_there[i]; }),
                             known[0],
                             known[1],

@@ -90,9 +90,10 @@ void take_law(const BlockSystem &system, const ContactParameters &parameters, st
   const bool b_fixed = b.keeps_its_velocity();
   pair.mass = a_fixed ? b.mass : b_fixed ? a.mass : a.mass * b.mass / (a.mass + b.mass);
   const double smaller_area = a_fixed ? b.area : b_fixed ? a.area : std::min(a.area, b.area);
-  // c' = 2 xi sqrt(k_n m_eff / L_ref), half of it for each side's pieces.
+  // c' = 2 xi sqrt(k_n m_eff / L_ref) + beta k_n, half of it for each side's pieces.
   pair.damping =
-      parameters.damping_ratio * std::sqrt(values.normal_stiffness * pair.mass / std::sqrt(smaller_area));
+      parameters.damping_ratio * std::sqrt(values.normal_stiffness * pair.mass / std::sqrt(smaller_area)) +
+      0.5 * parameters.stiffness_damping * values.normal_stiffness;
 }
 
 } // namespace gcpdda

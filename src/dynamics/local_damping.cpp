@@ -50,4 +50,22 @@ void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forc
   ledger.damping_force += taken;
 }
 
+void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double mass_damping) {
+  const BlockProperties &block = system.properties[row];
+  if (mass_damping == 0.0 || block.keeps_its_velocity()) {
+    return;
+  }
+  const RigidDof &v = system.velocity[row];
+  RigidDof taken{(-mass_damping * block.mass) * v.u, -mass_damping * block.inertia * v.r};
+  if (system.is_deformable(row)) {
+    taken.r = 0.0;
+    Deformation &d = system.deformation_of(row);
+    const Mat2 taken_gradient = -mass_damping * (d.rate * d.second_moment);
+    forces.gradient[system.deformation_begin[row]] += taken_gradient;
+    d.damping_force += taken_gradient;
+  }
+  forces.rigid[row] += taken;
+  system.ledger[row].damping_force += taken;
+}
+
 } // namespace gcpdda

@@ -9,12 +9,14 @@ namespace gcpdda {
 
 SpringTime spring_time(const Scheme &s, double time_step) {
   const double square = time_step * time_step;
+  const double at = 1.0 - s.alpha_f;
+  const double by_old = at * (1.0 - s.gamma) * time_step;
+  const double by_coming = at * s.gamma * time_step;
   if (is_explicit(s)) {
     return {s.trial_velocity * time_step, (s.trial_acceleration + 0.5 * s.alpha_m) * square,
-            0.5 * (1.0 - s.alpha_m) * square};
+            0.5 * (1.0 - s.alpha_m) * square, by_old, by_coming};
   }
-  const double at = 1.0 - s.alpha_f;
-  return {at * time_step, at * (0.5 - s.beta) * square, at * s.beta * square};
+  return {at * time_step, at * (0.5 - s.beta) * square, at * s.beta * square, by_old, by_coming};
 }
 
 AnchorForce anchor_force(std::span<const Anchor> anchors, Vec2 u, const Mat2 &arm) {
@@ -73,10 +75,11 @@ void add_anchor(const Anchor &anchor, double share, Packed &matrix) {
 
 /// Sets the stiffness of the row's anchors on the way.
 BlockMatrix own_matrix(BlockSystem &system, std::size_t row, const Scheme &scheme, double time_step,
-                       Elasticity elasticity, double normal_stiffness) {
+                       Elasticity elasticity, double normal_stiffness, double stiffness_damping) {
   constexpr double anchor_over_block = 100.0;
   const double area = system.properties[row].area;
-  const double coming = spring_time(scheme, time_step).coming;
+  const SpringTime time = spring_time(scheme, time_step);
+  const double coming = time.coming;
   double stiffness = normal_stiffness * std::sqrt(area);
   Packed matrix{};
   add_mass(system, row, 1.0 - scheme.alpha_m, matrix);
@@ -86,10 +89,16 @@ BlockMatrix own_matrix(BlockSystem &system, std::size_t row, const Scheme &schem
     if (elasticity_of(scheme, elasticity) == Elasticity::implicit) {
       add_elasticity(d, coming, matrix);
     }
+    add_elasticity(d, stiffness_damping * time.rate_coming, matrix);
   }
   for (std::size_t k = system.anchor_begin[row]; k < system.anchor_begin[row + 1]; ++k) {
     system.anchor[k].stiffness = anchor_over_block * stiffness;
     add_anchor(system.anchor[k], coming, matrix);
+  }
+  if (const Dashpot *dashpot = system.dashpot_of(row)) {
+    for (std::size_t k = 0; k < matrix.size(); ++k) {
+      matrix[k] += time.rate_coming * dashpot->damping[k];
+    }
   }
   return system.is_deformable(row) ? factorise<6>(matrix) : factorise<3>(matrix);
 }
@@ -120,13 +129,14 @@ HeldAcceleration accelerate_held(const BlockSystem &system, std::size_t row, con
 }
 
 void make_block_matrices(BlockSystem &system, const Scheme &scheme, double time_step, Elasticity elasticity,
-                         double normal_stiffness) {
+                         double normal_stiffness, double stiffness_damping) {
   system.matrix_begin.assign(1, 0);
   system.matrix.clear();
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (!system.properties[row].keeps_its_velocity() &&
-        (system.is_deformable(row) || !system.anchors_of(row).empty())) {
-      system.matrix.push_back(own_matrix(system, row, scheme, time_step, elasticity, normal_stiffness));
+        (system.is_deformable(row) || !system.anchors_of(row).empty() || system.dashpot_of(row) != nullptr)) {
+      system.matrix.push_back(
+          own_matrix(system, row, scheme, time_step, elasticity, normal_stiffness, stiffness_damping));
     }
     system.matrix_begin.push_back(static_cast<std::uint32_t>(system.matrix.size()));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
-// What a block's own matrix holds: its elasticity and the springs of its anchors, taken implicitly.
+// What a block's own matrix holds: its elasticity and viscosity, the springs of its anchors and the dashpots
+// of viscous sides, taken implicitly.
 
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/scheme.hpp"
@@ -14,6 +15,10 @@ struct SpringTime {
   double velocity = 0.0;
   double acceleration = 0.0;
   double coming = 0.0;
+  // And its velocity: q' + rate_acceleration q'' + rate_coming q''_{n+1}. Dashpots taken there lower no limit
+  // of the step; the explicit Hulbert-Chung scheme takes them at t_n.
+  double rate_acceleration = 0.0;
+  double rate_coming = 0.0;
 };
 
 /// t_{n+1-af} for an implicit scheme.

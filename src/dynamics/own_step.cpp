@@ -2,6 +2,7 @@
 
 #include "gcpdda/dynamics/block_matrix.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
+#include "gcpdda/dynamics/viscous_sides.hpp"
 #include "own_springs.hpp"
 
 #include <array>
@@ -16,10 +17,16 @@ struct Step {
   const Scheme &scheme;
   double time_step;
   SpringTime spring;
+  Vec2 wave;                ///< velocity of the one that comes in through viscous sides, m/s
+  double stiffness_damping; ///< s
 
   /// Q is Vec2, RigidDof or Mat2. At the spring's time but for the coming acceleration.
   template <class Q> [[nodiscard]] Q base(const Q &q, const Q &v, const Q &a) const {
     return q + (spring.velocity * v + spring.acceleration * a);
+  }
+  /// And its rate there.
+  template <class Q> [[nodiscard]] Q base_rate(const Q &v, const Q &a) const {
+    return v + spring.rate_acceleration * a;
   }
   template <class Q> [[nodiscard]] Q position(const Q &q, const Q &v, const Q &a, const Q &a_new) const {
     return q + (time_step * v + time_step * time_step * ((0.5 - scheme.beta) * a + scheme.beta * a_new));
@@ -46,9 +53,11 @@ void note_anchors(BlockSystem &system, std::size_t row, const RigidDof &force) {
   ledger.load_work += 0.5 * work(force, system.trial[row] - system.trial_previous[row]);
 }
 
-/// A rigid block held by anchors, in the axes of theta*. Its points at the spring's time are linear about
-/// theta*, which is O(dt^2) away.
-bool step_anchored(BlockSystem &system, std::size_t row, const RigidDof &force, const Step &step) {
+using Dofs = std::array<double, 6>;
+
+/// A rigid block with anchors or a dashpot, in the axes of theta*. Its points at the spring's time are linear
+/// about theta*, which is O(dt^2) away.
+bool step_rigid(BlockSystem &system, std::size_t row, const RigidDof &force, const Step &step) {
   const BlockProperties &p = system.properties[row];
   const RigidDof d = system.displacement[row];
   const RigidDof v = system.velocity[row];
@@ -62,8 +71,19 @@ bool step_anchored(BlockSystem &system, std::size_t row, const RigidDof &force, 
     return {sum.u, force_dof(transposed(turn) * sum.gradient).r};
   };
 
+  const Dashpot *dashpot = system.dashpot_of(row);
+  const auto beyond = [&](const RigidDof &rate) -> RigidDof {
+    if (dashpot == nullptr) {
+      return {};
+    }
+    const Vec2 v_own = transposed(turn)(rate.u);
+    const Dofs f = dashpot_force(*dashpot, {v_own.x, v_own.y, rate.r}, transposed(turn)(step.wave));
+    return {turn(Vec2{f[0], f[1]}), f[2]};
+  };
+
   const RigidDof base = step.base(d, v, a);
-  const RigidDof rest = force + spring_force(base);
+  const RigidDof base_rate = step.base_rate(v, a);
+  const RigidDof rest = force + spring_force(base) + beyond(base_rate);
   const Vec2 u = transposed(turn)(rest.u - step.scheme.alpha_m * p.mass * a.u);
   const auto x = solve<3>(system.matrix[system.matrix_begin[row]],
                           {u.x, u.y, rest.r - step.scheme.alpha_m * p.inertia * a.r});
@@ -73,7 +93,9 @@ bool step_anchored(BlockSystem &system, std::size_t row, const RigidDof &force, 
   if (!is_finite(a_new) || !is_finite(v_new) || !is_finite(d_new)) {
     return false;
   }
-  note_anchors(system, row, spring_force(base + step.spring.coming * a_new));
+  note_anchors(system, row,
+               spring_force(base + step.spring.coming * a_new) +
+                   beyond(base_rate + step.spring.rate_coming * a_new));
   system.acceleration[row] = a_new;
   system.displacement[row] = d_new;
   system.velocity[row] = v_new;
@@ -85,10 +107,9 @@ struct OwnSolution {
   Vec2 u;
   Mat2 gradient;
   Mat2 internal;
+  Mat2 viscous; ///< what beta K adds to it
   AnchorForce anchors;
 };
-
-using Dofs = std::array<double, 6>;
 
 Mat2 gradient_of(const Dofs &x) {
   return motion_matrix({x[2], x[3], x[4], x[5]});
@@ -124,19 +145,37 @@ OwnSolution solve_deformable(const BlockSystem &system, std::size_t row, Vec2 fo
   const Mat2 back = transposed(turn);
   const Vec2 u_base = step.base(system.displacement[row].u, system.velocity[row].u, a);
   const Mat2 f_base = step.base(d.gradient, d.rate, d.acceleration);
-  const AnchorForce held = anchor_force(system.anchors_of(row), u_base, f_base);
+  const Vec2 u_rate = step.base_rate(system.velocity[row].u, a);
+  const Mat2 f_rate = step.base_rate(d.rate, d.acceleration);
+  const Dashpot *dashpot = system.dashpot_of(row);
+  const auto beyond = [&](Vec2 u, const Mat2 &f) -> AnchorForce {
+    if (dashpot == nullptr) {
+      return {};
+    }
+    const Vec2 v = back(u);
+    const GradientDof g = motion_dof(back * f);
+    const Dofs x = dashpot_force(*dashpot, {v.x, v.y, g.r, g.ex, g.ey, g.gxy}, back(step.wave));
+    return {turn(Vec2{x[0], x[1]}), turn * force_matrix({x[2], x[3], x[4], x[5]})};
+  };
+  const auto with_beyond = [&](AnchorForce sum, Vec2 u, const Mat2 &f) {
+    const AnchorForce more = beyond(u, f);
+    return AnchorForce{sum.u + more.u, sum.gradient + more.gradient};
+  };
+  const AnchorForce held = with_beyond(anchor_force(system.anchors_of(row), u_base, f_base), u_rate, f_rate);
   Mat2 stress = back * elastic_force(d, d.trial); // in turning axes, at the spring's time so far known
   if (implicit) {
     stress += elastic_stress(d, back * (f_base - d.trial));
   }
+  Mat2 viscous = step.stiffness_damping * elastic_stress(d, back * f_rate);
 
   const double am = step.scheme.alpha_m;
   const Vec2 h_u = back(force + held.u - am * system.properties[row].mass * a);
-  const GradientDof h =
-      force_dof(back * (gradient_force + held.gradient - am * (d.acceleration * d.second_moment)) - stress);
+  const GradientDof h = force_dof(
+      back * (gradient_force + held.gradient - am * (d.acceleration * d.second_moment)) - stress - viscous);
   Dofs x = solve<6>(matrix, {h_u.x, h_u.y, h.r, h.ex, h.ey, h.gxy});
   if (implicit) {
-    const double no_torque = remove_torque(matrix, d, step.spring.coming, back * d.trial, stress, x);
+    const double coming = step.spring.coming + step.stiffness_damping * step.spring.rate_coming;
+    const double no_torque = remove_torque(matrix, d, coming, back * d.trial, stress + viscous, x);
     stress += step.spring.coming * elastic_stress(d, gradient_of(x)) + Mat2{0.0, -no_torque, no_torque, 0.0};
   }
 
@@ -144,8 +183,12 @@ OwnSolution solve_deformable(const BlockSystem &system, std::size_t row, Vec2 fo
   s.u = turn(Vec2{x[0], x[1]});
   s.gradient = turn * gradient_of(x);
   s.internal = turn * stress;
-  s.anchors = anchor_force(system.anchors_of(row), u_base + step.spring.coming * s.u,
-                           f_base + step.spring.coming * s.gradient);
+  viscous += (step.stiffness_damping * step.spring.rate_coming) * elastic_stress(d, gradient_of(x));
+  s.viscous = turn * viscous;
+  s.anchors =
+      with_beyond(anchor_force(system.anchors_of(row), u_base + step.spring.coming * s.u,
+                               f_base + step.spring.coming * s.gradient),
+                  u_rate + step.spring.rate_coming * s.u, f_rate + step.spring.rate_coming * s.gradient);
   return s;
 }
 
@@ -162,10 +205,14 @@ bool step_deformable(BlockSystem &system, std::size_t row, Vec2 force, const Mat
       !is_finite(f_new) || !is_finite(rate_new) || determinant(f_new) <= 0.0) {
     return false;
   }
-  if (!system.anchors_of(row).empty()) {
+  if (!system.anchors_of(row).empty() || system.dashpot_of(row) != nullptr) {
     note_anchors(system, row, {s.anchors.u, 0.0});
     system.ledger[row].load_work += 0.5 * contract(s.anchors.gradient, d.trial - d.trial_previous);
     d.anchor_force = s.anchors.gradient;
+  }
+  if (step.stiffness_damping > 0.0) { // the other half goes with the dashpots of contacts
+    d.damping_force += -1.0 * s.viscous;
+    system.ledger[row].damping_work -= 0.5 * contract(s.viscous, d.trial - d.trial_previous);
   }
   d.internal = s.internal;
   const double turned = angle_between(d.gradient, f_new);
@@ -182,9 +229,9 @@ bool step_deformable(BlockSystem &system, std::size_t row, Vec2 force, const Mat
 
 bool step_by_own_matrix(BlockSystem &system, std::size_t row, const BlockForces &forces, const Scheme &scheme,
                         double time_step, Elasticity elasticity) {
-  const Step step{scheme, time_step, spring_time(scheme, time_step)};
+  const Step step{scheme, time_step, spring_time(scheme, time_step), forces.wave, forces.stiffness_damping};
   if (!system.is_deformable(row)) {
-    return step_anchored(system, row, forces.rigid[row], step);
+    return step_rigid(system, row, forces.rigid[row], step);
   }
   return step_deformable(system, row, forces.rigid[row].u, forces.gradient[system.deformation_begin[row]],
                          step, elasticity_of(scheme, elasticity) == Elasticity::implicit);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The step of a block with a matrix of its own: deformable, or held by anchors.
+// The step of a block with a matrix of its own: deformable, or with anchors or dashpots.
 
 #include "gcpdda/dynamics/integrate.hpp"
 

@@ -114,8 +114,16 @@ void add_rollers(const SceneSource &source, Scene &scene);
 /// The sides of the region where the in-situ stress, which has been read, acts from outside.
 void read_stressed_sides(const SceneSource &source, Scene &scene);
 
+/// The viscous sides of [earthquake], the rest of which has been read.
+void read_viscous_sides(const SceneSource &source, Scene &scene);
+
 /// @param scene  with run and materials
 InSituStress read_in_situ(const SceneSource &source, const Scene &scene);
+
+/// [earthquake] without its record, which is in a file.
+/// @param scene  with its stages
+/// @param scene_file  as the user gave it: the record's path starts from its folder
+Earthquake read_earthquake(const SceneSource &source, const Scene &scene, const std::string &scene_file);
 
 /// @param scene  with all its blocks
 std::vector<Monitor> read_monitors(const SceneSource &source, const Scene &scene);

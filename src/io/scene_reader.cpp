@@ -118,6 +118,7 @@ void name_from_everywhere(const Scene &scene, toml::table &root) {
     }
   };
   name(scene.block_file.path, root["blocks"]["file"].node());
+  name(scene.earthquake.file, root["earthquake"]["record"].node());
   for (std::size_t i = 0; i < scene.region.maps.size(); ++i) {
     name(scene.region.maps[i].path, root["joint_map"][i]["file"].node());
   }
@@ -143,6 +144,8 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     reading.scene.in_situ = read_in_situ({*root, faulty, faults}, reading.scene);
     read_stressed_sides({*root, faulty, faults}, reading.scene);
     reading.scene.stages = read_stages({*root, faulty, faults}, reading.scene);
+    reading.scene.earthquake = read_earthquake({*root, faulty, faults}, reading.scene, file);
+    read_viscous_sides({*root, faulty, faults}, reading.scene);
     read_changes({text, file, sets}, faults, reading.scene);
     reading.diagnostics = faults.sorted();
     if (!has_errors(reading.diagnostics)) {

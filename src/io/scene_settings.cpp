@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace gcpdda::scene_text {
@@ -48,6 +49,28 @@ void check_duration(const SceneSource &source, const Section &run) {
 
 } // namespace
 
+namespace {
+
+void read_rayleigh(const SceneSource &source, const Section &run, RunSettings &settings) {
+  const auto rayleigh = run.table("rayleigh");
+  if (!rayleigh) {
+    return;
+  }
+  double ratio = 0.0;
+  double frequency = 0.0;
+  rayleigh->read("ratio", ratio);
+  rayleigh->read("frequency", frequency);
+  const double omega = 2.0 * std::numbers::pi * frequency;
+  settings.rayleigh = omega > 0.0 ? Rayleigh{omega * ratio, ratio / omega} : Rayleigh{};
+  if (const toml::node *contact = run.given("contact_damping")) {
+    fault(source, *contact, run.subject("contact_damping") + " has no meaning beside rayleigh",
+          "the dashpots of joints follow from it", "leave one of them out");
+  }
+  settings.contact_damping = 0.0;
+}
+
+} // namespace
+
 RunSettings read_run(const SceneSource &source) {
   const Section run = section(source.root, "run", source.faulty);
   RunSettings settings;
@@ -68,6 +91,7 @@ RunSettings read_run(const SceneSource &source) {
   run.read("accepted_error", settings.accepted_error);
   run.read_choice("run", "initial_friction", settings.initial_friction);
   run.read("contact_damping", settings.contact_damping);
+  read_rayleigh(source, run, settings);
   run.read("local_damping", settings.local_damping);
   run.read_choice("run", "elasticity", settings.elasticity);
   settings.plane_strain = run.text("plane").value_or("strain") == "strain";

@@ -1,10 +1,12 @@
 // Sides of the region that blocks may slide along but not move through or away sideways: rollers; and sides
-// on which the in-situ stress acts from outside.
+// on which the in-situ stress acts from outside; and viscous ones.
 //
 // Rollers: a fixed block lies along such a side, as along a fixed one, and its edges have a law without
 // friction and cohesion, which is the weaker one of any two: the side pushes along its normal and lets go
 // along itself. Like every contact it only pushes, and yields by its normal stiffness, which is that of the
 // default law.
+//
+// Viscous sides (dynamics/viscous_sides.hpp) let waves out.
 //
 // Stress: the traction -C n of the in-situ compression C on the edges that lie on the side at t = 0. It stays
 // what it is whatever moves, as the weight of far rock does.
@@ -68,13 +70,14 @@ struct NamedSide {
   const toml::node *node;
 };
 
-std::vector<NamedSide> sides_in(const SceneSource &source, const Scene &scene, const char *key) {
+std::vector<NamedSide> sides_in(const SceneSource &source, const Scene &scene, const char *key,
+                                const char *table = "region") {
   std::vector<NamedSide> sides;
   if (!source.root.contains("region") || !scene.region.present()) {
     return sides;
   }
-  const toml::node *given = section(source.root, "region", source.faulty).sound(key);
-  const std::vector<std::string> words = words_of(find_key("region", key)->choices);
+  const toml::node *given = section(source.root, table, source.faulty).sound(key);
+  const std::vector<std::string> words = words_of(find_key(table, key)->choices);
   for (std::size_t i = 0; given != nullptr && i < given->as_array()->size(); ++i) {
     const toml::node &node = (*given->as_array())[i];
     const std::string &word = node.as_string()->get();
@@ -146,6 +149,26 @@ void read_stressed_sides(const SceneSource &source, Scene &scene) {
     } else {
       scene.in_situ.boundaries.push_back(boundary_along(named.side, bounding_box(scene.region.outline)));
     }
+  }
+}
+
+void read_viscous_sides(const SceneSource &source, Scene &scene) {
+  Earthquake &earthquake = scene.earthquake;
+  const std::vector<NamedSide> rollers = sides_in(source, scene, "roller");
+  for (const NamedSide &named : sides_in(source, scene, "viscous", "earthquake")) {
+    const bool is_roller = std::any_of(rollers.begin(), rollers.end(),
+                                       [&](const NamedSide &roller) { return roller.side == named.side; });
+    if (earthquake.stage <= 0 && (is_fixed(scene, named) || is_roller)) {
+      source.faults.add(named.node->source(),
+                        fmt::format("the {} side of [region] is {} and viscous from the start", named.word,
+                                    is_roller ? "a roller" : "fixed"),
+                        "what holds it lets no wave out, and 'stage' names no stage that would take it away",
+                        "name a later stage as 'stage' of [earthquake]");
+    }
+    const Boundary boundary = boundary_along(named.side, bounding_box(scene.region.outline));
+    const bool is_bottom = named.side == Side::bottom; // where the wave comes in: the first one
+    earthquake.is_compliant = earthquake.is_compliant || is_bottom;
+    earthquake.viscous.insert(is_bottom ? earthquake.viscous.begin() : earthquake.viscous.end(), boundary);
   }
 }
 

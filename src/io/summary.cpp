@@ -73,8 +73,12 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
       .add("setup_wall_s", summary.setup_wall_s)
       .add("output_wall_s", summary.output_wall_s)
       .add("total_wall_s", summary.total_wall_s)
-      .add("max_overlap", summary.max_overlap)
-      .add("energy", energy_object(summary.energy))
+      .add("max_overlap", summary.max_overlap);
+  if (summary.permanent_displacement >= 0.0) {
+    object.add("permanent_displacement", summary.permanent_displacement)
+        .add("permanent_block", summary.permanent_block);
+  }
+  object.add("energy", energy_object(summary.energy))
       .add("imbalance", summary.imbalance)
       .add("bytes_sent_per_step", summary.bytes_sent_per_step)
       .add("messages_per_step", summary.messages_per_step)

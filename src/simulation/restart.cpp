@@ -151,6 +151,14 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
     const InSituStress &stress = scene.in_situ;
     return std::tuple(stress.present, stress.at_level, stress.growth, stress.down, stress.level);
   };
+  const auto ground = [](const Scene &scene) {
+    const Earthquake &quake = scene.earthquake;
+    return std::tuple(quake.shakes(), quake.quantity, quake.baseline, quake.scale, quake.start, quake.stage,
+                      quake.viscous.size(), quake.is_compliant);
+  };
+  if (ground(before) != ground(after)) {
+    faults.push_back(refused(after.earthquake.where, "[earthquake]", belongs_to_state));
+  }
   if (in_situ(before) != in_situ(after)) {
     faults.push_back(refused(after.in_situ.where, "[in_situ]", "blocks have their shapes by it"));
   }

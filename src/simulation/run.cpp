@@ -430,6 +430,10 @@ private:
     double max_overlap = counters.max_overlap;
     communicator_.max(std::span(&max_overlap, 1));
     summary.max_overlap = max_overlap;
+    if (const auto farthest = simulation_.permanent_displacement()) {
+      summary.permanent_displacement = farthest->distance;
+      summary.permanent_block = block_name(simulation_.scene(), farthest->block);
+    }
     summary.energy = energy_;
     if (simulation_.restored()) {
       summary.restarted_at = simulation_.restored()->facts.time;

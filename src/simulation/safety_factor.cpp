@@ -311,6 +311,7 @@ private:
 } // namespace
 
 int find_safety_factor(const Communicator &communicator, Scene scene, const SafetyOptions &options) {
+  scene.earthquake = {}; // the factor is that of blocks at rest
   if (scene.stages.empty()) {
     Stage &settle = scene.stages.emplace_back();
     settle.name = "settle";

@@ -73,7 +73,7 @@ double agreed_median(const Communicator &communicator, std::span<const double> s
 Simulation::Simulation(const Communicator &communicator, Scene scene,
                        const std::filesystem::path &restart_from)
     : communicator_(communicator), scene_(std::move(scene)), balance_(communicator), ghosts_(communicator),
-      contacts_({scene_.joints, scene_.run.contact_damping, scene_.run.potential}),
+      contacts_(contact_parameters(scene_)),
       scheme_(make_scheme(scene_.run.scheme, scene_.run.spectral_radius, scene_.run.contact_time)) {
   for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
     if (!scene_.blocks[i].velocity_table.empty()) {
@@ -95,8 +95,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
   find_bound();
   plan_stage();
   warn_of_lively_impacts();
-  make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity,
-                      stiffest_joint(scene_.joints));
+  prepare_matrices();
   refresh(restored_ ? std::move(restored_->memory) : std::vector<RegionRecord>());
   warn_of_driven_paths(scene_, blocks_, notes_);
   if (restored_) {
@@ -110,6 +109,8 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
 // Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
 void Simulation::distribute(const std::filesystem::path &restart_from) {
   stop_on_errors(open_block_file(communicator_, scene_));
+  open_earthquake();
+  stop_on_errors(notes_);
   std::vector<SceneBlock> slab = load_slab(cut_region());
   load_sides(slab);
   note_groups(slab);
@@ -178,7 +179,7 @@ void Simulation::resolve_stiffness(std::span<const SceneBlock> slab) {
   survey.high = agreed_max(communicator_, survey.high);
   survey.low = -agreed_max(communicator_, -survey.low);
   gcpdda::resolve_stiffness(scene_, survey, agreed_median(communicator_, survey.sizes));
-  contacts_ = ContactForces({scene_.joints, scene_.run.contact_damping, scene_.run.potential});
+  contacts_ = ContactForces(contact_parameters(scene_));
 }
 
 // A point belongs to the block with the smallest id that holds it.
@@ -261,7 +262,7 @@ void Simulation::find_laws_on_edges(std::span<const SceneBlock> slab) {
 // grow.
 void Simulation::warn_of_lively_impacts() {
   const double per_step = plan_.time_step * bound_.omega_max;
-  if (scene_.run.contact_damping == 0.0 && per_step > 0.5 * (1.0 + 1e-9)) {
+  if (!contacts_.parameters().has_dashpots() && per_step > 0.5 * (1.0 + 1e-9)) {
     notes_.push_back(
         {Severity::warning,
          {},
@@ -314,6 +315,9 @@ void Simulation::take_blocks(std::vector<SceneBlock> slab) {
     }
     append_block(block.fixed ? fixed : blocks_, BlockId{first + static_cast<std::int64_t>(k)}, block,
                  material, choice.kind, scene_.run.plane_strain);
+    if (!block.fixed && !scene_.earthquake.viscous.empty()) {
+      add_dashpot(block, material);
+    }
   }
   fidelity_.num_asked = agreed_sum(communicator_, fidelity_.num_asked);
   fidelity_.num_rigid = agreed_sum(communicator_, fidelity_.num_rigid);
@@ -379,7 +383,9 @@ void Simulation::find_bound() {
 
   // In a system of blocks the fastest mode is damped more than one joint.
   const double modal_damping_factor = fidelity_.num_deformable > 0 ? 2.4 : 1.4;
-  bound_.damping_ratio = modal_damping_factor * scene_.run.contact_damping;
+  const double joint_ratio = modal_damping_factor * scene_.run.contact_damping;
+  const double undamped_limit = stability_limit(scheme_, joint_ratio);
+  bound_.damping_ratio = joint_ratio + 0.5 * scene_.run.rayleigh.stiffness_damping * bound_.omega_max;
   bound_.limit = stability_limit(scheme_, bound_.damping_ratio);
   if (bound_.limit <= 0.0) {
     bound_.always_unstable = true;
@@ -399,6 +405,7 @@ void Simulation::find_bound() {
   bound_.safety = settles ? std::max(scene_.run.safety, safety_to_settle) : scene_.run.safety;
   bound_.time_step = bound_.omega_max > 0.0 ? bound_.safety * bound_.limit / bound_.omega_max
                                             : std::numeric_limits<double>::infinity();
+  bound_.undamped_step = bound_.time_step * undamped_limit / bound_.limit;
 }
 
 } // namespace gcpdda

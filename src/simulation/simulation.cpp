@@ -215,7 +215,10 @@ void Simulation::gather_forces() {
   const auto scope = phases_.measure(Phase::forces);
   forces_.rigid.resize(blocks_.num_owned);
   forces_.gradient.resize(blocks_.deformation.size());
+  forces_.wave = incoming_wave();
+  forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
   const Vec2 gravity_now = gravity();
+  const Vec2 shaking = ground_acceleration();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     add_half_works(row);
     BlockLedger &ledger = blocks_.ledger[row];
@@ -230,16 +233,17 @@ void Simulation::gather_forces() {
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const WaterLoad water =
         scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -gravity_now.y);
-    gather_block(row, gravity_now, water);
+    gather_block(row, gravity_now, shaking, water);
     if (blocks_.is_deformable(row)) {
       gather_gradient(row, water);
     }
+    apply_mass_damping(blocks_, row, forces_, scene_.run.rayleigh.mass_damping);
     apply_local_damping(blocks_, row, forces_, local_damping_);
     add_half_works(row);
   }
 }
 
-void Simulation::gather_block(std::size_t row, Vec2 gravity_now, const WaterLoad &water) {
+void Simulation::gather_block(std::size_t row, Vec2 gravity_now, Vec2 shaking, const WaterLoad &water) {
   const BlockProperties &block = blocks_.properties[row];
   BlockLedger &ledger = blocks_.ledger[row];
   if (block.keeps_its_velocity()) {
@@ -253,7 +257,7 @@ void Simulation::gather_block(std::size_t row, Vec2 gravity_now, const WaterLoad
     const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
     ledger.load_force += {load.force, cross(arm, load.force)};
   }
-  ledger.load_force += {water.force, water.torque()};
+  ledger.load_force += {water.force - block.mass * shaking, water.torque()};
   forces_.rigid[row] += ledger.load_force;
   forces_.rigid[row].u += ledger.gravity_force;
 }

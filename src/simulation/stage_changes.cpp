@@ -177,7 +177,7 @@ void Simulation::adopt(const Scene &after) {
     }
   }
   scene_.run = after.run;
-  contacts_ = ContactForces({scene_.joints, scene_.run.contact_damping, scene_.run.potential});
+  contacts_ = ContactForces(contact_parameters(scene_));
   scene_.water = after.water;
   scene_.supports = after.supports;
   scene_.bolts = after.bolts;
@@ -289,21 +289,21 @@ std::vector<std::int64_t> Simulation::select_blocks(const BlockSelection &select
   return all;
 }
 
-void Simulation::excavate(const Stage &stage) {
-  const std::vector<std::int64_t> ids = select_blocks(stage.excavated);
-  if (stage.relax > 0.0) {
-    unload(stage, ids);
+/// @param relax  s, over which their forces fall to zero; infinite where they stay
+void Simulation::excavate(const std::vector<std::int64_t> &ids, double relax) {
+  if (relax > 0.0) {
+    unload(ids, relax);
   }
   stage_.removed.insert(stage_.removed.end(), ids.begin(), ids.end());
   std::sort(stage_.removed.begin(), stage_.removed.end());
 }
 
 // What the excavated blocks put on each of the others, summed in the order of their ids.
-void Simulation::unload(const Stage &stage, const std::vector<std::int64_t> &removed) {
+void Simulation::unload(const std::vector<std::int64_t> &removed, double duration) {
   std::vector<Unloading> mine;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const BlockProperties &block = blocks_.properties[row];
-    Unloading load{block.id.value, {}, {}, time(), stage.relax};
+    Unloading load{block.id.value, {}, {}, time(), duration};
     bool touches = false;
     for (std::uint32_t c = candidates_.contact_begin[row]; c < candidates_.contact_begin[row + 1]; ++c) {
       const auto [number, is_lower] = candidates_.block_contacts[c];

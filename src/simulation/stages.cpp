@@ -125,8 +125,9 @@ void Simulation::look_at_stage() {
       acting > 0.0 ? unbalanced / acting : 0.0, motion, overlap, acting, kinetic.value(), moved};
   const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
   stage_.verdict = judge(stage, look, stage_.memory);
-  const bool unloads = std::any_of(stage_.unloading.begin(), stage_.unloading.end(),
-                                   [&](const Unloading &u) { return time() < u.begin + u.duration; });
+  const bool unloads = std::any_of(stage_.unloading.begin(), stage_.unloading.end(), [&](const Unloading &u) {
+    return std::isfinite(u.duration) && time() < u.begin + u.duration;
+  });
   if (unloads || time() < scene_.run.gravity_ramp) { // the loads are not there yet
     stage_.verdict = Verdict::undecided;
   }
@@ -222,16 +223,21 @@ void Simulation::begin_next_stage() {
   plan_.num_steps = 0;
 
   const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
-  if (stage.kind == StageKind::excavate) {
+  const bool takes_away = stage.kind == StageKind::excavate || opens_viscous_sides();
+  if (takes_away) {
     refresh(remembered_contacts());
     evaluate_still();
-    excavate(stage);
+    if (stage.kind == StageKind::excavate) {
+      excavate(select_blocks(stage.excavated), stage.relax);
+    } else {
+      excavate(held_beyond_viscous_sides(), std::numeric_limits<double>::infinity());
+    }
   }
   std::vector<RegionRecord> memory = remembered_contacts();
   std::erase_if(memory, [&](const RegionRecord &record) {
     return is_removed(record.lower.value) || is_removed(record.higher.value);
   });
-  if (stage.kind == StageKind::excavate) {
+  if (takes_away) {
     remove_blocks(stage_.removed);
   }
   bolts_.share(communicator_);
@@ -243,8 +249,7 @@ void Simulation::begin_next_stage() {
   scale_masses();
   find_bound();
   plan_stage();
-  make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity,
-                      stiffest_joint(scene_.joints));
+  prepare_matrices();
   refresh(std::move(memory));
   evaluate_still();
   load_time_ = time();

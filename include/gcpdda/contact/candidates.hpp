@@ -78,6 +78,9 @@ struct ContactParameters {
   JointLaws joints;
   double damping_ratio = 0.0; ///< xi
   PotentialKind potential = PotentialKind::exact;
+  double stiffness_damping = 0.0; ///< beta, s: dashpots of beta times the springs besides those of xi
+
+  [[nodiscard]] bool has_dashpots() const { return damping_ratio > 0.0 || stiffness_damping > 0.0; }
 };
 
 /// Box of every row at t_n; a mobile block's is inflated by half the skin.

@@ -14,6 +14,8 @@ struct BlockForces {
   std::vector<RigidDof> rigid; ///< (num_owned); r is not used for deformable rows
   /// int t X^T of deformable rows (N), by entry of BlockSystem::deformation; entries of other rows unused.
   std::vector<Mat2> gradient;
+  Vec2 wave{};                    ///< velocity of the wave that comes in through viscous sides, m/s
+  double stiffness_damping = 0.0; ///< beta of Rayleigh damping, of the blocks' own elasticity, s
 };
 
 /// Motion of a block that follows a velocity table: its velocity and the exact integral of it.
@@ -61,6 +63,11 @@ double moved_since_refresh(const BlockSystem &system, std::size_t row);
 /// and that of anchors of the last step count in f. What is taken is added to the ledger's damping forces.
 /// Driven blocks are left alone.
 void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double share);
+
+/// Mass-proportional damping of one owned row, f - alpha M v_n; what is taken is added to the ledger's
+/// damping forces. Driven blocks are left alone.
+/// @param mass_damping  alpha, 1/s
+void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double mass_damping);
 
 /// Advance rows [0, num_owned) from t_n to t_{n+1} under their total forces: one system each, diagonal for a
 /// rigid block without fixed points, else by its own factorised matrix. A block whose new state is not finite

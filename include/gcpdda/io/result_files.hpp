@@ -182,6 +182,8 @@ struct RunSummary {
   double output_wall_s = 0.0;
   double total_wall_s = 0.0;
   double max_overlap = 0.0;
+  double permanent_displacement = -1.0; ///< m, largest since the ground began to shake; negative: it did not
+  std::string permanent_block;          ///< the one that has moved so far
   EnergyRow energy;
   double imbalance = 1.0;
   double bytes_sent_per_step = 0.0;

@@ -100,6 +100,15 @@ struct Anchor {
   Vec2 held;              ///< displacement of the spring's fixed end from the point at t = 0, m
 };
 
+/// The rock beyond a block's edges on viscous sides (dynamics/viscous_sides.hpp), over its degrees of freedom
+/// in axes that turn with it.
+struct Dashpot {
+  std::array<double, 21> damping{}; ///< D, lower triangle by rows; N s/m and so on
+  std::array<std::array<double, 2>, 6>
+      wave{};            ///< what a wave that comes in with velocity v pushes is this times v
+  double is_awake = 0.0; ///< 1 once it acts
+};
+
 /// Constant factorisation L D L^T of a block's own matrix over its degrees of freedom (u, v, r, eps_x, eps_y,
 /// gamma_xy) in axes that turn with it; a rigid block uses the first three. Row by row below the diagonal of
 /// L, D on it.
@@ -161,12 +170,15 @@ struct BlockSystem {
   // What only some blocks have, flat in the same way: row i owns [begin[i], begin[i + 1]).
   std::vector<std::uint32_t> deformation_begin{0}; ///< one entry for a deformable block, none for others
   std::vector<Deformation> deformation;
-  std::vector<std::uint32_t> matrix_begin{0}; ///< one entry for deformable blocks and those with anchors
+  std::vector<std::uint32_t> matrix_begin{
+      0}; ///< one entry for deformable blocks and those with anchors or dashpots
   std::vector<BlockMatrix> matrix;
   std::vector<std::uint32_t> load_begin{0};
   std::vector<MaterialLoad> load;
   std::vector<std::uint32_t> anchor_begin{0};
   std::vector<Anchor> anchor;
+  std::vector<std::uint32_t> dashpot_begin{0}; ///< one entry for blocks on viscous sides
+  std::vector<Dashpot> dashpot;
 
   // Derived from the trial configuration, see pose().
   std::vector<Vec2> trial_centroid;
@@ -199,6 +211,12 @@ struct BlockSystem {
     return {anchor.data() + anchor_begin[row], anchor_begin[row + 1] - anchor_begin[row]};
   }
 
+  /// The row's dashpot where it acts; null where there is none.
+  [[nodiscard]] const Dashpot *dashpot_of(std::size_t row) const {
+    const std::uint32_t at = dashpot_begin[row];
+    return at == dashpot_begin[row + 1] || dashpot[at].is_awake == 0.0 ? nullptr : &dashpot[at];
+  }
+
   template <class T>
   [[nodiscard]] std::span<const T> of_row(const std::vector<T> &per_vertex, std::size_t row) const {
     return {per_vertex.data() + vertex_begin[row], num_vertices(row)};
@@ -228,7 +246,8 @@ struct BlockSystem {
                            std::make_tuple(&BlockSystem::deformation_begin, &BlockSystem::deformation),
                            std::make_tuple(&BlockSystem::matrix_begin, &BlockSystem::matrix),
                            std::make_tuple(&BlockSystem::load_begin, &BlockSystem::load),
-                           std::make_tuple(&BlockSystem::anchor_begin, &BlockSystem::anchor));
+                           std::make_tuple(&BlockSystem::anchor_begin, &BlockSystem::anchor),
+                           std::make_tuple(&BlockSystem::dashpot_begin, &BlockSystem::dashpot));
   }
 };
 

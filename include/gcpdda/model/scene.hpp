@@ -2,6 +2,7 @@
 
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/model/earthquake.hpp"
 #include "gcpdda/model/in_situ.hpp"
 #include "gcpdda/model/joint_law.hpp"
 #include "gcpdda/model/rock_region.hpp"
@@ -33,6 +34,14 @@ struct Material {
   double poissons_ratio = 0.0;
 };
 
+/// Rayleigh damping C = alpha M + beta K: the ratio of a motion of frequency f is alpha/(4 pi f) + beta pi f.
+struct Rayleigh {
+  double mass_damping = 0.0;      ///< alpha, 1/s
+  double stiffness_damping = 0.0; ///< beta, s
+
+  [[nodiscard]] bool present() const { return mass_damping > 0.0; }
+};
+
 struct RunSettings {
   double duration = 0.0; ///< s
   Vec2 gravity{0.0, -9.81};
@@ -47,6 +56,7 @@ struct RunSettings {
   double accepted_error = 0.01;
   InitialFriction initial_friction = InitialFriction::consistent;
   double contact_damping = 0.05; ///< ratio xi
+  Rayleigh rayleigh{};           ///< without contact_damping
   double local_damping = 0.0;    ///< share of the net force taken against the motion; static problems only
   bool plane_strain = true;
   Elasticity elasticity = Elasticity::implicit;
@@ -153,6 +163,7 @@ struct Scene {
   std::vector<SupportType> supports;
   std::vector<Bolt> bolts; ///< single ones, then those of patterns, in file order
   InSituStress in_situ;
+  Earthquake earthquake;
   std::vector<SceneBlock> blocks;                   ///< of the scene file, the first BlockIds
   std::vector<BrickGenerator> generators;           ///< the next ones
   BlockFile block_file;                             ///< after them

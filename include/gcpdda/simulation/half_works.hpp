@@ -28,9 +28,9 @@ inline HalfWorks half_works(const BlockSystem &system, std::size_t row) {
   return half;
 }
 
-/// The same for fixed points, whose force is known only after the step it acts in.
+/// The same for fixed points and viscous sides, whose force is known only after the step it acts in.
 inline double anchor_half_work(const BlockSystem &system, std::size_t row) {
-  if (system.anchors_of(row).empty()) {
+  if (system.anchors_of(row).empty() && system.dashpot_of(row) == nullptr) {
     return 0.0;
   }
   double half = 0.5 * work(system.ledger[row].anchor_force, system.trial[row] - system.trial_previous[row]);

@@ -3,6 +3,7 @@
 #include "gcpdda/base/phase_timer.hpp"
 #include "gcpdda/contact/contact_forces.hpp"
 #include "gcpdda/contact/in_situ.hpp"
+#include "gcpdda/dynamics/ground_motion.hpp"
 #include "gcpdda/dynamics/integrate.hpp"
 #include "gcpdda/dynamics/scheme.hpp"
 #include "gcpdda/dynamics/water_pressure.hpp"
@@ -63,6 +64,7 @@ struct StepBound {
   double limit = 2.0;     ///< stable W of scheme and damping; 2 stands in where every W is unstable
   bool always_unstable = false;
   double safety = 0.0;        ///< of run.safety, or longer steps where a stage settles
+  double undamped_step = 0.0; ///< the step without Rayleigh damping, s
   double time_step = 0.0;     ///< safety * limit / omega_max, s
   double damping_ratio = 0.0; ///< modal ratio the limit was computed with
   std::int64_t block = -1;    ///< the one that sets omega_max; the first of several
@@ -77,6 +79,17 @@ struct FidelityReport {
   double worst_rigid = 0.0;      ///< largest share of compliance a rigid block leaves out
   double worst_deformable = 0.0; ///< what the deformable ones would leave out at most
 };
+
+/// How far the block is that has gone farthest; of several the one with the smallest id.
+struct FarthestBlock {
+  double distance = 0.0; ///< of its centroid, m
+  std::int64_t block = 0;
+};
+
+/// What contacts take from a scene.
+inline ContactParameters contact_parameters(const Scene &scene) {
+  return {scene.joints, scene.run.contact_damping, scene.run.potential, scene.run.rayleigh.stiffness_damping};
+}
 
 /// One run in memory: the state of this rank's blocks and the step. Construction distributes the blocks and
 /// finds the consistent initial state; all public members are collective unless const.
@@ -143,6 +156,9 @@ public:
   [[nodiscard]] const Diagnostics &notes() const { return notes_; }
   /// What the run so far has to warn of, the same on all ranks.
   [[nodiscard]] Diagnostics warnings() const;
+  /// Motion against the ground since the stage began in which it shakes, or since t = 0 in a scene without
+  /// stages; nothing in other stages. Collective.
+  [[nodiscard]] std::optional<FarthestBlock> permanent_displacement() const;
   /// This rank writes what is known of the pair: one rank for each pair.
   [[nodiscard]] bool counts_here(const CandidatePair &pair) const;
   [[nodiscard]] std::int64_t num_blocks() const { return gcpdda::num_blocks(scene_); }
@@ -185,8 +201,8 @@ private:
   void adopt_block(std::int64_t id, const SceneBlock &before, const SceneBlock &after);
   void free_block(std::int64_t id, const SceneBlock &block);
   [[nodiscard]] std::vector<std::int64_t> select_blocks(const BlockSelection &selection) const;
-  void excavate(const Stage &stage);
-  void unload(const Stage &stage, const std::vector<std::int64_t> &removed);
+  void excavate(const std::vector<std::int64_t> &ids, double relax);
+  void unload(const std::vector<std::int64_t> &removed, double duration);
   void remove_blocks(const std::vector<std::int64_t> &ids);
   [[nodiscard]] Unloading unloading_of(BlockId block) const;
   void distribute(const std::filesystem::path &restart_from);
@@ -206,6 +222,15 @@ private:
   void find_bound();
   [[nodiscard]] double frequency_bound_of(std::size_t row, std::span<const PointSpring> springs) const;
   [[nodiscard]] Vec2 gravity() const;
+  void open_earthquake();
+  [[nodiscard]] double shaking_since() const;
+  [[nodiscard]] Vec2 ground_acceleration() const;
+  [[nodiscard]] Vec2 incoming_wave() const;
+  void add_dashpot(const SceneBlock &block, const Material &material);
+  void wake_dashpots();
+  [[nodiscard]] bool opens_viscous_sides() const;
+  [[nodiscard]] std::vector<std::int64_t> held_beyond_viscous_sides() const;
+  void prepare_matrices();
   void find_initial_state();
   void check_bonds();
   void check_initial_overlaps();
@@ -228,7 +253,7 @@ private:
   void evaluate_bolts();
   void take(const ForceReport &report);
   void gather_forces();
-  void gather_block(std::size_t row, Vec2 gravity_now, const WaterLoad &water);
+  void gather_block(std::size_t row, Vec2 gravity_now, Vec2 shaking, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);
   void add_half_works(std::size_t row);
   void report();
@@ -250,6 +275,7 @@ private:
   BlockForces forces_; ///< at the last evaluation
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
+  GroundMotion ground_;
   FidelityReport fidelity_;
   Scheme scheme_;
   StepBound bound_;

@@ -1,0 +1,154 @@
+#include "gcpdda/io/record_file.hpp"
+
+#include "gcpdda/base/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <system_error>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr double largest_number = 1e9;
+constexpr std::size_t most_faults = 20;
+constexpr std::size_t most_rows = 10'000'000;
+
+std::optional<double> to_number(std::string_view text) {
+  text.remove_prefix(text.starts_with('+') ? 1 : 0);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size();
+  return whole && std::abs(value) <= largest_number ? std::optional(value) : std::nullopt;
+}
+
+class RecordReader {
+public:
+  explicit RecordReader(const std::string &path) : path_(&path) {}
+
+  RecordReading read(std::string_view text) {
+    int line = 0;
+    for (std::size_t at = 0; at < text.size() && reading_.faults.size() < most_faults;) {
+      const std::size_t end = std::min(text.find('\n', at), text.size());
+      read_row(text.substr(at, end - at), ++line);
+      at = end + 1;
+    }
+    if (reading_.faults.empty() && reading_.rows.size() < 2) {
+      fault(std::max(line, 1), 1,
+            fmt::format("a record of {} row{}", reading_.rows.size(), reading_.rows.size() == 1 ? "" : "s"),
+            "it has at least two, time,x or time,x,y");
+    } else if (reading_.rows.size() > most_rows) {
+      fault(line, 1, fmt::format("a record of {} rows", reading_.rows.size()),
+            fmt::format("at most {} are read", most_rows));
+    }
+    return std::move(reading_);
+  }
+
+private:
+  static constexpr std::array<const char *, 3> names{"time", "x", "y"};
+
+  void read_row(std::string_view row, int line) {
+    if (trimmed(row).empty() || trimmed(row).starts_with('#')) {
+      return;
+    }
+    std::array<std::string_view, 3> fields;
+    std::array<int, 3> columns{};
+    std::size_t count = 0;
+    for (std::size_t at = 0; at <= row.size(); ++count) {
+      const std::size_t end = std::min(row.find(',', at), row.size());
+      if (count < fields.size()) {
+        fields[count] = trimmed(row.substr(at, end - at));
+        columns[count] = static_cast<int>(at) + 1;
+      }
+      at = end + 1;
+    }
+    std::array<std::optional<double>, 3> numbers;
+    for (std::size_t k = 0; k < std::min(count, fields.size()); ++k) {
+      numbers[k] = to_number(fields[k]);
+    }
+    const bool is_heading = num_fields_ == 0 && !numbers[0] && !numbers[1];
+    if (count < 2 || count > fields.size() || (num_fields_ != 0 && count != num_fields_)) {
+      fault(line, 1, fmt::format("a row with {} field{}", count, count == 1 ? "" : "s"),
+            num_fields_ == 0 ? "a row is time,x or time,x,y"
+                             : fmt::format("the rows before have {}", num_fields_));
+      return;
+    }
+    num_fields_ = count;
+    if (!is_heading) {
+      take(std::span(fields).first(count), columns, numbers, line);
+    }
+  }
+
+  void take(std::span<const std::string_view> fields, const std::array<int, 3> &columns,
+            const std::array<std::optional<double>, 3> &numbers, int line) {
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      if (!numbers[k]) {
+        fault(line, columns[k], fmt::format("'{}' is no {}", shown(fields[k]), k == 0 ? "time" : "motion"),
+              fmt::format("{} is a number of at most {:g}", names[k], largest_number));
+      }
+    }
+    const RecordRow row{numbers[0].value_or(0.0), {numbers[1].value_or(0.0), numbers[2].value_or(0.0)}};
+    if (numbers[0] && last_time_ && !(row.time > *last_time_)) {
+      fault(line, columns[0],
+            fmt::format("the time {} is not above that of the row before, {}", row.time, *last_time_),
+            "the rows of a record go on in time");
+    }
+    last_time_ = numbers[0] ? numbers[0] : last_time_;
+    reading_.rows.push_back(row);
+  }
+
+  void fault(int line, int column, std::string what, std::string why) {
+    reading_.faults.push_back(
+        {Severity::error, {*path_, line, column}, std::move(what), std::move(why), "mend the file"});
+  }
+
+  const std::string *path_;
+  RecordReading reading_;
+  std::size_t num_fields_ = 0; ///< of a row; 0 before the first one
+  std::optional<double> last_time_;
+};
+
+} // namespace
+
+RecordReading read_record(std::string_view text, const std::string &path) {
+  return RecordReader(path).read(text);
+}
+
+Diagnostics open_record(const Communicator &communicator, Scene &scene) {
+  Earthquake &earthquake = scene.earthquake;
+  if (!earthquake.shakes() || !earthquake.record.empty()) {
+    return {};
+  }
+  std::string text;
+  std::int64_t is_missing = 0;
+  if (communicator.is_root()) {
+    std::error_code ignored;
+    std::ifstream file(earthquake.file, std::ios::binary);
+    is_missing = !file || std::filesystem::is_directory(earthquake.file, ignored) ? 1 : 0;
+    std::ostringstream content;
+    if (is_missing == 0) {
+      content << file.rdbuf();
+      text = content.str();
+    }
+  }
+  communicator.max(std::span(&is_missing, 1));
+  if (is_missing > 0) {
+    return {{Severity::error, earthquake.where, fmt::format("cannot open the record '{}'", earthquake.file),
+             "no such file or no right to read it", "its path starts from the folder of the scene"}};
+  }
+  communicator.broadcast(text);
+  RecordReading reading = read_record(text, earthquake.file);
+  earthquake.record = std::move(reading.rows);
+  return std::move(reading.faults);
+}
+
+} // namespace gcpdda
