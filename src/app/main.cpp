@@ -8,6 +8,7 @@
 #include "gcpdda/io/scene_reference.hpp"
 #include "gcpdda/io/unclosed_files.hpp"
 #include "gcpdda/parallel/communicator.hpp"
+#include "gcpdda/simulation/ensemble.hpp"
 #include "gcpdda/simulation/inspect.hpp"
 #include "gcpdda/simulation/restart.hpp"
 #include "gcpdda/simulation/run.hpp"
@@ -37,6 +38,7 @@ struct Arguments {
   std::string tolerance; ///< and the next two: values of [fos]
   std::string from;
   std::string to;
+  std::string count; ///< of [ensemble]
   int ranks = 0;
   bool overwrite = false;
 };
@@ -63,10 +65,10 @@ int announced_ranks() {
   return 1;
 }
 
-/// The scene of the arguments goes to `work`; every fault of it becomes text and exit code 3.
-template <class Work> int with_scene(const Communicator &world, const Arguments &arguments, Work &&work) {
-  SceneReading reading =
-      read_scene(read_on_root(world, arguments.scene, "the scene"), arguments.scene, arguments.sets);
+/// The scene of a text and the arguments goes to `work`; every fault of it becomes text and exit code 3.
+template <class Work>
+int with_scene(const Communicator &world, const Arguments &arguments, const std::string &text, Work &&work) {
+  SceneReading reading = read_scene(text, arguments.scene, arguments.sets);
   print(world, reading.diagnostics);
   if (has_errors(reading.diagnostics)) {
     return bad_scene;
@@ -82,6 +84,10 @@ template <class Work> int with_scene(const Communicator &world, const Arguments 
     print(world, diagnostics);
     return bad_scene;
   }
+}
+
+template <class Work> int with_scene(const Communicator &world, const Arguments &arguments, Work &&work) {
+  return with_scene(world, arguments, read_on_root(world, arguments.scene, "the scene"), work);
 }
 
 std::filesystem::path result_folder(const Arguments &arguments, const std::string &stem) {
@@ -131,6 +137,38 @@ int fos(const Communicator &world, Arguments arguments) {
   return with_scene(world, arguments, [&](const Scene &scene) {
     return find_safety_factor(world, scene,
                               {result_folder(arguments, scene.stem + "_fos"), arguments.overwrite});
+  });
+}
+
+/// Without what says how many members there are, and what becomes of them.
+std::string identity_of(const std::string &text, const Arguments &arguments) {
+  std::vector<std::string> sets = arguments.sets;
+  sets.insert(sets.end(), {"ensemble.count=1", "ensemble.ranks=1", "ensemble.keep=false"});
+  return read_scene(text, arguments.scene, sets).scene.resolved;
+}
+
+int ensemble(const Communicator &world, Arguments arguments) {
+  catch_stop_signal();
+  if (!arguments.count.empty()) {
+    arguments.sets.push_back("ensemble.count=" + arguments.count);
+  }
+  const std::string text = read_on_root(world, arguments.scene, "the scene");
+  return with_scene(world, arguments, text, [&](const Scene &scene) {
+    const auto member_scene = [&](const Communicator &group, const std::vector<double> &values) {
+      std::vector<std::string> sets = arguments.sets;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        sets.push_back(assignment(scene.ensemble.variations[i], values[i]));
+      }
+      SceneReading reading = read_scene(text, arguments.scene, sets);
+      if (has_errors(reading.diagnostics)) {
+        throw SceneError(reading.diagnostics);
+      }
+      prepare_region(group, reading.scene);
+      return std::move(reading.scene);
+    };
+    return run_ensemble(world, scene, member_scene,
+                        {result_folder(arguments, scene.stem + "_ensemble"), arguments.overwrite,
+                         identity_of(text, arguments)});
   });
 }
 
@@ -195,6 +233,15 @@ int dispatch(const Communicator &world, int argc, char **argv) {
                           "width of the bracket at the end; default 0.01");
   fos_command->add_option("--from", arguments.from, "factor that is expected to hold; default 0.5");
   fos_command->add_option("--to", arguments.to, "factor that is expected to fail; default 4");
+  CLI::App *ensemble_command = app.add_subcommand(
+      "ensemble", "probability of failure: many members of a scene whose strengths or joints are drawn at "
+                  "random; repeated, it goes on with what is missing");
+  takes_scene(ensemble_command);
+  ensemble_command->add_option("--count", arguments.count, "number of members; default [ensemble] count");
+  ensemble_command->add_option("--out", arguments.directory,
+                               "result folder; default results/<scene stem>_ensemble");
+  ensemble_command->add_flag("--overwrite", arguments.overwrite,
+                             "replace an earlier ensemble in the result folder");
   const CLI::App *reference_command =
       app.add_subcommand("reference", "print all scene keys as a Markdown page");
   try {
@@ -215,6 +262,9 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   }
   if (fos_command->parsed()) {
     return fos(world, arguments);
+  }
+  if (ensemble_command->parsed()) {
+    return ensemble(world, arguments);
   }
   if (blocks_command->parsed()) {
     return blocks(world, arguments);

@@ -1,7 +1,5 @@
 #include "gcpdda/blockgen/sampling.hpp"
 
-#include "gcpdda/model/fingerprint.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,24 +25,6 @@ double sample_once(const Scattered &length, Draw &draw) {
 }
 
 } // namespace
-
-Draw::Draw(std::int64_t seed, std::uint64_t set, std::int64_t line, std::int64_t joint, std::uint64_t what)
-    : key_(scattered(static_cast<std::uint64_t>(seed))) {
-  for (const std::uint64_t part :
-       {set, static_cast<std::uint64_t>(line), static_cast<std::uint64_t>(joint), what}) {
-    key_ = scattered(key_ ^ part);
-  }
-}
-
-double Draw::uniform() {
-  constexpr double unit = 0x1p-53;
-  return (static_cast<double>(scattered(key_ + count_++) >> 11) + 0.5) * unit;
-}
-
-double Draw::normal() {
-  const double radius = std::sqrt(-2.0 * std::log(uniform()));
-  return radius * std::cos(2.0 * std::numbers::pi * uniform());
-}
 
 double sample_length(const Scattered &length, Draw draw) {
   const double low = Scattered::lowest_share * length.mean;

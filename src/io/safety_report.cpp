@@ -163,7 +163,9 @@ std::string to_text(const SafetyReport &report) {
   std::string text = fmt::format("{}\n{}strengths divided: friction, cohesion and tension of {}\n",
                                  factor_text(report), undecided_text(report), families);
   text += mechanism_text(report);
-  text += fmt::format("settled state: t = {:.4g} s, {} steps, {} evaluations, {:.2f} CPU s\n",
+  const double settled_at = report.settled.factor;
+  text += fmt::format("settled state{}: t = {:.4g} s, {} steps, {} evaluations, {:.2f} CPU s\n",
+                      settled_at == 1.0 ? "" : fmt::format(" with strengths divided by {:g}", settled_at),
                       report.settled.time, report.settled.steps, report.settled.evaluations,
                       report.settled.cpu_s);
   text += "    factor  verdict    time[s]     steps  evaluations   CPU[s] ranks     moved\n";

@@ -71,6 +71,8 @@ std::int32_t find_material(const MaterialIndex &materials, const std::string &na
 RunSettings read_run(const SceneSource &source);
 OutputSettings read_output(const SceneSource &source, double duration);
 StrengthReduction read_reduction(const SceneSource &source, const JointLaws &joints);
+/// @param scene  with joints and stages
+Ensemble read_ensemble(const SceneSource &source, const Scene &scene);
 /// Number of the law that a name stands for; nothing, and a fault, where no joint is named so.
 std::optional<std::int32_t> find_joint(const SceneSource &source, const toml::node &name,
                                        const JointLaws &joints);

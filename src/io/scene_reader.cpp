@@ -5,6 +5,8 @@
 #include "scene_sets.hpp"
 #include "scene_writer.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 namespace gcpdda {
@@ -109,6 +111,24 @@ void read_changes(const Text &text, Faults &faults, Scene &scene) {
   }
 }
 
+SceneReading read_alone(std::string_view text, const std::string &file, const std::vector<std::string> &sets);
+
+/// A member of the ensemble is the scene with other values: what is wrong with the median of each is told
+/// where it is said to vary.
+void check_variations(const Text &text, SceneReading &reading) {
+  for (const Variation &variation : reading.scene.ensemble.variations) {
+    std::vector<std::string> sets = text.sets;
+    sets.push_back(assignment(variation, variation.quantile(0.5)));
+    for (Diagnostic &fault : read_alone(text.toml, text.file, sets).diagnostics) {
+      if (fault.severity == Severity::error) {
+        fault.where = variation.where;
+        fault.what = fmt::format("'{}' cannot vary: {}", variation.key, fault.what);
+        reading.diagnostics.push_back(fault);
+      }
+    }
+  }
+}
+
 /// The resolved scene will lie in another folder, and may be read from a third one.
 void name_from_everywhere(const Scene &scene, toml::table &root) {
   const auto name = [](const std::string &path, toml::node *node) {
@@ -124,13 +144,8 @@ void name_from_everywhere(const Scene &scene, toml::table &root) {
   }
 }
 
-} // namespace
-
-} // namespace scene_text
-
-SceneReading read_scene(std::string_view text, const std::string &file,
+SceneReading read_alone(std::string_view text, const std::string &file,
                         const std::vector<std::string> &sets) {
-  using namespace scene_text;
   const Origins origins(file, sets);
   Faults faults(origins);
   SceneReading reading;
@@ -146,6 +161,7 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     reading.scene.stages = read_stages({*root, faulty, faults}, reading.scene);
     reading.scene.earthquake = read_earthquake({*root, faulty, faults}, reading.scene, file);
     read_viscous_sides({*root, faulty, faults}, reading.scene);
+    reading.scene.ensemble = read_ensemble({*root, faulty, faults}, reading.scene);
     read_changes({text, file, sets}, faults, reading.scene);
     reading.diagnostics = faults.sorted();
     if (!has_errors(reading.diagnostics)) {
@@ -154,6 +170,23 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     }
   } else {
     reading.diagnostics = faults.sorted();
+  }
+  return reading;
+}
+
+} // namespace
+
+} // namespace scene_text
+
+std::string assignment(const Variation &variation, double value) {
+  return fmt::format("{}={}", variation.key, value);
+}
+
+SceneReading read_scene(std::string_view text, const std::string &file,
+                        const std::vector<std::string> &sets) {
+  SceneReading reading = scene_text::read_alone(text, file, sets);
+  if (!has_errors(reading.diagnostics)) {
+    scene_text::check_variations({text, file, sets}, reading);
   }
   return reading;
 }

@@ -396,7 +396,9 @@ private:
         summary.steps, summary.contacts, summary.max_overlap, summary.energy.residual, summary.wall_s));
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());
-    forget_stop_signal();
+    if (stopped) {
+      forget_stop_signal(); // one that came too late is for what follows
+    }
     return {failed ? 5 : stopped ? 6 : exit_code_of_stages(), summary};
   }
 

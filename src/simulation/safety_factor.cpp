@@ -81,9 +81,15 @@ public:
   SafetyFactor(const Communicator &world, const Scene &scene, const SafetyOptions &options)
       : world_(world), scene_(scene), options_(options) {}
 
-  int find() {
+  SafetyOutcome find() {
     on_root(world_, [&] { prepare_safety_directory(options_.directory, options_.overwrite); });
-    if (const int code = settle(); code != 0) {
+    const int code = search();
+    return {code, std::move(report_), std::move(message_)};
+  }
+
+private:
+  int search() {
+    if (const int code = settle_as_it_can(); code != 0) {
       return code;
     }
     const std::size_t at_once = choose_groups();
@@ -99,46 +105,51 @@ public:
         return 6;
       }
     }
-    return tell();
+    conclude();
+    return report_.is_found() ? 0 : 7;
   }
 
-private:
   void say(const std::string &text) const {
-    if (world_.is_root()) {
+    if (world_.is_root() && !options_.quiet) {
       std::cerr << text << std::flush;
     }
   }
 
-  // The settled state, on all ranks.
-  int settle() {
-    Scene start = scene_;
-    const auto last = std::find_if(start.stages.rbegin(), start.stages.rend(),
-                                   [](const Stage &stage) { return stage.kind == StageKind::settle; });
-    if (last == start.stages.rend()) {
-      throw SceneError({{Severity::error,
-                         {},
-                         "the scene has stages but none of kind settle",
-                         "strengths are lowered from a state of rest",
-                         "write [[stage]] with kind = \"settle\" and a limit"}});
+  /// With full strength, or where the blocks do not come to rest so, with the most that is tried.
+  int settle_as_it_can() {
+    int code = settle(1.0, options_.overwrite);
+    const double from = scene_.reduction.from;
+    if ((code == 0 || code == 7) && !has_settled() && from < 1.0) {
+      say(fmt::format("the blocks do not settle with their full strength, now with their strengths divided "
+                      "by fos.from = {:g}\n",
+                      from));
+      code = settle(from, true);
     }
-    start.stages.erase(last.base(), start.stages.end());
+    if (code == 0 && !has_settled()) {
+      code = 7;
+    }
+    if (code == 7) {
+      message_ =
+          "the blocks do not settle, not even with the largest strength tried: let them settle with "
+          "more (stage[].set) and bring it back in a stage of kind change, or give them a longer limit";
+      say(message_ + "\n");
+    }
+    return code;
+  }
+
+  [[nodiscard]] bool has_settled() const { return report_.settled.verdict == Verdict::settled; }
+
+  /// The settled state, on all ranks.
+  int settle(double factor, bool overwrite) {
+    Scene start = settling_scene(scene_, factor);
     const RunOutcome outcome =
-        run_and_tell(world_, start, {settled_directory(), options_.overwrite, false, {}, false});
-    const TrialFacts facts = facts_of(1.0, outcome, 0.0);
-    report_.settled = trial_of(facts);
+        run_and_tell(world_, start, {settled_directory(), overwrite, false, {}, options_.quiet});
+    report_.settled = trial_of(facts_of(factor, outcome, 0.0));
     report_.settled.steps = outcome.summary.steps;
     start_time_ = outcome.summary.time;
     num_blocks_ = outcome.summary.blocks;
-    if (outcome.exit_code != 0) {
-      return outcome.exit_code;
-    }
-    if (facts.verdict != static_cast<std::int64_t>(Verdict::settled)) {
-      say("the blocks fail while they settle, with their full strength: let them settle with more "
-          "(stage[].set) and "
-          "bring it back in a stage of kind change, or use a smaller scene of the same slope\n");
-      return 7;
-    }
-    return 0;
+    message_ = outcome.exit_code == 5 ? outcome.summary.message : std::string();
+    return outcome.exit_code;
   }
 
   /// Trials at once.
@@ -237,15 +248,14 @@ private:
     return options_.directory / "trials" / fmt::format("F{:.9g}", factor);
   }
 
-  int tell() {
+  void conclude() {
     const SafetySearch search = follow(scene_.reduction, [&](double factor) { return verdict_of(factor); });
     report_.tolerance = scene_.reduction.tolerance;
     report_.holds = search.holds;
     report_.fails = search.fails;
     report_.undecided = search.undecided;
     for (std::size_t i = 0; i < scene_.joints.laws.size(); ++i) {
-      const std::vector<std::int32_t> &chosen = scene_.reduction.families;
-      if (chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(i)) > 0) {
+      if (is_weakened(scene_.reduction, i)) {
         report_.families.push_back(scene_.joints.laws[i].name);
       }
     }
@@ -253,15 +263,16 @@ private:
       report_.trials.push_back(trial);
       report_.trials.back().decisive = std::count(search.decisive.begin(), search.decisive.end(), factor) > 0;
     }
-    on_root(world_, [&] {
-      if (report_.fails) {
-        find_mechanism(*report_.fails);
-      }
-      write_safety_report(options_.directory, report_,
-                          report_.mechanism.empty() ? std::string() : draw_mechanism(report_));
-      std::cout << to_text(report_) << std::flush;
-    });
-    return report_.is_found() ? 0 : 7;
+    if (!options_.quiet) {
+      on_root(world_, [&] {
+        if (report_.fails) {
+          find_mechanism(*report_.fails);
+        }
+        write_safety_report(options_.directory, report_,
+                            report_.mechanism.empty() ? std::string() : draw_mechanism(report_));
+        std::cout << to_text(report_) << std::flush;
+      });
+    }
   }
 
   // Root alone. What each block has done since the trial began, by the frames of both runs.
@@ -306,21 +317,19 @@ private:
   std::int64_t num_blocks_ = 0;
   std::map<double, StrengthTrial> trials_; ///< by factor
   SafetyReport report_;
+  std::string message_; ///< why there is no factor
 };
 
 } // namespace
 
-int find_safety_factor(const Communicator &communicator, Scene scene, const SafetyOptions &options) {
-  scene.earthquake = {}; // the factor is that of blocks at rest
-  if (scene.stages.empty()) {
-    Stage &settle = scene.stages.emplace_back();
-    settle.name = "settle";
-    settle.kind = StageKind::settle;
-    settle.duration = scene.run.duration;
-    settle.until_verdict = true;
-    settle.local_damping = 0.8; // as a settle stage that says nothing else
-  }
-  return SafetyFactor(communicator, scene, options).find();
+SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene &scene,
+                                   const SafetyOptions &options) {
+  const Scene staged = with_settle_stage(scene);
+  return SafetyFactor(communicator, staged, options).find();
+}
+
+int find_safety_factor(const Communicator &communicator, const Scene &scene, const SafetyOptions &options) {
+  return search_safety_factor(communicator, scene, options).exit_code;
 }
 
 } // namespace gcpdda

@@ -2,8 +2,11 @@
 
 #include "gcpdda/simulation/safety_factor.hpp"
 
+#include "gcpdda/simulation/simulation.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <iterator>
 #include <numeric>
 
@@ -99,6 +102,14 @@ void weaken(JointLaw &law, double factor) {
   law.tan_dilation = std::min(law.tan_dilation, left);
 }
 
+void weaken(Scene &scene, const StrengthReduction &reduction, double factor) {
+  for (std::size_t i = 0; i < scene.joints.laws.size(); ++i) {
+    if (is_weakened(reduction, i)) {
+      weaken(scene.joints.laws[i], factor);
+    }
+  }
+}
+
 } // namespace
 
 SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &verdicts) {
@@ -132,6 +143,52 @@ std::vector<double> next_factors(const StrengthReduction &reduction, const Trial
   return factors;
 }
 
+Scene with_settle_stage(Scene scene) {
+  scene.earthquake = {}; // the factor is that of blocks at rest
+  if (scene.stages.empty()) {
+    Stage &settle = scene.stages.emplace_back();
+    settle.name = "settle";
+    settle.kind = StageKind::settle;
+    settle.duration = scene.run.duration;
+    settle.until_verdict = true;
+    settle.local_damping = 0.8; // as a settle stage that says nothing else
+  }
+  return scene;
+}
+
+Scene settling_scene(const Scene &scene, double factor) {
+  Scene start = scene;
+  const auto last = std::find_if(start.stages.rbegin(), start.stages.rend(),
+                                 [](const Stage &stage) { return stage.kind == StageKind::settle; });
+  if (last == start.stages.rend()) {
+    throw SceneError({{Severity::error,
+                       {},
+                       "the scene has stages but none of kind settle",
+                       "strengths are lowered from a state of rest",
+                       "write [[stage]] with kind = \"settle\" and a limit"}});
+  }
+  start.stages.erase(last.base(), start.stages.end());
+  if (factor == 1.0) {
+    return start;
+  }
+  weaken(start, scene.reduction, factor);
+  for (Stage &stage : start.stages) {
+    if (stage.after) {
+      auto after = std::make_shared<Scene>(*stage.after);
+      weaken(*after, scene.reduction, factor);
+      stage.after = std::move(after);
+    }
+  }
+  start.resolved = fmt::format("# settled by gcpdda fos: strengths as below divided by {:.17g}\n", factor) +
+                   scene.resolved;
+  return start;
+}
+
+bool is_weakened(const StrengthReduction &reduction, std::size_t law) {
+  const std::vector<std::int32_t> &chosen = reduction.families;
+  return chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(law)) > 0;
+}
+
 Scene weakened_scene(const Scene &scene, double factor) {
   const auto is_settle = [](const Stage &stage) { return stage.kind == StageKind::settle; };
   const auto last_settle = std::find_if(scene.stages.rbegin(), scene.stages.rend(), is_settle).base();
@@ -147,12 +204,7 @@ Scene weakened_scene(const Scene &scene, double factor) {
     }
   }
   after->stages.clear();
-  for (std::size_t i = 0; i < after->joints.laws.size(); ++i) {
-    const std::vector<std::int32_t> &chosen = scene.reduction.families;
-    if (chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(i)) > 0) {
-      weaken(after->joints.laws[i], factor);
-    }
-  }
+  weaken(*after, scene.reduction, factor);
   Stage trial;
   trial.name = "trial";
   trial.duration = scene.reduction.limit > 0.0 ? scene.reduction.limit : std::prev(last_settle)->duration;

@@ -8,31 +8,16 @@
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 namespace gcpdda::safety_factor_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Keeps what is written to std::cout while it lives.
-class CapturedOutput {
-public:
-  CapturedOutput() : before_(std::cout.rdbuf(text_.rdbuf())) {}
-  ~CapturedOutput() { std::cout.rdbuf(before_); }
-  CapturedOutput(const CapturedOutput &) = delete;
-  CapturedOutput &operator=(const CapturedOutput &) = delete;
-
-private:
-  std::ostringstream text_;
-  std::streambuf *before_;
-};
-
 TEST(SafetyFactor, IsTheSameOnAnyNumberOfRanks) {
   const Communicator world = Communicator::world();
   const testing::SharedFolder folder(world);
   const testing::CapturedLog log;
-  const CapturedOutput output;
+  const testing::CapturedOutput output;
   const Scene scene = testing::scene_of(testing::plane_failure_toml(0.5),
                                         {"fos.tolerance=0.05", "fos.from=1.6", "fos.to=2.4"});
   EXPECT_EQ(find_safety_factor(world, scene, {folder.path("together"), false}), 0);

@@ -51,4 +51,17 @@ private:
   std::streambuf *before_;
 };
 
+/// Keeps what is written to std::cout while it lives.
+class CapturedOutput {
+public:
+  CapturedOutput() : before_(std::cout.rdbuf(text_.rdbuf())) {}
+  ~CapturedOutput() { std::cout.rdbuf(before_); }
+  CapturedOutput(const CapturedOutput &) = delete;
+  CapturedOutput &operator=(const CapturedOutput &) = delete;
+
+private:
+  std::ostringstream text_;
+  std::streambuf *before_;
+};
+
 } // namespace gcpdda::testing

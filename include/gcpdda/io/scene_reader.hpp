@@ -20,6 +20,10 @@ struct SceneReading {
 /// @param text  the TOML text
 /// @param file  its name as the user gave it, for diagnostics and Scene::stem
 /// @param sets  "dotted.path=value" arguments, applied before validation
+/// An error in a scene with the median of what its ensemble varies is an error of the scene.
 SceneReading read_scene(std::string_view text, const std::string &file, const std::vector<std::string> &sets);
+
+/// The --set argument that gives a value of the scene that varies.
+std::string assignment(const Variation &variation, double value);
 
 } // namespace gcpdda

@@ -3,6 +3,7 @@
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/earthquake.hpp"
+#include "gcpdda/model/ensemble.hpp"
 #include "gcpdda/model/in_situ.hpp"
 #include "gcpdda/model/joint_law.hpp"
 #include "gcpdda/model/rock_region.hpp"
@@ -175,6 +176,7 @@ struct Scene {
   std::vector<Monitor> monitors;
   std::vector<Stage> stages; ///< in their order; none for one run of run.duration
   StrengthReduction reduction;
+  Ensemble ensemble;
   std::string resolved; ///< the scene after --set, as TOML text
 };
 

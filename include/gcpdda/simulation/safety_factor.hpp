@@ -42,20 +42,42 @@ SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &ver
 std::vector<double> next_factors(const StrengthReduction &reduction, const TrialVerdicts &verdicts,
                                  std::size_t most);
 
+/// A scene without stages settles for run.duration at most.
+Scene with_settle_stage(Scene scene);
+
+/// The scene up to the end of its last settle stage, strengths divided by `factor` from the beginning.
+/// @throws SceneError where no stage is of kind settle
+Scene settling_scene(const Scene &scene, double factor);
+
+/// Whether the strengths of a law are divided.
+bool is_weakened(const StrengthReduction &reduction, std::size_t law);
+
 /// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints.
 Scene weakened_scene(const Scene &scene, double factor);
 
 struct SafetyOptions {
   std::filesystem::path directory;
   bool overwrite = false;
+  bool quiet = false; ///< nothing but the runs is written, nothing is said
+};
+
+struct SafetyOutcome {
+  /// 0 found within the tolerance; 5 numerical failure before the settled state; 6 stopped by the signal; 7
+  /// the scene does not settle, or the bracket is wider than asked for
+  int exit_code = 0;
+  SafetyReport report;
+  std::string message; ///< why the search has not begun; empty where it has
 };
 
 /// Find the factor of a valid scene and write everything: `settled` (the run up to the end of the last settle
-/// stage), `trials`, and the report. A scene without stages settles for run.duration at most. Collective.
-///
-/// @return exit code: 0 found within the tolerance; 5 numerical failure before the settled state; 6 stopped by
-///         the signal; 7 the scene does not settle, or the bracket is wider than asked for
+/// stage), `trials`, and the report. A scene without stages settles for run.duration at most. One that does
+/// not come to rest with its full strength begins from where it rests with the most that is tried, if that is
+/// more. Collective.
 /// @throws SceneError, FileError
-int find_safety_factor(const Communicator &communicator, Scene scene, const SafetyOptions &options);
+SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene &scene,
+                                   const SafetyOptions &options);
+
+/// The same; @return exit code
+int find_safety_factor(const Communicator &communicator, const Scene &scene, const SafetyOptions &options);
 
 } // namespace gcpdda

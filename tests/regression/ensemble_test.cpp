@@ -1,0 +1,99 @@
+// gcpdda ensemble as a person calls it: what it writes, says and refuses, and how it is gone on with.
+
+#include "child_process.hpp"
+#include "support/run_facts.hpp"
+#include "support/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+namespace gcpdda::ensemble_test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::count_of;
+using testing::file_text;
+using testing::json_value;
+using testing::lines_of;
+using testing::Outcome;
+using testing::run_gcpdda;
+using testing::WorkFolder;
+
+TEST(Ensemble, WritesWhatItFinds) {
+  const WorkFolder folder;
+  folder.write("plane.toml", testing::shipped_toml("plane_failure"));
+  const Outcome outcome = run_gcpdda(2, {"ensemble", "plane.toml", "--count", "5"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const fs::path results = folder / "results/plane_ensemble";
+  EXPECT_EQ(file_text(results / "ensemble.txt"), outcome.out);
+  EXPECT_NE(outcome.out.find("probability of failure"), std::string::npos) << outcome.out;
+  EXPECT_EQ(count_of(outcome.err, "member "), 5) << outcome.err;
+  const std::vector<std::string> rows = lines_of(file_text(results / "ensemble_members.csv"));
+  ASSERT_EQ(rows.size(), 6U);
+  EXPECT_EQ(rows[0], "member,outcome,holds,fails,steps,cpu[s],joint.default.friction_angle_deg,"
+                     "joint.default.cohesion,message");
+  EXPECT_EQ(json_value(results / "ensemble.json", "done"), "5");
+  EXPECT_FALSE(fs::exists(results / "ensemble.svg")) << "verdicts have no histogram";
+
+  const Outcome again = run_gcpdda(0, {"ensemble", "plane.toml", "--count", "5"}, folder);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.out, outcome.out) << "nothing was missing";
+  const Outcome other =
+      run_gcpdda(0, {"ensemble", "plane.toml", "--count", "5", "--set", "ensemble.seed=2"}, folder);
+  EXPECT_EQ(other.exit_code, 4);
+  EXPECT_NE(other.err.find("another scene"), std::string::npos) << other.err;
+  const Outcome replaced = run_gcpdda(0,
+                                      {"ensemble", "plane.toml", "--count", "1", "--set", "ensemble.seed=2",
+                                       "--set", "ensemble.keep=true", "--overwrite"},
+                                      folder);
+  EXPECT_EQ(replaced.exit_code, 0) << replaced.err;
+  EXPECT_EQ(lines_of(file_text(results / "ensemble_members.csv")).size(), 2U);
+  EXPECT_TRUE(fs::exists(results / "members/member_000000/summary.json"));
+}
+
+TEST(Ensemble, StopsAtTheSignalAndGoesOn) {
+  const WorkFolder folder;
+  folder.write("plane.toml", testing::shipped_toml("plane_failure"));
+  const fs::path results = folder / "results/plane_ensemble";
+  testing::Process process(testing::gcpdda_words(2, {"ensemble", "plane.toml"}), folder.path());
+  for (int tries = 0; tries < 1000 && !fs::exists(results / "members/member_000003.csv"); ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  kill(process.id(), SIGUSR1);
+  const Outcome stopped = process.wait();
+  EXPECT_EQ(stopped.exit_code, 6) << stopped.err;
+  EXPECT_NE(stopped.err.find("the same call goes on"), std::string::npos) << stopped.err;
+  const auto done = lines_of(file_text(results / "ensemble_members.csv")).size() - 1;
+  EXPECT_GE(done, 4U);
+  EXPECT_LT(done, 200U);
+  const std::string row = lines_of(file_text(results / "ensemble_members.csv"))[1];
+  const Outcome on = run_gcpdda(0, {"ensemble", "plane.toml", "--count", std::to_string(done + 1)}, folder);
+  EXPECT_EQ(on.exit_code, 0) << on.err;
+  EXPECT_EQ(count_of(on.err, "there already"), 1) << on.err;
+  EXPECT_EQ(lines_of(file_text(results / "ensemble_members.csv"))[1], row)
+      << "not run again: the same CPU time";
+}
+
+TEST(Ensemble, RefusesWhatItCannotRun) {
+  const WorkFolder folder;
+  folder.write("bench.toml", testing::shipped_toml("toppling"));
+  const Outcome none = run_gcpdda(0, {"ensemble", "bench.toml"}, folder);
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_NE(none.err.find("bench.toml: error: the scene has no ensemble"), std::string::npos) << none.err;
+  folder.write("plane.toml", testing::shipped_toml("plane_failure"));
+  const Outcome count = run_gcpdda(0, {"ensemble", "plane.toml", "--count", "0"}, folder);
+  EXPECT_EQ(count.exit_code, 3);
+  EXPECT_FALSE(fs::exists(folder / "results"));
+  const Outcome unsettled = run_gcpdda(0,
+                                       {"ensemble", "plane.toml", "--set", "ensemble.measure=factor", "--set",
+                                        "stage=[{kind=\"run\",duration=1}]"},
+                                       folder);
+  EXPECT_EQ(unsettled.exit_code, 3);
+  EXPECT_NE(unsettled.err.find("none of kind settle"), std::string::npos) << unsettled.err;
+}
+
+} // namespace
+} // namespace gcpdda::ensemble_test
