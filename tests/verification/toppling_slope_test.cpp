@@ -263,7 +263,7 @@ TEST(TopplingSlope, CableAtTheToe) {
   }
   Simulation simulation(Communicator::self(), scene_of(toml));
   run_stages(simulation, [](Simulation &s) { step(s); });
-  EXPECT_EQ(simulation.stage().verdict, Verdict::settled);
+  EXPECT_EQ(simulation.stage().verdict, gcpdda::Verdict::settled);
   ASSERT_EQ(simulation.bolts().links().size(), 1U);
   const double tension = 1e-3 * simulation.bolts().links()[0].memory.axial;
   const double with_arms = cable_force(friction, arms_of(supports_of(simulation)));
