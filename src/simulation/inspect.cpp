@@ -113,7 +113,7 @@ public:
     std::string text = fmt::format("scene '{}'\n", simulation_.scene().stem);
     text +=
         blocks_line() + fidelity_line() + joint_lines() + step_lines() + contact_line() + partition_line();
-    text += cost_lines() + oddity_lines();
+    text += stage_lines() + water_lines() + bolt_line() + cost_lines() + oddity_lines();
     for (const Diagnostic &note : simulation_.notes()) {
       text += to_string(note) + "\n";
     }
@@ -210,6 +210,48 @@ private:
                     rayleigh.mass_damping, rayleigh.stiffness_damping,
                     0.5 * rayleigh.stiffness_damping * bound.omega_max, frequency, bound.undamped_step,
                     bound.undamped_step / bound.time_step));
+  }
+
+  std::string stage_lines() {
+    std::string text;
+    for (const Stage &stage : simulation_.stages()) {
+      std::string what =
+          stage.kind == StageKind::excavate
+              ? stage.relax > 0.0 ? fmt::format(", forces fall to zero in {:g} s", stage.relax) : ""
+          : stage.until_verdict ? fmt::format(", until unbalanced forces are {:g}, {:g} s at most",
+                                              stage.tolerance, stage.duration)
+          : stage.takes_steps() ? fmt::format(", {:g} s", stage.duration)
+                                : "";
+      text += line("stage", fmt::format("'{}': {}{}", stage.name, word_of(stage.kind), what));
+    }
+    return text;
+  }
+
+  std::string water_lines() {
+    std::string text;
+    for (const Water &water : simulation_.scene().water) {
+      const auto [low, high] = std::minmax_element(water.phreatic.begin(), water.phreatic.end(),
+                                                   [](Vec2 a, Vec2 b) { return a.y < b.y; });
+      std::string wets;
+      for (const std::int32_t joint : water.joints) {
+        wets += fmt::format("{}'{}'", wets.empty() ? "" : ", ",
+                            simulation_.scene().joints.laws[static_cast<std::size_t>(joint)].name);
+      }
+      text += line("water", fmt::format("'{}': level between {:g} and {:g} m, in {}{}", water.name, low->y,
+                                        high->y, wets.empty() ? "all joints" : "joint " + wets,
+                                        water.active ? "" : ", put in by a stage"));
+    }
+    return text;
+  }
+
+  std::string bolt_line() {
+    const std::vector<Bolt> &bolts = simulation_.scene().bolts;
+    if (bolts.empty()) {
+      return "";
+    }
+    const auto waiting = std::count_if(bolts.begin(), bolts.end(), [](const Bolt &b) { return !b.active; });
+    return line("bolts", fmt::format("{}, {} of them put in by a stage; {} links across joints now",
+                                     bolts.size(), waiting, simulation_.bolts().links().size()));
   }
 
   std::string contact_line() {

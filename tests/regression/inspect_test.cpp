@@ -157,6 +157,40 @@ TEST_F(Inspect, TellsAGivenStep) {
   EXPECT_EQ(count_of(given.out, "1e-06 s (as given), 1000000 steps of 1 s in all"), 1) << given.out;
 }
 
+TEST(InspectPlan, TellsStagesWaterAndBolts) {
+  const WorkFolder folder;
+  std::string toml = odd_scene();
+  toml.erase(toml.find("duration = 1.0\n"), 15);
+  folder.write("plan.toml", toml + R"([water.table]
+phreatic = [[-9, -1], [9, 0.5]]
+[support.cable]
+kind = "anchored"
+axial_stiffness = 1e7
+[[bolt]]
+name = "b"
+support = "cable"
+from = [0.5, 0.5]
+to = [0.5, -1.5]
+[[stage]]
+name = "weight"
+kind = "settle"
+limit = 2.0
+[[stage]]
+name = "gap"
+kind = "excavate"
+blocks = ["large"]
+relax = 0.5
+)");
+  const Outcome outcome = run_gcpdda(0, {"inspect", "plan.toml"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char *line : {"stage       'weight': settle, until unbalanced forces are 1e-05, 2 s at most\n",
+                           "stage       'gap': excavate, forces fall to zero in 0.5 s\n",
+                           "water       'table': level between -1 and 0.5 m, in all joints\n",
+                           "bolts       1, 0 of them put in by a stage; 1 links across joints now\n"}) {
+    EXPECT_EQ(count_of(outcome.out, line), 1) << line << outcome.out;
+  }
+}
+
 TEST_F(Inspect, TellsSubdomainsAndCosts) {
   EXPECT_TRUE(std::regex_search(outcome_.out, std::regex("subdomains +4 by [^:]+: [01] to [2-5] blocks each, "
                                                          "imbalance of the work [0-9.]+\n")))

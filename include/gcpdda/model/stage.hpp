@@ -18,6 +18,10 @@ namespace gcpdda {
 struct Scene;
 
 enum class StageKind { run, settle, excavate, change };
+inline const char *word_of(StageKind kind) {
+  constexpr std::array words{"run", "settle", "excavate", "change"};
+  return words.at(static_cast<std::size_t>(kind));
+}
 
 /// What became of a stage.
 enum class Verdict : std::int64_t {
