@@ -2,6 +2,7 @@
 
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/io/ensemble_report.hpp"
+#include "gcpdda/io/passing_files.hpp"
 #include "gcpdda/simulation/run.hpp"
 #include "gcpdda/simulation/safety_factor.hpp"
 #include "gcpdda/simulation/simulation.hpp"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iostream>
+#include <optional>
 #include <set>
 
 namespace gcpdda {
@@ -195,6 +197,10 @@ private:
   }
 
   MemberFacts measure(const Scene &scene, const fs::path &directory) const {
+    std::optional<PassingFiles> passing;
+    if (!ensemble_.keep) {
+      passing.emplace();
+    }
     if (ensemble_.measure == Measure::factor) {
       return facts_of(search_safety_factor(group_, scene, {directory, true, true}));
     }
