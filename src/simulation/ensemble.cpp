@@ -204,11 +204,9 @@ private:
     if (ensemble_.measure == Measure::factor) {
       return facts_of(search_safety_factor(group_, scene, {directory, true, true}));
     }
-    Scene staged = with_settle_stage(scene);
-    if (!ensemble_.keep) { // of what goes again, as little as can be
-      staged.output = {staged.run.duration, staged.run.duration, 0.0, false};
-    }
-    return facts_of(run_and_tell(group_, staged, {directory, true, false, {}, true}));
+    // Bare, and not with fewer outputs: the time step divides the time between them.
+    const RunOptions run{directory, true, false, {}, true, !ensemble_.keep};
+    return facts_of(run_and_tell(group_, with_settle_stage(scene), run));
   }
 
   /// The same on all ranks of the group.
