@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Turn a picture of `gcpdda blocks --svg`, `gcpdda inspect --svg` or `gcpdda fos` into PNG: svg_to_png.py IN.svg OUT.png"""
+"""Turn a picture of `gcpdda blocks --svg`, `gcpdda inspect --svg`, `gcpdda fos` or `gcpdda ensemble` into PNG: svg_to_png.py IN.svg OUT.png"""
 import re
 import sys
 import xml.etree.ElementTree as xml
@@ -45,8 +45,9 @@ def main(svg, png):
             axes.add_patch(plt.Circle((float(element.get("cx")), float(element.get("cy"))), float(element.get("r")),
                                       fill=False, color=element.get("stroke"), lw=1.5, zorder=4))
         elif kind == "text":
-            axes.text(float(element.get("x")), float(element.get("y")), element.text, fontsize=9,
-                      color=colour(element.get("fill", "black")), zorder=5)
+            axes.text(float(element.get("x")), float(element.get("y")), element.text, fontsize=9, zorder=5,
+                      ha="center" if element.get("text-anchor") == "middle" else "left",
+                      color=colour(element.get("fill", "black")))
     axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors="#555555", linewidths=strokes))
     axes.add_collection(LineCollection(lines, colors=colours, linewidths=0.9))
     figure.savefig(png, dpi=70)

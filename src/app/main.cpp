@@ -188,60 +188,69 @@ int blocks(const Communicator &world, const Arguments &arguments) {
   });
 }
 
+void take_sets(CLI::App *command, Arguments &arguments) {
+  command->add_option("--set", arguments.sets, "path=value: replace a value of the scene; repeatable")
+      ->allow_extra_args(false);
+}
+
+void take_scene(CLI::App *command, Arguments &arguments) {
+  command->add_option("SCENE", arguments.scene, "scene file (TOML)")->required();
+  take_sets(command, arguments);
+}
+
+const CLI::App *add_fos(CLI::App &app, Arguments &arguments) {
+  CLI::App *command = app.add_subcommand(
+      "fos", "factor of safety by lowering the strength of joints from the settled state of a scene");
+  take_scene(command, arguments);
+  command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>_fos");
+  command->add_flag("--overwrite", arguments.overwrite, "replace an earlier search in the result folder");
+  command
+      ->add_option("--families", arguments.families,
+                   "laws to weaken, a,b,...; default [fos] families, or all")
+      ->delimiter(',');
+  command->add_option("--tolerance", arguments.tolerance, "width of the bracket at the end; default 0.01");
+  command->add_option("--from", arguments.from, "factor that is expected to hold; default 0.5");
+  command->add_option("--to", arguments.to, "factor that is expected to fail; default 4");
+  return command;
+}
+
+const CLI::App *add_ensemble(CLI::App &app, Arguments &arguments) {
+  CLI::App *command = app.add_subcommand(
+      "ensemble", "probability of failure: many members of a scene whose strengths or joints are drawn at "
+                  "random; repeated, it goes on with what is missing");
+  take_scene(command, arguments);
+  command->add_option("--count", arguments.count, "number of members; default [ensemble] count");
+  command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>_ensemble");
+  command->add_flag("--overwrite", arguments.overwrite, "replace an earlier ensemble in the result folder");
+  return command;
+}
+
 int dispatch(const Communicator &world, int argc, char **argv) {
   CLI::App app("gcpdda: block-by-block simulation of jointed rock slopes and tunnels");
   app.require_subcommand(1);
   Arguments arguments;
-  const auto takes_sets = [&](CLI::App *command) {
-    command->add_option("--set", arguments.sets, "path=value: replace a value of the scene; repeatable")
-        ->allow_extra_args(false);
-  };
-  const auto takes_scene = [&](CLI::App *command) {
-    command->add_option("SCENE", arguments.scene, "scene file (TOML)")->required();
-    takes_sets(command);
-  };
   CLI::App *run_command = app.add_subcommand("run", "run a scene");
-  takes_scene(run_command);
+  take_scene(run_command, arguments);
   run_command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>");
   run_command->add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the result folder");
   CLI::App *restart_command = app.add_subcommand(
       "restart", "go on with a stopped or broken run from its newest checkpoint, on any number of ranks");
   restart_command->add_option("DIR", arguments.directory, "result folder")->required();
-  takes_sets(restart_command);
+  take_sets(restart_command, arguments);
   CLI::App *inspect_command =
       app.add_subcommand("inspect", "tell what a scene holds, costs and how it would be cut");
-  takes_scene(inspect_command);
+  take_scene(inspect_command, arguments);
   inspect_command->add_option("--ranks", arguments.ranks, "number of subdomains; default: ranks of this call")
       ->check(CLI::Range(1, most_subdomains));
   inspect_command->add_option("--svg", arguments.svg, "draw blocks and subdomains into this file");
   CLI::App *blocks_command = app.add_subcommand(
       "blocks", "cut the region of a scene into blocks, check and draw them without a run");
-  takes_scene(blocks_command);
+  take_scene(blocks_command, arguments);
   blocks_command->add_option("--svg", arguments.svg, "draw the blocks into this file");
   blocks_command->add_option("--out", arguments.directory, "write the blocks into this block file (HDF5)");
   blocks_command->add_option("--json", arguments.json, "write the report for programs into this file");
-  CLI::App *fos_command = app.add_subcommand(
-      "fos", "factor of safety by lowering the strength of joints from the settled state of a scene");
-  takes_scene(fos_command);
-  fos_command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>_fos");
-  fos_command->add_flag("--overwrite", arguments.overwrite, "replace an earlier search in the result folder");
-  fos_command
-      ->add_option("--families", arguments.families,
-                   "laws to weaken, a,b,...; default [fos] families, or all")
-      ->delimiter(',');
-  fos_command->add_option("--tolerance", arguments.tolerance,
-                          "width of the bracket at the end; default 0.01");
-  fos_command->add_option("--from", arguments.from, "factor that is expected to hold; default 0.5");
-  fos_command->add_option("--to", arguments.to, "factor that is expected to fail; default 4");
-  CLI::App *ensemble_command = app.add_subcommand(
-      "ensemble", "probability of failure: many members of a scene whose strengths or joints are drawn at "
-                  "random; repeated, it goes on with what is missing");
-  takes_scene(ensemble_command);
-  ensemble_command->add_option("--count", arguments.count, "number of members; default [ensemble] count");
-  ensemble_command->add_option("--out", arguments.directory,
-                               "result folder; default results/<scene stem>_ensemble");
-  ensemble_command->add_flag("--overwrite", arguments.overwrite,
-                             "replace an earlier ensemble in the result folder");
+  const CLI::App *fos_command = add_fos(app, arguments);
+  const CLI::App *ensemble_command = add_ensemble(app, arguments);
   const CLI::App *reference_command =
       app.add_subcommand("reference", "print all scene keys as a Markdown page");
   try {

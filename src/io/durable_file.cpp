@@ -1,6 +1,7 @@
 #include "durable_file.hpp"
 
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/io/passing_files.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -14,6 +15,8 @@
 namespace gcpdda {
 
 namespace {
+
+int num_passing = 0; // of PassingFiles that live
 
 [[noreturn]] void fail(const std::string &what, const std::filesystem::path &path,
                        const std::string &reason) {
@@ -37,6 +40,14 @@ void call_on(const std::filesystem::path &path, int flags, const std::string &wh
 
 } // namespace
 
+PassingFiles::PassingFiles() {
+  ++num_passing;
+}
+
+PassingFiles::~PassingFiles() {
+  --num_passing;
+}
+
 std::filesystem::path unfinished_name(const std::filesystem::path &path) {
   return path.string() + ".tmp";
 }
@@ -49,11 +60,15 @@ void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t
 }
 
 void sync_file(const std::filesystem::path &path) {
-  call_on(path, O_RDONLY, "sync", {EINVAL}, ::fsync); // EINVAL: a file system without a disk
+  if (num_passing == 0) {
+    call_on(path, O_RDONLY, "sync", {EINVAL}, ::fsync); // EINVAL: a file system without a disk
+  }
 }
 
 void sync_directory(const std::filesystem::path &path) {
-  call_on(path, O_RDONLY | O_DIRECTORY, "sync", {EINVAL, EBADF, EACCES}, ::fsync);
+  if (num_passing == 0) {
+    call_on(path, O_RDONLY | O_DIRECTORY, "sync", {EINVAL, EBADF, EACCES}, ::fsync);
+  }
 }
 
 void publish(const std::filesystem::path &path) {

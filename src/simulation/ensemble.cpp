@@ -2,6 +2,7 @@
 
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/io/ensemble_report.hpp"
+#include "gcpdda/io/passing_files.hpp"
 #include "gcpdda/simulation/run.hpp"
 #include "gcpdda/simulation/safety_factor.hpp"
 #include "gcpdda/simulation/simulation.hpp"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iostream>
+#include <optional>
 #include <set>
 
 namespace gcpdda {
@@ -195,14 +197,16 @@ private:
   }
 
   MemberFacts measure(const Scene &scene, const fs::path &directory) const {
+    std::optional<PassingFiles> passing;
+    if (!ensemble_.keep) {
+      passing.emplace();
+    }
     if (ensemble_.measure == Measure::factor) {
       return facts_of(search_safety_factor(group_, scene, {directory, true, true}));
     }
-    Scene staged = with_settle_stage(scene);
-    if (!ensemble_.keep) { // of what goes again, as little as can be
-      staged.output = {staged.run.duration, staged.run.duration, 0.0, false};
-    }
-    return facts_of(run_and_tell(group_, staged, {directory, true, false, {}, true}));
+    // Bare, and not with fewer outputs: the time step divides the time between them.
+    const RunOptions run{directory, true, false, {}, true, !ensemble_.keep};
+    return facts_of(run_and_tell(group_, with_settle_stage(scene), run));
   }
 
   /// The same on all ranks of the group.

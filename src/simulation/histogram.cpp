@@ -20,6 +20,8 @@ double round_number(double x) {
   return 10.0 * power;
 }
 
+constexpr const char *mean_colour = "#2a7f3f";
+
 /// Bars on a page with an axis and lines of text above.
 class Chart {
 public:
@@ -43,24 +45,22 @@ public:
   void bar(std::size_t k, const std::string &colour) {
     const double left = x_of(edge(k));
     const double tall = height * static_cast<double>(bars_.counts[k]) / highest_;
-    text_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
-                         "stroke=\"#333\" stroke-width=\"0.5\"/>\n",
-                         left, top + height - tall, x_of(edge(k + 1)) - left, tall, colour);
+    const double right = x_of(edge(k + 1));
+    const double below = top + height;
+    text_ += fmt::format("<polygon fill=\"{0}\" stroke=\"#333\" stroke-width=\"0.5\" "
+                         "points=\"{1:.1f},{3:.1f} {2:.1f},{3:.1f} {2:.1f},{4:.1f} {1:.1f},{4:.1f}\"/>\n",
+                         colour, left, right, below, below - tall);
     if (bars_.counts[k] > 0) {
-      write(0.5 * (left + x_of(edge(k + 1))), top + height - tall - 5.0, "middle",
-            fmt::format("{}", bars_.counts[k]));
+      write(0.5 * (left + right), top + height - tall - 5.0, "middle", fmt::format("{}", bars_.counts[k]));
     }
   }
 
-  void upright(double value, const std::string &dashes) {
-    text_ += fmt::format("<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\" stroke=\"#333\" "
-                         "stroke-width=\"1.5\" stroke-dasharray=\"{3}\"/>\n",
-                         x_of(value), top - 12.0, top + height, dashes);
+  void upright(double value, const std::string &colour) {
+    line(x_of(value), top - 12.0, x_of(value), top + height, colour);
   }
 
   void axis(const std::string &title) {
-    text_ += fmt::format("<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#333\"/>\n",
-                         margin, margin + width, top + height, top + height);
+    line(margin, top + height, margin + width, top + height, "#333");
     const std::size_t every = bars_.counts.size() / 12 + 1;
     for (std::size_t k = 0; k <= bars_.counts.size(); k += every) {
       write(x_of(edge(k)), top + height + 18.0, "middle", fmt::format("{:.4g}", edge(k)));
@@ -80,6 +80,11 @@ public:
   static constexpr double bottom = 56.0;
 
 private:
+  void line(double x0, double y0, double x1, double y1, const std::string &colour) {
+    text_ += fmt::format("<path d=\"M {:.1f} {:.1f} L {:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"1.5\"/>\n",
+                         x0, y0, x1, y1, colour);
+  }
+
   const Bars &bars_;
   double highest_;
   std::string text_;
@@ -120,11 +125,11 @@ std::string draw_histogram(const EnsembleReport &report) {
   chart.axis("factor of safety");
   const auto is_inside = [&](double x) { return chart.edge(0) <= x && x <= chart.edge(bars.counts.size()); };
   if (is_inside(1.0)) {
-    chart.upright(1.0, "none");
+    chart.upright(1.0, "black");
   }
-  chart.upright(found.factor.mean, "5,4");
+  chart.upright(found.factor.mean, mean_colour);
   chart.write(Chart::margin, 22.0, "start",
-              fmt::format("{} members: mean {:.4g} (dashed), standard deviation {:.3g}", found.factor.number,
+              fmt::format("{} members: mean {:.4g} (green), standard deviation {:.3g}", found.factor.number,
                           found.factor.mean, found.factor.deviation));
   chart.write(
       Chart::margin, 42.0, "start",

@@ -39,7 +39,7 @@ class SceneRun {
 public:
   /// @param lock  of the folder, if there is one yet
   SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
-      : communicator_(communicator), directory_(options.directory),
+      : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
         simulation_(communicator, scene, options.restart ? options.directory : options.from) {
     if (!options.restart) {
       begin_results(scene, options);
@@ -267,6 +267,9 @@ private:
   }
 
   void write_due() {
+    if (is_bare_) {
+      return;
+    }
     const std::int64_t step = simulation_.stage_step();
     const TimePlan &plan = simulation_.plan();
     const bool failed = simulation_.fault().has_value();
@@ -295,7 +298,7 @@ private:
   void write_checkpoint_if_due() {
     const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
     const bool stage_ends = simulation_.is_staged() && simulation_.stage_is_over();
-    if (simulation_.fault() ||
+    if (simulation_.fault() || is_bare_ ||
         (!stopping && !stage_ends && !simulation_.plan().checkpoint_due(simulation_.stage_step()))) {
       return;
     }
@@ -467,6 +470,7 @@ private:
   Clock::time_point start_ = Clock::now();
   Communicator communicator_;
   std::filesystem::path directory_;
+  bool is_bare_;
   Simulation simulation_;
   std::optional<HistoryWriter> histories_;
   std::optional<RunLog> log_;

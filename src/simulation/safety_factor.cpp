@@ -25,9 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Blocks below which another rank costs more than it saves.
-constexpr std::int64_t fewest_blocks_per_rank = 500;
-
 /// What ranks tell each other of a trial; the strings are the root's of its group.
 struct TrialFacts {
   double factor = 0.0;
@@ -155,7 +152,7 @@ private:
   /// Trials at once.
   std::size_t choose_groups() {
     const std::int64_t per_trial =
-        std::clamp<std::int64_t>(num_blocks_ / fewest_blocks_per_rank, 1, world_.size());
+        std::clamp<std::int64_t>(num_blocks_ / options_.fewest_blocks_per_rank, 1, world_.size());
     const std::int64_t groups = world_.size() / per_trial;
     group_number_ = static_cast<int>(world_.rank() * groups / world_.size());
     group_.emplace(world_.split(group_number_));

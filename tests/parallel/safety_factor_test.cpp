@@ -39,6 +39,34 @@ TEST(SafetyFactor, IsTheSameOnAnyNumberOfRanks) {
   EXPECT_GE(together, alone) << "ranks to spare try factors that might be next";
 }
 
+// Masonry on the plane, a trial by one rank or by all of them.
+TEST(SafetyFactor, IsTheSameWhenRanksShareATrial) {
+  const Communicator world = Communicator::world();
+  if (world.size() == 1 || world.size() > 4) { // two, three and four will do
+    return;
+  }
+  const testing::SharedFolder folder(world);
+  const testing::CapturedLog log;
+  const testing::CapturedOutput output;
+  const Scene scene = testing::scene_of(
+      testing::plane_failure_toml(0.0),
+      {"fos.tolerance=0.9", "fos.from=1.0", "fos.to=1.9", "fos.limit=2.0",
+       "joint.default.normal_stiffness=2e7",
+       "wall=[{material=\"rock\", origin=[4.0, 0.0], rows=2, columns=3, block_size=[1.0, 0.5]}]"});
+  EXPECT_EQ(find_safety_factor(world, scene, {folder.path("shared"), false, false, 1}), 0);
+  world.barrier();
+  if (!world.is_root()) {
+    return;
+  }
+  EXPECT_EQ(find_safety_factor(Communicator::self(), scene, {folder.path("alone"), false}), 0);
+  for (const char *key : {"factor", "holds", "fails", "undecided", "moving"}) {
+    EXPECT_EQ(testing::json_value(folder.path("shared") / "fos.json", key),
+              testing::json_value(folder.path("alone") / "fos.json", key))
+        << key;
+  }
+  EXPECT_EQ(testing::json_value(folder.path("shared") / "fos.json", "ranks"), std::to_string(world.size()));
+}
+
 TEST(SafetyFactor, SearchThatCannotRunEndsOnAllRanks) {
   const Communicator world = Communicator::world();
   const testing::SharedFolder folder(world);

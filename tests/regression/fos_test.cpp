@@ -60,10 +60,11 @@ TEST(Fos, RefusesWhatItCannotSearch) {
   const Outcome word = run_gcpdda(0, {"fos", "plane.toml", "--tolerance", "little"}, folder);
   EXPECT_EQ(word.exit_code, 3);
   EXPECT_NE(word.err.find("'tolerance' in [fos]"), std::string::npos) << word.err;
-  const Outcome unsettled =
-      run_gcpdda(0, {"fos", "plane.toml", "--set", "joint.default.friction_angle_deg=20"}, folder);
+  const Outcome unsettled = run_gcpdda(
+      0, {"fos", "plane.toml", "--from", "0.7", "--set", "joint.default.friction_angle_deg=20"}, folder);
   EXPECT_EQ(unsettled.exit_code, 7);
-  EXPECT_NE(unsettled.err.find("fail while they settle"), std::string::npos) << unsettled.err;
+  EXPECT_NE(unsettled.err.find("do not settle, not even with the largest strength"), std::string::npos)
+      << unsettled.err;
   EXPECT_FALSE(fs::exists(folder / "results/plane_fos/fos.json"));
 }
 

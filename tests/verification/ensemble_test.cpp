@@ -79,9 +79,9 @@ struct Found {
 // A member within 1 % of the limit slides so slowly that its limit of time could end first. The share that
 // fails lies within three standard errors of the closed form for 997 seeds in 1,000.
 TEST(Ensemble, ProbabilityOfPlaneFailure) {
-  const Found found({"ensemble.count=60"});
+  const Found found({"ensemble.count=30"});
   EXPECT_EQ(found.exit_code, 0);
-  ASSERT_EQ(found.members.size(), 60U);
+  ASSERT_EQ(found.members.size(), 30U);
   double fails = 0.0;
   for (const EnsembleMember &member : found.members) {
     const double exact = factor_of(member.values[0], member.values[1]);
@@ -92,17 +92,18 @@ TEST(Ensemble, ProbabilityOfPlaneFailure) {
     }
   }
   const double exact = exact_probability(found.ensemble);
-  const double error = std::sqrt(exact * (1.0 - exact) / 60.0);
-  expect_value("probability of plane failure, strengths drawn 60 times", exact, fails / 60.0,
+  const double error = std::sqrt(exact * (1.0 - exact) / 30.0);
+  expect_value("probability of plane failure, strengths drawn 30 times", exact, fails / 30.0,
                3.0 * error / exact);
 }
 
-// The bracket is 2 % wide, and 1 % beyond it a block slides so slowly that its limit could end first. Members
+// The bracket is 3 % wide, and 1 % beyond it a block slides so slowly that its limit could end first. Members
 // that fail with their own strength have a factor too.
 TEST(Ensemble, FactorsOfItsMembers) {
-  const Found found({"ensemble.count=8", "ensemble.measure=factor", "fos.tolerance=0.02"});
+  const Found found(
+      {"ensemble.count=4", "ensemble.measure=factor", "fos.tolerance=0.03", "fos.to=2.0", "fos.from=0.7"});
   EXPECT_EQ(found.exit_code, 0);
-  ASSERT_EQ(found.members.size(), 8U);
+  ASSERT_EQ(found.members.size(), 4U);
   double largest = 0.0;
   double least = 2.0;
   for (const EnsembleMember &member : found.members) {
@@ -112,7 +113,7 @@ TEST(Ensemble, FactorsOfItsMembers) {
     least = std::min(least, *member.factor());
   }
   EXPECT_LT(least, 1.0) << "one of them is to fail with its own strength";
-  expect_below("factors of safety of an ensemble: largest error", 0.02, largest);
+  expect_below("factors of safety of an ensemble: largest error", 0.025, largest);
 }
 
 } // namespace

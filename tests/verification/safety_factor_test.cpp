@@ -99,6 +99,18 @@ TEST(SafetyFactor, SaysWhereNothingFails) {
   EXPECT_NE(found.text.find("still hold at 1.2"), std::string::npos) << found.text;
 }
 
+// One that slides with its own strength settles with more, and has a factor below 1; the bracket is 5 % wide.
+TEST(SafetyFactor, OfASlopeThatDoesNotStand) {
+  std::string toml = plane_failure_toml(0.0);
+  toml.replace(toml.find("friction_angle_deg = 40.0"), 25, "friction_angle_deg = 25.0");
+  toml.replace(toml.find("tolerance = 0.004"), 17, "tolerance = 0.05\nfrom = 0.6\nto = 1.0");
+  const Found found(toml);
+  EXPECT_EQ(found.exit_code, 0);
+  expect_value("factor of safety, plane failure that does not stand",
+               std::tan(25.0 * degree) / std::tan(30.0 * degree), found.factor(), 0.035);
+  EXPECT_NE(found.text.find("settled state with strengths divided by 0.6"), std::string::npos) << found.text;
+}
+
 // A limit too short for a verdict near the factor: the bracket says so.
 TEST(SafetyFactor, KeepsUndecidedTrialsInTheBracket) {
   std::string toml = plane_failure_toml(0.0);

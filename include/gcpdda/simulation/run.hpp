@@ -17,6 +17,7 @@ struct RunOptions {
   /// A run of its own that begins with the newest checkpoint of this folder; empty for t = 0.
   std::filesystem::path from = {};
   bool quiet = false; ///< the log goes to its file alone
+  bool bare = false;  ///< no frames, histories and checkpoints: what the summary says is all that is wanted
 };
 
 /// How a run ended.

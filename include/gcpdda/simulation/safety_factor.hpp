@@ -58,7 +58,8 @@ Scene weakened_scene(const Scene &scene, double factor);
 struct SafetyOptions {
   std::filesystem::path directory;
   bool overwrite = false;
-  bool quiet = false; ///< nothing but the runs is written, nothing is said
+  bool quiet = false;                        ///< nothing but the runs is written, nothing is said
+  std::int64_t fewest_blocks_per_rank = 500; ///< of a trial; below it another rank costs more than it saves
 };
 
 struct SafetyOutcome {
