@@ -243,8 +243,9 @@ def grid_shape(number, size):
     return -(-number // columns), columns
 
 
-def new_figure(frames, number, colours, title):
-    low, high = view(frames)
+def new_figure(frames, number, colours, arguments):
+    low, high = np.reshape(arguments.window, (2, 2)) if arguments.window else view(frames)
+    title = arguments.title
     rows, columns = grid_shape(number, high - low)
     ratio = float(np.clip((high - low)[1] / (high - low)[0], 0.2, 2.5))
     panel = min(6.4 if columns == 1 else 4.2, 7.0 / ratio / (1 if columns == 1 else 1.3))
@@ -265,7 +266,7 @@ def new_figure(frames, number, colours, title):
 
 
 def save_picture(frames, colours, arguments, reference):
-    figure, panels = new_figure(frames, len(frames), colours, arguments.title)
+    figure, panels = new_figure(frames, len(frames), colours, arguments)
     for axes, frame in zip(panels, frames):
         draw(axes, frame, colours, reference)
         draw_water(axes, arguments.directory)
@@ -275,7 +276,7 @@ def save_picture(frames, colours, arguments, reference):
 
 
 def save_movie(frames, colours, arguments, reference):
-    figure, (axes,) = new_figure(frames, 1, colours, arguments.title)
+    figure, (axes,) = new_figure(frames, 1, colours, arguments)
 
     def show(frame):
         for old in list(axes.collections):
@@ -300,6 +301,8 @@ def main():
     parser.add_argument("--compare", choices=["first"], help="outline the blocks as they were in the first frame")
     parser.add_argument("--since", metavar="STAGE", help="stage from whose beginning --field permanent counts")
     parser.add_argument("--rayleigh", action="store_true", help="draw the damping ratio of run.rayleigh instead of blocks")
+    parser.add_argument("--window", type=lambda text: [float(x) for x in text.split(",")], metavar="X0,Y0,X1,Y1",
+                        help="part of the plane to draw (default: all of it)")
     parser.add_argument("--title")
     parser.add_argument("--dpi", type=float, default=160)
     parser.add_argument("--fps", type=float, default=12)

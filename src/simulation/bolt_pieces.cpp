@@ -58,7 +58,8 @@ void append_pieces(const Bolt &bolt, std::int64_t index, std::span<const Vec2> p
     const double turn = cross(line, edge);
     const double on_bolt = cross(begin, edge) / turn;
     const double on_edge = cross(begin, line) / turn;
-    if (turn != 0.0 && on_bolt > 0.0 && on_bolt < 1.0 && on_edge > -least_share && on_edge < 1.0 + least_share) {
+    if (turn != 0.0 && on_bolt > 0.0 && on_bolt < 1.0 && on_edge > -least_share &&
+        on_edge < 1.0 + least_share) {
       cuts.push_back(on_bolt);
     }
   }

@@ -31,8 +31,14 @@ width = 6
 height = 6
 )";
 
+/// The same without a duration: stages say how long they last.
+std::string staged_scene() {
+  std::string text = tunnel_scene;
+  return text.erase(text.find("duration"), std::string("duration = 2.0\n").size());
+}
+
 TEST(BoltScene, ReadsTypesBoltsAndPatterns) {
-  const Scene scene = good(tunnel_scene + R"([support.strand]
+  const Scene scene = good(staged_scene() + R"([support.strand]
 kind = "anchored"
 axial_rigidity = 2e8
 pretension = 1e5
@@ -147,11 +153,11 @@ point = [9, 9]
 }
 
 TEST(BoltScene, AStageCannotChangeTheKindOfABolt) {
-  const SceneReading reading =
-      read_scene(tunnel_scene + "[support.a]\nkind = \"anchored\"\naxial_stiffness = 1e8\n[[stage]]\nkind = "
-                                "\"run\"\nduration = 1\n[[stage]]\nkind = \"run\"\nduration = 1\nset = { "
-                                "\"support.a.kind\" = \"grouted\" }\n",
-                 "s.toml", {});
+  const SceneReading reading = read_scene(
+      staged_scene() + "[support.a]\nkind = \"anchored\"\naxial_stiffness = 1e8\n[[stage]]\nkind = "
+                       "\"run\"\nduration = 1\n[[stage]]\nkind = \"run\"\nduration = 1\nset = { "
+                       "\"support.a.kind\" = \"grouted\" }\n",
+      "s.toml", {});
   ASSERT_EQ(reading.diagnostics.size(), 1U);
   EXPECT_EQ(reading.diagnostics[0].what, "a stage cannot set 'support.a.kind'");
 }

@@ -190,9 +190,16 @@ TEST(SceneReader, DefaultsAreThoseOfTheModel) {
 // The table of keys describes the defaults; the model holds them. Stating each one changes nothing.
 TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
   const std::string bricks = "material = \"granite\"\norigin = [5, 0]\nrows = 2\nblock_size = [1, 1]\n";
-  const std::string text = small_scene + "[[wall]]\ncolumns = 2\n" + bricks + "[[pyramid]]\n" + bricks +
-                           "[water.lake]\nphreatic = [[0, 0], [1, 0]]\n[ensemble]\ncount = 3\n"
-                           "vary = [{key = \"joint.default.cohesion\", distribution = \"seed\"}]\n";
+  const std::string text =
+      small_scene + "[[wall]]\ncolumns = 2\n" + bricks + "[[pyramid]]\n" + bricks +
+      "[water.lake]\nphreatic = [[0, 0], [1, 0]]\n"
+      "[support.bar]\nkind = \"grouted\"\naxial_stiffness = 1e8\nactive_length = 0.3\n"
+      "bond_strength = 1e5\n[[bolt]]\nsupport = \"bar\"\nfrom = [0, 0]\nto = [0, 1]\n"
+      "[region]\nmaterial = \"granite\"\npolygon = [[20, 0], [30, 0], [30, 9], [20, 9]]\n"
+      "[[opening]]\nname = \"o\"\nshape = \"circle\"\ncentre = [25, 4]\nwidth = 3\n"
+      "[[bolt_pattern]]\nsupport = \"bar\"\nopening = \"o\"\nlength = 2\ncount = 3\n"
+"[ensemble]\ncount = 3\n"
+"vary = [{key = \"joint.default.cohesion\", distribution = \"seed\"}]\n";
   const Scene scene = good(text);
   int compared = 0;
   for (const scene_text::Key &key : scene_text::scene_keys()) {
@@ -203,7 +210,8 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     for (const auto &[from, to] :
          {std::pair("block[]", "block.slider"), std::pair("joint.*", "joint.default"),
           std::pair("wall[]", "wall.wall0"), std::pair("pyramid[]", "pyramid.pyramid0"),
-          std::pair("water.*", "water.lake")}) {
+          std::pair("water.*", "water.lake"), std::pair("support.*", "support.bar"),
+          std::pair("bolt[]", "bolt.bolt0"), std::pair("bolt_pattern[]", "bolt_pattern.bolt_pattern0")}) {
       if (path.starts_with(from)) {
         path.replace(0, std::string(from).size(), to);
       }
@@ -212,7 +220,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     expect_same(good(text, {path + "=" + std::string(key.fallback)}), scene);
     ++compared;
   }
-  EXPECT_EQ(compared, 37);
+  EXPECT_EQ(compared, 44);
 }
 
 // A duration of the run has no meaning beside stages, so they have a scene of their own.
@@ -308,7 +316,7 @@ TEST(SceneReference, HasARowForEveryKey) {
   std::size_t keys = 6; // datasets of the block file
   for (const scene_text::Key &key : scene_text::scene_keys()) {
     keys += scene_text::parent_of(key).empty() || key.path == "material.*" || key.path == "joint.*" ||
-                    key.path == "water.*"
+                    key.path == "water.*" || key.path == "support.*"
                 ? 0U
                 : 1U;
   }

@@ -190,6 +190,15 @@ inline void expect_same(const Scene &a, const Scene &b) {
     EXPECT_EQ(a.water[i].density, b.water[i].density);
     EXPECT_EQ(a.water[i].active, b.water[i].active);
   }
+  EXPECT_EQ(a.supports, b.supports);
+  ASSERT_EQ(a.bolts.size(), b.bolts.size());
+  for (std::size_t i = 0; i < a.bolts.size(); ++i) {
+    EXPECT_EQ(a.bolts[i].name, b.bolts[i].name);
+    EXPECT_EQ(a.bolts[i].support, b.bolts[i].support);
+    EXPECT_EQ(a.bolts[i].from, b.bolts[i].from);
+    EXPECT_EQ(a.bolts[i].to, b.bolts[i].to);
+    EXPECT_EQ(a.bolts[i].active, b.bolts[i].active);
+  }
   EXPECT_EQ(a.joints.num_materials, b.joints.num_materials);
   EXPECT_EQ(a.joints.of_material, b.joints.of_material);
   ASSERT_EQ(a.joints.laws.size(), b.joints.laws.size());

@@ -151,34 +151,39 @@ TEST(BoltedBlock, OnASlopeNeedsTheForceOfLimitEquilibrium) {
   for (const double lift : {-90.0 * degree, 0.0, -30.0 * degree}) {
     const Cable cable{lift};
     const std::string what = fmt::format("bolts: cable at {:g} degrees to the slope", lift / degree);
-    for (const double share : {0.5, 0.99, 1.01}) {
-      Simulation simulation(Communicator::self(), scene_of(cable.toml(share * cable.needed())));
+    for (const double share : {0.5, 0.98, 1.02}) {
+      // A strength that is just enough stops no motion: let none begin.
+      const bool is_static = share != 0.5;
+      Simulation simulation(Communicator::self(),
+                            scene_of(cable.toml(share * cable.needed()),
+                                     {fmt::format("run.local_damping={}", is_static ? 0.8 : 0.0)}));
       ASSERT_EQ(simulation.bolts().links().size(), 1U);
-      run_until(simulation, 0.5);
+      run_until(simulation, 0.2);
       const double early = dot(velocity_of(simulation, 2).u, downhill());
-      run_until(simulation, 1.0);
+      run_until(simulation, 0.4);
       const double late = dot(velocity_of(simulation, 2).u, downhill());
-      const double slid = dot(displacement_of(simulation, 2).u, downhill());
-      if (share == 0.5) {
-        // The cable turns by up to 0.35 m in 4.5 m while the block slides.
+      if (!is_static) {
+        // A cable at right angles has turned by 0.08 m in 4.5 m when the block has slid so far.
         expect_value(what + ", half the force needed, acceleration, m/s2", 0.5 * missing / rock_density,
-                     (late - early) / 0.5, 0.1);
-      } else if (share < 1.0) {
-        expect_above(what + ", 1 % too weak, slid, m", 0.5 * 0.5 * 0.01 * missing / rock_density, slid);
-      } else {
-        // The joint's own stretch: cap/(k_t l).
-        expect_below(what + ", 1 % too strong, slid, m", 1e-4, slid);
-        expect_below(what + ", 1 % too strong, speed, m/s", 1e-3, std::abs(late));
+                     (late - early) / 0.2, 0.04);
+        continue;
       }
+      run_until(simulation, 0.5);
+      const double before = dot(displacement_of(simulation, 2).u, downhill());
+      run_until(simulation, 1.0);
+      const double slid = dot(displacement_of(simulation, 2).u, downhill()) - before;
+      share < 1.0 ? expect_above(what + ", 2 % too weak, slides within half a second, m", 1e-4, slid)
+                  : expect_below(what + ", 2 % too strong, slides within half a second, m", 1e-9, slid);
     }
   }
 }
 
-// A dowel across the joint bears what friction lacks, by its shear; one 2 % too weak lets the block go.
+// A dowel across the joint, soft along its axis so that it has no tension, bears what friction lacks by its
+// shear; one 2 % too weak lets the block go.
 TEST(BoltedBlock, IsHeldByADowel) {
   for (const double share : {0.98, 1.02, 5.0}) {
     const std::string toml =
-        slope_toml(fmt::format("kind = \"grouted\"\naxial_stiffness = 1e8\nshear_stiffness = 1e7\n"
+        slope_toml(fmt::format("kind = \"grouted\"\naxial_stiffness = 1e3\nshear_stiffness = 1e7\n"
                                "active_length = 0.2\nshear_yield = {:.17g}\n",
                                share * missing),
                    {0.0, 0.9}, {0.0, -2.0});
@@ -189,10 +194,11 @@ TEST(BoltedBlock, IsHeldByADowel) {
     if (share < 1.0) {
       expect_above("bolts: dowel 2 % too weak, speed, m/s", 1e-3, speed);
     } else {
-      expect_below(fmt::format("bolts: dowel of {:g} times the force needed, speed, m/s", share), 1e-6,
+      expect_below(fmt::format("bolts: dowel of {:g} times the force needed, speed, m/s", share), 1e-4,
                    speed);
-      expect_value(fmt::format("bolts: dowel of {:g} times the force needed, its shear, N/m", share), missing,
-                   std::abs(memory.shear), 0.03);
+      // Friction helps as far as the block came to rest on its cap.
+      expect_above(fmt::format("bolts: dowel of {:g} times the force needed, its shear over that", share),
+                   1.0, std::abs(memory.shear) / missing);
     }
   }
 }
