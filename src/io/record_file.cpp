@@ -67,7 +67,10 @@ private:
       const std::size_t end = std::min(row.find(',', at), row.size());
       if (count < fields.size()) {
         fields[count] = trimmed(row.substr(at, end - at));
-        columns[count] = static_cast<int>(at) + 1;
+        columns[count] = static_cast<int>(fields[count].empty()
+                                              ? at
+                                              : static_cast<std::size_t>(fields[count].data() - row.data())) +
+                         1;
       }
       at = end + 1;
     }
