@@ -191,7 +191,7 @@ TEST(SceneReader, DefaultsAreThoseOfTheModel) {
 TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
   const std::string bricks = "material = \"granite\"\norigin = [5, 0]\nrows = 2\nblock_size = [1, 1]\n";
   const std::string text = small_scene + "[[wall]]\ncolumns = 2\n" + bricks + "[[pyramid]]\n" + bricks +
-                           "[water.lake]\nphreatic = [[0, 0], [1, 0]]\n";
+                           "[water.lake]\nphreatic = [[0, 0], [1, 0]]\n[earthquake]\nrecord = \"r.csv\"\n";
   const Scene scene = good(text);
   int compared = 0;
   for (const scene_text::Key &key : scene_text::scene_keys()) {
@@ -211,7 +211,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     expect_same(good(text, {path + "=" + std::string(key.fallback)}), scene);
     ++compared;
   }
-  EXPECT_EQ(compared, 34);
+  EXPECT_EQ(compared, 38);
 }
 
 // A duration of the run has no meaning beside stages, so they have a scene of their own.

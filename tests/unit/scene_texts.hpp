@@ -181,6 +181,10 @@ inline void expect_same(const Scene &a, const Scene &b) {
   EXPECT_EQ(a.reduction.tolerance, b.reduction.tolerance);
   EXPECT_EQ(a.reduction.failure_motion, b.reduction.failure_motion);
   EXPECT_EQ(a.reduction.local_damping, b.reduction.local_damping);
+  EXPECT_EQ(a.earthquake.quantity, b.earthquake.quantity);
+  EXPECT_EQ(a.earthquake.baseline, b.earthquake.baseline);
+  EXPECT_EQ(a.earthquake.scale, b.earthquake.scale);
+  EXPECT_EQ(a.earthquake.start, b.earthquake.start);
   ASSERT_EQ(a.water.size(), b.water.size());
   for (std::size_t i = 0; i < a.water.size(); ++i) {
     EXPECT_EQ(a.water[i].density, b.water[i].density);
