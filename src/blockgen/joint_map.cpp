@@ -75,7 +75,7 @@ private:
     }
     for (const std::size_t k : {std::size_t{1}, std::size_t{2}}) {
       if (!(k == 1 ? x : y)) {
-        fault(line, columns[k], fmt::format("'{}' is no coordinate", shown(fields[k])),
+        fault(line, columns[k], fmt::format("'{}' is no coordinate", printable(fields[k])),
               fmt::format("{} is a number of at most {:g} m", k == 1 ? "x" : "y", largest_coordinate));
       }
     }
@@ -89,7 +89,7 @@ private:
 
   void close_trace() {
     if (trace_.size() == 1) {
-      fault(first_line_, 1, fmt::format("trace '{}' has one row", shown(name_)),
+      fault(first_line_, 1, fmt::format("trace '{}' has one row", printable(name_)),
             "a trace has at least two rows, one after the other");
     } else if (!trace_.empty()) {
       reading_.lines.push_back(trace_);
@@ -152,7 +152,7 @@ private:
   static std::string shown_whole(const std::string &text) {
     std::string result;
     for (std::size_t at = 0; at < std::min<std::size_t>(text.size(), 200); at += 40) {
-      result += shown(std::string_view(text).substr(at));
+      result += printable(std::string_view(text).substr(at));
     }
     return result;
   }

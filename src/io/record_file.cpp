@@ -19,9 +19,7 @@ namespace gcpdda {
 
 namespace {
 
-constexpr double largest_number = 1e9;
-constexpr std::size_t most_faults = 20;
-constexpr std::size_t most_rows = 10'000'000;
+constexpr double largest_number = 1e9; // s, m/s, m/s2
 
 std::optional<double> to_number(std::string_view text) {
   text.remove_prefix(text.starts_with('+') ? 1 : 0);
@@ -55,6 +53,8 @@ public:
 
 private:
   static constexpr std::array<const char *, 3> names{"time", "x", "y"};
+  static constexpr std::size_t most_faults = 20;
+  static constexpr std::size_t most_rows = 10'000'000;
 
   void read_row(std::string_view row, int line) {
     if (trimmed(row).empty() || trimmed(row).starts_with('#')) {
@@ -67,7 +67,10 @@ private:
       const std::size_t end = std::min(row.find(',', at), row.size());
       if (count < fields.size()) {
         fields[count] = trimmed(row.substr(at, end - at));
-        columns[count] = static_cast<int>(at) + 1;
+        columns[count] = static_cast<int>(fields[count].empty()
+                                              ? at
+                                              : static_cast<std::size_t>(fields[count].data() - row.data())) +
+                         1;
       }
       at = end + 1;
     }
@@ -92,7 +95,8 @@ private:
             const std::array<std::optional<double>, 3> &numbers, int line) {
     for (std::size_t k = 0; k < fields.size(); ++k) {
       if (!numbers[k]) {
-        fault(line, columns[k], fmt::format("'{}' is no {}", shown(fields[k]), k == 0 ? "time" : "motion"),
+        fault(line, columns[k],
+              fmt::format("'{}' is no {}", printable(fields[k]), k == 0 ? "time" : "motion"),
               fmt::format("{} is a number of at most {:g}", names[k], largest_number));
       }
     }

@@ -31,6 +31,10 @@ void read_begin(const SceneSource &source, const Section &section, const Scene &
                                            : fmt::format("did you mean '{}'?", scene.stages.back().name));
     return;
   }
+  if (!found->takes_steps()) {
+    source.faults.add(stage->source(), fmt::format("stage '{}' takes no time", shown(name)),
+                      "nothing can shake in it", "name a stage of kind run");
+  }
   earthquake.stage = found - scene.stages.begin();
 }
 

@@ -68,6 +68,12 @@ double agreed_median(const Communicator &communicator, std::span<const double> s
   return std::bit_cast<double>(low);
 }
 
+Diagnostic on_viscous_sides(const Scene &scene, std::int64_t count) {
+  return {count > 0 ? Severity::info : Severity::error, scene.earthquake.where,
+          fmt::format("{} blocks have edges on viscous sides", count),
+          "edges that lie on a side at the start let waves out", ""};
+}
+
 } // namespace
 
 Simulation::Simulation(const Communicator &communicator, Scene scene,
@@ -324,6 +330,10 @@ void Simulation::take_blocks(std::vector<SceneBlock> slab) {
   fidelity_.num_deformable = agreed_sum(communicator_, fidelity_.num_deformable);
   fidelity_.worst_rigid = agreed_max(communicator_, fidelity_.worst_rigid);
   fidelity_.worst_deformable = agreed_max(communicator_, fidelity_.worst_deformable);
+  if (!scene_.earthquake.viscous.empty()) {
+    notes_.push_back(on_viscous_sides(scene_, agreed_sum(communicator_, std::ssize(blocks_.dashpot))));
+    stop_on_errors(notes_);
+  }
   blocks_.num_owned = blocks_.num_rows();
   Bytes mine;
   for (std::size_t row = 0; row < fixed.num_rows(); ++row) {

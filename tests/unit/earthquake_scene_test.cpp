@@ -65,6 +65,21 @@ p_wave_speed = 3000
                                      "they are those of [region], which is missing, leave it out"});
 }
 
+TEST(EarthquakeScene, ShakesInAStageThatTakesSteps) {
+  const std::string staged = "[earthquake]\nrecord = \"r.csv\"\nstage = \"out\"\n"
+                             "[[stage]]\nkind = \"settle\"\nlimit = 1.0\n"
+                             "[[stage]]\nname = \"out\"\nkind = \"excavate\"\nblocks = [\"slider\"]\n";
+  std::string text = small_scene + staged;
+  text.erase(text.find("duration"), text.find('\n', text.find("duration")) - text.find("duration"));
+  EXPECT_EQ(
+      messages(read_scene(text, "s.toml", {})),
+      std::vector<std::string>{"s.toml:13:9: error: stage 'out' takes no time, nothing can shake in it, "
+                               "name a stage of kind run"});
+  const std::size_t at = text.find("\"excavate\"");
+  text.replace(at, text.find("\"slider\"") + 9 - at, "\"run\"\nduration = 1.0");
+  EXPECT_EQ(good(text).earthquake.stage, 1);
+}
+
 const std::string boxed = small_scene + R"([region]
 material = "granite"
 polygon = [[10, 0], [20, 0], [20, 5], [10, 5]]

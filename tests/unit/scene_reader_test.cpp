@@ -192,14 +192,14 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
   const std::string bricks = "material = \"granite\"\norigin = [5, 0]\nrows = 2\nblock_size = [1, 1]\n";
   const std::string text =
       small_scene + "[[wall]]\ncolumns = 2\n" + bricks + "[[pyramid]]\n" + bricks +
-      "[water.lake]\nphreatic = [[0, 0], [1, 0]]\n"
+      "[water.lake]\nphreatic = [[0, 0], [1, 0]]\n[earthquake]\nrecord = \"r.csv\"\n"
       "[support.bar]\nkind = \"grouted\"\naxial_stiffness = 1e8\nactive_length = 0.3\n"
       "bond_strength = 1e5\n[[bolt]]\nsupport = \"bar\"\nfrom = [0, 0]\nto = [0, 1]\n"
       "[region]\nmaterial = \"granite\"\npolygon = [[20, 0], [30, 0], [30, 9], [20, 9]]\n"
       "[[opening]]\nname = \"o\"\nshape = \"circle\"\ncentre = [25, 4]\nwidth = 3\n"
       "[[bolt_pattern]]\nsupport = \"bar\"\nopening = \"o\"\nlength = 2\ncount = 3\n"
-"[ensemble]\ncount = 3\n"
-"vary = [{key = \"joint.default.cohesion\", distribution = \"seed\"}]\n";
+      "[ensemble]\ncount = 3\n"
+      "vary = [{key = \"joint.default.cohesion\", distribution = \"seed\"}]\n";
   const Scene scene = good(text);
   int compared = 0;
   for (const scene_text::Key &key : scene_text::scene_keys()) {
@@ -220,7 +220,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     expect_same(good(text, {path + "=" + std::string(key.fallback)}), scene);
     ++compared;
   }
-  EXPECT_EQ(compared, 44);
+  EXPECT_EQ(compared, 48);
 }
 
 // A duration of the run has no meaning beside stages, so they have a scene of their own.

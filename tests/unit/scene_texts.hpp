@@ -185,6 +185,10 @@ inline void expect_same(const Scene &a, const Scene &b) {
   EXPECT_EQ(a.ensemble.seed, b.ensemble.seed);
   EXPECT_EQ(a.ensemble.measure, b.ensemble.measure);
   EXPECT_EQ(a.ensemble.keep, b.ensemble.keep);
+  EXPECT_EQ(a.earthquake.quantity, b.earthquake.quantity);
+  EXPECT_EQ(a.earthquake.baseline, b.earthquake.baseline);
+  EXPECT_EQ(a.earthquake.scale, b.earthquake.scale);
+  EXPECT_EQ(a.earthquake.start, b.earthquake.start);
   ASSERT_EQ(a.water.size(), b.water.size());
   for (std::size_t i = 0; i < a.water.size(); ++i) {
     EXPECT_EQ(a.water[i].density, b.water[i].density);

@@ -14,7 +14,7 @@ inline std::string_view trimmed(std::string_view text) {
 }
 
 /// Text of a file as it may stand in a message.
-inline std::string shown(std::string_view text) {
+inline std::string printable(std::string_view text) {
   std::string result(text.substr(0, 40));
   for (char &c : result) {
     c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
