@@ -1,5 +1,7 @@
 #include "tile.hpp"
 
+#include "necks.hpp"
+
 #include "gcpdda/geometry/polygon.hpp"
 
 #include <algorithm>
@@ -225,8 +227,18 @@ std::vector<Trace> TileCutter::traces_in(const Aabb &box) const {
 }
 
 std::vector<RockFace> TileCutter::rock_in(const std::vector<Trace> &traces) const {
-  std::vector<RockFace> faces;
+  std::vector<PlaneFace> shapes;
   for (PlaneFace &shape : graph_.faces(traces)) {
+    if (!shape.holes.empty()) {
+      shapes.push_back(std::move(shape));
+      continue;
+    }
+    for (Ring &part : without_necks(shape.outer, rounding_)) {
+      shapes.push_back({std::move(part), {}});
+    }
+  }
+  std::vector<RockFace> faces;
+  for (PlaneFace &shape : shapes) {
     const Vec2 inside = graph_.point_inside(shape) + origin_;
     if (!is_inside(region_->outline, inside)) {
       continue;

@@ -75,7 +75,7 @@ TEST(Ensemble, StopsAtTheSignalAndGoesOn) {
   EXPECT_EQ(stopped.exit_code, 6) << stopped.err;
   EXPECT_NE(stopped.err.find("the same call goes on"), std::string::npos) << stopped.err;
   const auto done = lines_of(file_text(results / "ensemble_members.csv")).size() - 1;
-  EXPECT_GE(done, 4U);
+  EXPECT_GE(done, 2U) << "what the rank of member 3 has done";
   EXPECT_LT(done, 5000U);
   const std::string row = lines_of(file_text(results / "ensemble_members.csv"))[1];
   const Outcome on = run_gcpdda(0, {"ensemble", "plane.toml", "--count", std::to_string(done + 1)}, folder);

@@ -82,6 +82,33 @@ TEST(RegionCutter, JointsOnTheOutlineCutNothing) {
   }
 }
 
+// A joint through a re-entrant corner, as bedding through the toe of a slope, ends both blocks there: which
+// side rounding takes it to is not seen.
+TEST(RegionCutter, JointsThroughACornerLeaveNoNeck) {
+  for (int dip = 5; dip < 60; ++dip) {
+    SCOPED_TRACE(dip);
+    const double face = 72.0 * per_degree;
+    const Vec2 crest{10.0 / std::tan(face), 10.0};
+    Scene scene = region_scene({{-9.0, -8.0}, {20.0, -8.0}, {20.0, 10.0}, crest, {0.0, 0.0}, {-9.0, 0.0}});
+    scene.region.joint_sets = {through_going(dip, 0.84, 1), through_going(85.0, 1.1, 2, {0.3, 0.2})};
+    const std::vector<SceneBlock> blocks = all_blocks(scene);
+    expect_sound(blocks);
+    for (const SceneBlock &block : blocks) {
+      const std::size_t n = block.vertices.size();
+      int here = 0; // vertices at the corner and edges through it
+      for (std::size_t k = 0; k < n; ++k) {
+        const Vec2 from = block.vertices[k];
+        const Vec2 along = block.vertices[(k + 1) % n] - from;
+        const double at = dot(-from, along) / dot(along, along);
+        const bool passes =
+            at > 1e-6 && at < 1.0 - 1e-6 && std::abs(cross(along, from)) < rounding * norm(along);
+        here += passes || norm(from) < rounding ? 1 : 0;
+      }
+      EXPECT_LE(here, 1) << "a block that touches itself";
+    }
+  }
+}
+
 // n lines across a convex region with c crossings inside cut 1 + n + c faces.
 TEST(RegionCutter, InclinedSetsObeyEuler) {
   Scene scene = region_scene(rectangle_of(10.0, 8.0));
