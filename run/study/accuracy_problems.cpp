@@ -240,7 +240,7 @@ double toppling_angle(double width, double height, double start, double time) {
 }
 
 PileSizes pile_sizes(bool quick) {
-  return quick ? PileSizes{6, 4, 8} : PileSizes{12, 6, 10};
+  return quick ? PileSizes{4, 3, 6} : PileSizes{12, 6, 10};
 }
 
 std::vector<Problem> accuracy_problems(bool quick) {

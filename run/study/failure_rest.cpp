@@ -226,7 +226,7 @@ void many_steps(const Options &options, Boundaries &boundaries) {
   constexpr double slope = 15.0 * testing::degree;
   constexpr double settled = 40.0;
   const double k = stiffness(2.0, std::sqrt(2.0));
-  const double steps = options.quick ? 2e4 : 1e6;
+  const double steps = options.quick ? 5e3 : 1e6;
   const auto turned = [&](Vec2 low, Vec2 high) { return testing::placed(rectangle(low, high), -slope, {}); };
   const auto scene = [&](double duration) {
     return head({.duration = duration,

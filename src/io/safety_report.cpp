@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char *, 5> own_names{"fos.txt", "fos.json", "fos_trials.csv", "fos_blocks.csv",
                                                 "fos.svg"};
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double one_degree = std::numbers::pi / 180.0;
 
 std::string factor_text(const SafetyReport &report) {
   if (report.holds && report.fails) {
@@ -70,12 +70,12 @@ std::string mechanism_text(const SafetyReport &report) {
       moving.size(),
       std::count_if(report.mechanism.begin(), report.mechanism.end(),
                     [](const FailingBlock &b) { return !b.fixed; }),
-      turning / degree / static_cast<double>(moving.size()));
+      turning / one_degree / static_cast<double>(moving.size()));
   constexpr std::size_t most = 10;
   for (std::size_t k = 0; k < std::min(most, moving.size()); ++k) {
     const FailingBlock &block = *moving[k];
     text += fmt::format("  {:<16} moved by ({:.3g}, {:.3g}) m, turned by {:.3g} degrees\n", block.name,
-                        block.displacement.x, block.displacement.y, block.rotation / degree);
+                        block.displacement.x, block.displacement.y, block.rotation / one_degree);
   }
   return text;
 }

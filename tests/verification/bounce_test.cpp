@@ -97,13 +97,15 @@ TEST(Bounce, SingleImpact) {
 TEST(Bounce, TenThousandBounces) {
   struct Case {
     double w, limit;
+    int phases; // short steps take their time
   };
-  for (const Case c : {Case{0.05, 0.02}, Case{0.1, 0.2}}) {
+  for (const Case c : {Case{0.05, 0.02, num_phases / 3}, Case{0.1, 0.2, num_phases}}) {
     double worst = 0.0;
-    for (int phase = 0; phase < num_phases; ++phase) {
-      worst = std::max(worst, std::abs(std::log(energy_after(c.w, 10.0 + 1.7 * phase / num_phases, 10000))));
+    for (int phase = 0; phase < c.phases; ++phase) {
+      worst = std::max(worst, std::abs(std::log(energy_after(c.w, 10.0 + 1.7 * phase / c.phases, 10000))));
     }
-    expect_below(fmt::format("A6 10000 bounces from 12 phases, W = {}: |ln E/E0|", c.w), c.limit, worst);
+    expect_below(fmt::format("A6 10000 bounces from {} phases, W = {}: |ln E/E0|", c.phases, c.w), c.limit,
+                 worst);
   }
 }
 
