@@ -4,6 +4,7 @@
 #include "pair_motion.hpp"
 #include "plain_batch.hpp"
 
+#include "gcpdda/base/prefetch.hpp"
 #include "gcpdda/contact/region_law.hpp"
 
 #include <algorithm>
@@ -19,12 +20,8 @@ namespace {
 constexpr std::size_t ahead = 12;
 
 void fetch_pair(const Candidates &candidates, const ContactHistory &history, std::uint32_t pair) {
-  const char *constants = reinterpret_cast<const char *>(&candidates.pairs[pair]);
-  __builtin_prefetch(constants);
-  __builtin_prefetch(constants + sizeof(CandidatePair) - 1);
-  const char *memory = reinterpret_cast<const char *>(history.regions.data() + history.ranges[pair].begin);
-  __builtin_prefetch(memory);
-  __builtin_prefetch(memory + 63);
+  prefetch(&candidates.pairs[pair], sizeof(CandidatePair));
+  prefetch(history.regions.data() + history.ranges[pair].begin, sizeof(RegionMemory));
 }
 
 /// How a trial configuration moved since the one before, in a form without cancellation.

@@ -28,11 +28,13 @@
 // along u.) Along n_r, not along the piece's normal: there it would drag on the sunk leading side of a
 // sliding block.
 
+#include "gcpdda/base/prefetch.hpp"
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/dilation.hpp"
 #include "gcpdda/contact/overlap.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -153,9 +155,7 @@ public:
   }
   /// Say that its sums will be asked for soon.
   void fetch(std::size_t pair) const {
-    const auto *region = reinterpret_cast<const char *>(forces_.data() + ranges_[pair].begin);
-    __builtin_prefetch(region);
-    __builtin_prefetch(region + 64);
+    prefetch(forces_.data() + ranges_[pair].begin, offsetof(RegionForce, dyad));
   }
 
   /// Dyad of `damping_force`; only pairs with a deformable block have one that is not 0.
