@@ -85,7 +85,7 @@ TEST(RegionCutter, JointsOnTheOutlineCutNothing) {
 // A joint through a re-entrant corner, as bedding through the toe of a slope, ends both blocks there: which
 // side rounding takes it to is not seen.
 TEST(RegionCutter, JointsThroughACornerLeaveNoNeck) {
-  for (int dip = 5; dip < 60; ++dip) {
+  for (int dip = 5; dip < 60; dip += 6) {
     SCOPED_TRACE(dip);
     const double face = 72.0 * per_degree;
     const Vec2 crest{10.0 / std::tan(face), 10.0};
