@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -19,13 +18,6 @@ namespace {
 
 constexpr double largest_coordinate = 1e9;
 constexpr std::size_t most_faults = 20;
-
-std::optional<double> to_coordinate(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && std::abs(value) <= largest_coordinate ? std::optional(value) : std::nullopt;
-}
 
 class CsvReader {
 public:
@@ -50,24 +42,15 @@ private:
     if (trimmed(row).empty() || trimmed(row).starts_with('#')) {
       return;
     }
-    std::array<std::string_view, 3> fields;
-    std::array<int, 3> columns{};
-    std::size_t count = 0;
-    for (std::size_t at = 0; at <= row.size(); ++count) {
-      const std::size_t end = std::min(row.find(',', at), row.size());
-      if (count < fields.size()) {
-        fields[count] = trimmed(row.substr(at, end - at));
-        columns[count] = static_cast<int>(at) + 1;
-      }
-      at = end + 1;
-    }
+    const CsvRow<3> cells(row);
+    const auto &[fields, columns, count] = cells;
     if (count != fields.size()) {
       fault(line, 1, fmt::format("a row with {} field{}", count, count == 1 ? "" : "s"),
             "a row is trace,x,y");
       return;
     }
-    const auto x = to_coordinate(fields[1]);
-    const auto y = to_coordinate(fields[2]);
+    const auto x = to_number(fields[1], largest_coordinate);
+    const auto y = to_number(fields[2], largest_coordinate);
     const bool is_heading = !has_rows_ && !x && !y;
     has_rows_ = true;
     if (is_heading) {

@@ -6,28 +6,17 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <span>
 #include <sstream>
-#include <system_error>
 
 namespace gcpdda {
 
 namespace {
 
 constexpr double largest_number = 1e9; // s, m/s, m/s2
-
-std::optional<double> to_number(std::string_view text) {
-  text.remove_prefix(text.starts_with('+') ? 1 : 0);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && std::abs(value) <= largest_number ? std::optional(value) : std::nullopt;
-}
 
 class RecordReader {
 public:
@@ -60,23 +49,11 @@ private:
     if (trimmed(row).empty() || trimmed(row).starts_with('#')) {
       return;
     }
-    std::array<std::string_view, 3> fields;
-    std::array<int, 3> columns{};
-    std::size_t count = 0;
-    for (std::size_t at = 0; at <= row.size(); ++count) {
-      const std::size_t end = std::min(row.find(',', at), row.size());
-      if (count < fields.size()) {
-        fields[count] = trimmed(row.substr(at, end - at));
-        columns[count] = static_cast<int>(fields[count].empty()
-                                              ? at
-                                              : static_cast<std::size_t>(fields[count].data() - row.data())) +
-                         1;
-      }
-      at = end + 1;
-    }
+    const CsvRow<3> cells(row);
+    const auto &[fields, columns, count] = cells;
     std::array<std::optional<double>, 3> numbers;
     for (std::size_t k = 0; k < std::min(count, fields.size()); ++k) {
-      numbers[k] = to_number(fields[k]);
+      numbers[k] = to_number(fields[k], largest_number);
     }
     const bool is_heading = num_fields_ == 0 && !numbers[0] && !numbers[1];
     if (count < 2 || count > fields.size() || (num_fields_ != 0 && count != num_fields_)) {

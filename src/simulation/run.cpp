@@ -222,14 +222,7 @@ private:
 
   void report_fidelity(const RunSettings &run) {
     const FidelityReport &fidelity = simulation_.fidelity();
-    log_->line(
-        fmt::format("fidelity: {} rigid and {} deformable blocks; rigid leaves out up to {:.2g} of the "
-                    "joints' compliance k_n L/(E + k_n L), accepted are {:g}{}",
-                    fidelity.num_rigid, fidelity.num_deformable, fidelity.worst_rigid, run.accepted_error,
-                    fidelity.num_deformable > 0
-                        ? fmt::format("; of the deformable blocks it would leave out up to {:.2g}",
-                                      fidelity.worst_deformable)
-                        : ""));
+    log_->line(words_on_fidelity(fidelity, run.accepted_error));
     if (fidelity.worst_rigid > run.accepted_error) {
       log_->line("warning: the scene asks for rigid blocks that leave out more than is accepted "
                  "(run.accepted_error), use fidelity = \"auto\"");

@@ -25,6 +25,17 @@ std::string fault_message(const Simulation &simulation) {
   return fmt::format("{}: its state is no longer finite; try a smaller run.time_step", where);
 }
 
+std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_error) {
+  const std::string deformable =
+      fidelity.num_deformable > 0 ? fmt::format("; of the deformable blocks it would leave out up to {:.2g}",
+                                                fidelity.worst_deformable)
+                                  : "";
+  return fmt::format(
+      "fidelity: {} rigid and {} deformable blocks; rigid leaves out up to {:.2g} of the joints' "
+      "compliance k_n L/(E + k_n L), accepted are {:g}{}",
+      fidelity.num_rigid, fidelity.num_deformable, fidelity.worst_rigid, accepted_error, deformable);
+}
+
 std::string words_on_bolts(const Simulation &simulation) {
   const StepBound &bound = simulation.bound();
   return fmt::format("bolts: {} in the scene, springs in place: {}; omega_max {:.6g} rad/s with them, {:.6g} "

@@ -491,9 +491,8 @@ TEST(BadScene, EndlessKeyAndEndlessArray) {
   for (int i = 0; i < 100'000; ++i) {
     key += ".a";
   }
-  const std::vector<std::string> endless_key{
-      "s.toml:2:403: error: key with more than 200 levels, remove the superfluous dots"};
-  EXPECT_EQ(messages("# " + std::string(1000, '.') + "\n[" + key + "]\n"), endless_key);
+  EXPECT_EQ(messages("# " + std::string(1000, '.') + "\n[" + key + "]\n").at(0),
+            "s.toml:2:403: error: key with more than 200 levels, remove the superfluous dots");
   EXPECT_EQ(messages("a = " + std::string(100'000, '[')).size(), 1U);
 }
 
