@@ -69,9 +69,13 @@ void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, 
   add_torques(force.shear_torque, force.shear_force);
 }
 
-void ContactForces::find_increments(const BlockSystem &system, std::size_t first, std::size_t last) {
+void ContactForces::find_motions(const BlockSystem &system, std::size_t first, std::size_t last) {
   for (std::size_t row = first; row < last; ++row) {
-    increments_[row] = trial_increment(system, row);
+    const RigidDof &velocity = system.velocity[row];
+    motions_[row] = {system.trial_centroid[row], velocity.u, {}, velocity.r, 0.0, system.box[row]};
+    if (!system.is_fixed(row)) {
+      motions_[row].increment = trial_increment(system, row);
+    }
     if (system.is_deformable(row)) {
       const std::size_t k = system.deformation_begin[row];
       const Mat2 &to_reference = system.trial_inverse[k];
@@ -86,71 +90,100 @@ RegionForce &ContactForces::append_force(const RegionForce &force) {
   return forces_[num_forces_++] = force;
 }
 
-/// Up to as many entries of Candidates::plain as there are lanes.
-void ContactForces::evaluate_alike(const BlockSystem &system, const Candidates &candidates,
-                                   const ContactHistory &history, std::span<const std::uint32_t> entries) {
-  static_assert(std::tuple_size_v<decltype(own_)> == PlainBatch::most_lanes);
-  std::array<const CandidatePair *, PlainBatch::most_lanes> constants;
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const PlainPair &plain = candidates.plain[entries[i]];
-    constants[i] = &candidates.pairs[plain.pair];
-    if (plain.is_mixed && history.ranges[plain.pair].count > 0) {
-      own_[i] = constants_of(system, parameters_, *constants[i], history.of_pair(plain.pair).front().law);
-      constants[i] = &own_[i];
+// Up to as many entries of Candidates::plain as there are lanes.
+void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries,
+                                   bool by_corners) {
+  static_assert(std::tuple_size_v<decltype(own_)> == most_lanes);
+  PlainLanes lanes;
+  lanes.count = entries.size();
+  for (std::size_t i = 0; i < most_lanes; ++i) {
+    const PlainPair &plain = scene.candidates.plain[entries[std::min(i, entries.size() - 1)]];
+    const RegionRange &old = scene.history.ranges[plain.pair];
+    lanes.pair[i] = &plain;
+    lanes.constants[i] = &scene.candidates.pairs[plain.pair];
+    lanes.memory[i] = old.count == 0 ? &PlainLanes::no_memory : scene.history.regions.data() + old.begin;
+    if (plain.is_mixed && old.count > 0) {
+      own_[i] = constants_of(scene.system, parameters_, *lanes.constants[i], lanes.memory[i]->law);
+      lanes.constants[i] = &own_[i];
     }
   }
-  const PlainScene scene{system,
-                         candidates,
-                         history,
-                         increments_,
-                         deforming_,
-                         parameters_.damping_ratio,
-                         parameters_.stiffness_damping};
-  const unsigned touching = batch_->evaluate(scene, entries, std::span(constants).first(entries.size()));
-  if (touching == 0) {
-    return;
+  PlainBatch::Corners found;
+  if (by_corners) {
+    found = batch_->evaluate_corners(scene, lanes);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (((found.touching | found.apart) >> i & 1U) == 0) {
+        others_.push_back(entries[i]);
+      }
+    }
+  } else {
+    found.touching = batch_->evaluate(scene, lanes);
   }
+  if (found.touching != 0) {
+    store_alike(scene, lanes, found.touching);
+  }
+}
+
+void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching) {
   PlainBatch::Results results;
-  make_room_for(entries.size());
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const PlainPair &plain = candidates.plain[entries[i]];
+  make_room_for(lanes.count);
+  for (std::size_t i = 0; i < lanes.count; ++i) {
+    const PlainPair &plain = *lanes.pair[i];
     if ((touching >> i & 1U) == 0) {
       continue;
     }
-    const bool is_born = history.ranges[plain.pair].count == 0;
+    const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
     if (is_born && plain.is_mixed) {
       births_.push_back(plain.pair);
       continue;
     }
     ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
-    RegionForce &force = forces_[num_forces_++];
+    RegionForce &force = forces_[num_forces_];
     force.pair = plain.pair;
     force.born = is_born;
     force.bonded = false;
+    RegionMemory &memory = next_.regions[num_forces_];
+    memory.law = plain.is_mixed ? lanes.constants[i]->law : memory.law;
     results.force[i] = &force;
+    results.memory[i] = &memory;
+    ++num_forces_;
   }
-  next_.regions.resize(num_forces_);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (results.force[i] != nullptr) {
-      RegionMemory &memory = next_.regions[static_cast<std::size_t>(results.force[i] - forces_.data())];
-      memory.law = candidates.plain[entries[i]].is_mixed ? constants[i]->law : memory.law;
-      results.memory[i] = &memory;
-    }
+  const unsigned too_deep = batch_->store(results);
+  if (too_deep == 0 && !lanes.pair[0]->is_deformable) {
+    return;
   }
-  batch_->store(results);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
+  for (std::size_t i = 0; i < lanes.count; ++i) {
     if (results.force[i] == nullptr) {
       continue;
     }
-    const PlainPair &plain = candidates.plain[entries[i]];
-    if (plain.is_deformable) {
+    if (lanes.pair[i]->is_deformable) {
       damping_dyads_.resize(static_cast<std::size_t>(results.force[i] - forces_.data()) + 1);
       damping_dyads_.back() = batch_->damping_dyad(i);
     }
-    note(system, candidates.pairs[plain.pair], *results.force[i]);
+    if ((too_deep >> i & 1U) != 0) {
+      note(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], *results.force[i]);
+    }
   }
 }
 
+template <class Visit>
+void ContactForces::for_batches(const Candidates &candidates, const ContactHistory &history,
+                                std::span<const std::uint32_t> entries, Visit &&visit) {
+  const std::vector<PlainPair> &plain = candidates.plain;
+  const std::size_t width = batch_->width();
+  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
+    for (std::size_t k = begin + ahead; k < std::min(entries.size(), begin + ahead + width); ++k) {
+      fetch_pair(candidates, history, plain[entries[k]].pair);
+    }
+    end = begin + 1;
+    while (end < std::min(entries.size(), begin + width) &&
+           plain[entries[begin]].is_like(plain[entries[end]])) {
+      ++end;
+    }
+    visit(entries.subspan(begin, end - begin));
+  }
+}
+
+// First those that may touch with one corner of each block; those that do not are left to the general lanes.
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                                          ContactHistory &history, std::size_t first, std::size_t last) {
   const std::vector<PlainPair> &plain = candidates.plain;
@@ -158,24 +191,34 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
   std::size_t num_meeting = 0;
   for (std::size_t k = first; k < last; ++k) {
     meeting_[num_meeting] = static_cast<std::uint32_t>(k);
-    num_meeting += system.box[plain[k].lower.value].meets(system.box[plain[k].higher.value]) ? 1 : 0;
+    num_meeting += motions_[plain[k].lower.value].box.meets(motions_[plain[k].higher.value].box) ? 1 : 0;
   }
+  meeting_.resize(num_meeting);
   report_.evaluations += static_cast<std::int64_t>(num_meeting);
-  const auto alike = [&](std::size_t a, std::size_t b) {
-    return plain[meeting_[a]].is_like(plain[meeting_[b]]);
-  };
   births_.clear();
-  const std::size_t width = batch_->width();
-  for (std::size_t begin = 0, end = 0; begin < num_meeting; begin = end) {
-    for (std::size_t k = begin + ahead; k < std::min(num_meeting, begin + ahead + width); ++k) {
-      fetch_pair(candidates, history, plain[meeting_[k]].pair);
+  others_.clear();
+  next_.regions.resize(num_forces_ + num_meeting);
+  const PlainScene scene{system,
+                         candidates,
+                         history,
+                         motions_,
+                         deforming_,
+                         parameters_.damping_ratio,
+                         parameters_.stiffness_damping};
+  for_batches(candidates, history, meeting_, [&](std::span<const std::uint32_t> entries) {
+    if (plain[entries[0]].may_be_corners(PlainBatch::most_corner_edges)) {
+      evaluate_alike(scene, entries, true);
+    } else {
+      others_.insert(others_.end(), entries.begin(), entries.end());
     }
-    end = begin + 1;
-    while (end < std::min(num_meeting, begin + width) && alike(begin, end)) {
-      ++end;
-    }
-    evaluate_alike(system, candidates, history, std::span(meeting_).subspan(begin, end - begin));
-  }
+  });
+  for_batches(candidates, history, others_,
+              [&](std::span<const std::uint32_t> entries) { evaluate_alike(scene, entries, false); });
+  next_.regions.resize(num_forces_);
+  const PlainBatch::Extremes seen = batch_->take_extremes();
+  report_.normals_undefined += seen.normals_undefined;
+  report_.max_overlap = std::max(report_.max_overlap, seen.max_overlap);
+  report_.max_overlap_share = std::max(report_.max_overlap_share, seen.max_overlap_share);
   for (const std::uint32_t number : births_) {
     const auto begin = static_cast<std::uint32_t>(num_forces_);
     evaluate_pair(system, candidates, number, {});
@@ -200,9 +243,10 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
 
 void ContactForces::evaluate_interior(const BlockSystem &system, const Candidates &candidates,
                                       ContactHistory &history) {
-  increments_.assign(system.num_rows(), {});
+  motions_.resize(system.num_rows());
   deforming_.resize(system.deformation.size());
-  find_increments(system, 0, system.num_owned);
+  find_motions(system, 0, system.num_owned);
+  find_motions(system, system.first_fixed(), system.num_rows());
   num_forces_ = 0;
   damping_dyads_.clear();
   bond_dyads_.clear();
@@ -220,7 +264,7 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
 
 ForceReport ContactForces::evaluate_border(const BlockSystem &system, const Candidates &candidates,
                                            ContactHistory &history) {
-  find_increments(system, system.num_owned, system.first_fixed());
+  find_motions(system, system.num_owned, system.first_fixed());
   evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).subspan(candidates.num_interior_general));

@@ -97,8 +97,8 @@ double ContactForces::guessed_slip(const BlockSystem &system, const CandidatePai
   const Aabb &b = closed_.higher().box;
   const Vec2 middle = 0.5 * (Vec2{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)} +
                              Vec2{std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)});
-  const Vec2 slide =
-      slide_at(system, pair, middle, increments_[pair.lower.value], increments_[pair.higher.value]);
+  const Vec2 slide = slide_at(system, pair, middle, motions_[pair.lower.value].increment,
+                              motions_[pair.higher.value].increment);
   return std::abs(cross(dilation_axes(system, pair)(known.dilation), slide)) / norm(known.dilation);
 }
 
@@ -112,8 +112,8 @@ double ContactForces::consistent_slip(const BlockSystem &system, const Candidate
   const double tan_friction =
       law.is_barton_bandis && extent > 0.0 ? law.tan_friction_at(normal_force / extent) : pair.tan_friction;
   const double stiffness = pair.tangential_stiffness * std::max(known.longest, extent);
-  const Vec2 slide =
-      slide_at(system, pair, force.point, increments_[pair.lower.value], increments_[pair.higher.value]);
+  const Vec2 slide = slide_at(system, pair, force.point, motions_[pair.lower.value].increment,
+                              motions_[pair.higher.value].increment);
   const double trial = known.shear + stiffness * dot(slide, perp(force.normal));
   const double by_opening = 2.0 * pair.half_stiffness * extent * law.tan_dilation * tan_friction;
   const double excess = std::abs(trial) - (normal_force * tan_friction + pair.cohesion * extent);

@@ -11,8 +11,6 @@
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-using Rows = std::array<std::size_t, num_lanes>;
-
 /// A dyad or a gradient, by entries xx, xy, yx, yy.
 struct LaneMat {
   FourLanes entry;
@@ -28,39 +26,54 @@ struct LaneMat {
   }
 };
 
-using Chains = std::array<const std::uint32_t *, num_lanes>;
+/// One block of each pair.
+struct LaneBlocks {
+  std::array<std::size_t, num_lanes> row;
+  std::array<const BlockMotion *, num_lanes> motion;
+  std::array<const std::uint32_t *, num_lanes> chain; ///< entries of BlockSystem::vertex
+};
 
-inline void load_side(const BlockSystem &system, const Rows &rows, const Chains &chain, std::size_t edges,
-                      LaneSide &side) {
-  side.edges = edges;
-  for (std::size_t k = 0; k <= edges; ++k) {
-    side.vertex[k] = LaneVec::of([&](std::size_t i) { return &system.vertex[chain[i][k]]; });
-  }
-  for (std::size_t k = 0; k < edges; ++k) {
-    side.normal[k] = LaneVec::of([&](std::size_t i) { return &system.normal[chain[i][k]]; });
-    side.slope[k] = side.normal[k];
-    side.length[k] = Lanes::of([&](std::size_t i) { return system.edge_length[chain[i][k]]; });
-  }
-  const FourLanes box = load_by_lane([&](std::size_t i) { return &system.box[rows[i]].low.x; });
+[[gnu::always_inline]] inline void load_box(const LaneBlocks &blocks, LaneSide &side) {
+  const FourLanes box = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->box.low.x; });
   side.low = {box[0], box[1]};
   side.high = {box[2], box[3]};
 }
 
+[[gnu::always_inline]] inline LaneVec load_vertex(const BlockSystem &system, const LaneBlocks &blocks,
+                                                  std::size_t k) {
+  const Vec2 *vertex = system.vertex.data();
+  return LaneVec::of([&](std::size_t i) { return vertex + blocks.chain[i][k]; });
+}
+
+[[gnu::always_inline]] inline void load_edge(const BlockSystem &system, const LaneBlocks &blocks,
+                                             std::size_t k, LaneSide &side) {
+  std::array<std::size_t, num_lanes> at;
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    at[i] = blocks.chain[i][k];
+  }
+  const Vec2 *vertex = system.vertex.data();
+  const Vec2 *normal = system.normal.data();
+  const double *length = system.edge_length.data();
+  side.vertex[k] = LaneVec::of([&](std::size_t i) { return vertex + at[i]; });
+  side.normal[k] = LaneVec::of([&](std::size_t i) { return normal + at[i]; });
+  side.slope[k] = side.normal[k];
+  side.length[k] = Lanes::of([&](std::size_t i) { return length[at[i]]; });
+}
+
 /// Depths inside a deformable block are those in its reference polygon over J.
-inline void load_deformed_slopes(const PlainScene &scene, const Rows &rows, const Chains &chain,
-                                 LaneSide &side) {
+inline void load_deformed_slopes(const PlainScene &scene, const LaneBlocks &blocks, LaneSide &side) {
   static constexpr Mat2 identity = Mat2::identity();
   const BlockSystem &system = scene.system;
   std::array<const Vec2 *, num_lanes> normals;
   std::array<const Mat2 *, num_lanes> slopes;
   for (std::size_t i = 0; i < num_lanes; ++i) {
-    const bool deforms = system.is_deformable(rows[i]);
+    const bool deforms = system.is_deformable(blocks.row[i]);
     normals[i] = deforms ? system.reference_normal.data() : system.normal.data();
-    slopes[i] = deforms ? &scene.deforming[system.deformation_begin[rows[i]]].slopes : &identity;
+    slopes[i] = deforms ? &scene.deforming[system.deformation_begin[blocks.row[i]]].slopes : &identity;
   }
   const LaneMat of_normals = LaneMat::of([&](std::size_t i) { return slopes[i]; });
   for (std::size_t k = 0; k < side.edges; ++k) {
-    side.slope[k] = of_normals(LaneVec::of([&](std::size_t i) { return normals[i] + chain[i][k]; }));
+    side.slope[k] = of_normals(LaneVec::of([&](std::size_t i) { return normals[i] + blocks.chain[i][k]; }));
   }
 }
 
@@ -70,20 +83,24 @@ struct TranslatingMotion {
   LaneVec higher_centroid;
   LaneVec lower_velocity;
   LaneVec higher_velocity;
-  LaneVec lower_step;
-  LaneVec higher_step;
 
-  TranslatingMotion(const PlainScene &scene, const Rows &a, const Rows &b) {
-    const BlockSystem &system = scene.system;
-    lower_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[a[i]]; });
-    higher_centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[b[i]]; });
-    lower_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[a[i]].u; });
-    higher_velocity = LaneVec::of([&](std::size_t i) { return &system.velocity[b[i]].u; });
+  TranslatingMotion(const LaneBlocks &lower, const LaneBlocks &higher) {
+    take(lower, lower_centroid, lower_velocity);
+    take(higher, higher_centroid, higher_velocity);
+  }
+
+private:
+  [[gnu::always_inline]] static void take(const LaneBlocks &blocks, LaneVec &centroid, LaneVec &velocity) {
+    const FourLanes both = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->centroid.x; });
+    centroid = {both[0], both[1]};
+    velocity = {both[2], both[3]};
   }
 };
 
 /// Velocities and increments of two rigid blocks.
 struct RigidMotion : TranslatingMotion {
+  LaneVec lower_step;
+  LaneVec higher_step;
   Lanes lower_spin;
   Lanes higher_spin;
   Lanes lower_sine;
@@ -91,18 +108,9 @@ struct RigidMotion : TranslatingMotion {
   Lanes lower_versine;
   Lanes higher_versine;
 
-  RigidMotion(const PlainScene &scene, const Rows &a, const Rows &b) : TranslatingMotion(scene, a, b) {
-    lower_spin = Lanes::of([&](std::size_t i) { return scene.system.velocity[a[i]].r; });
-    higher_spin = Lanes::of([&](std::size_t i) { return scene.system.velocity[b[i]].r; });
-    take_increments(scene, a, lower_step, lower_sine, lower_versine);
-    take_increments(scene, b, higher_step, higher_sine, higher_versine);
-  }
-  [[gnu::always_inline]] static void take_increments(const PlainScene &scene, const Rows &rows, LaneVec &step,
-                                                     Lanes &sine, Lanes &versine) {
-    const FourLanes increment = load_by_lane([&](std::size_t i) { return &scene.increments[rows[i]].u.x; });
-    step = {increment[0], increment[1]};
-    versine = increment[2]; // a small turn is {versine, -sine; sine, versine}
-    sine = -increment[3];
+  RigidMotion(const LaneBlocks &lower, const LaneBlocks &higher) : TranslatingMotion(lower, higher) {
+    take_turn(lower, lower_spin, lower_step, lower_sine, lower_versine);
+    take_turn(higher, higher_spin, higher_step, higher_sine, higher_versine);
   }
   /// Of the lower block's material point against the higher one's.
   [[nodiscard, gnu::always_inline]] LaneVec velocity_at(const LaneVec &x) const {
@@ -119,32 +127,44 @@ struct RigidMotion : TranslatingMotion {
     return (lower_step + (lower_versine * r + lower_sine * perp(r))) -
            (higher_step + (higher_versine * q + higher_sine * perp(q)));
   }
+
+private:
+  [[gnu::always_inline]] static void take_turn(const LaneBlocks &blocks, Lanes &spin, LaneVec &step,
+                                               Lanes &sine, Lanes &versine) {
+    const FourLanes increment = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->increment.u.x; });
+    spin = Lanes::of([&](std::size_t i) { return blocks.motion[i]->spin; });
+    step = {increment[0], increment[1]};
+    versine = increment[2]; // a small turn is {versine, -sine; sine, versine}
+    sine = -increment[3];
+  }
 };
 
 /// The same where one of two blocks deforms.
 struct DeformingMotion : TranslatingMotion {
   LaneMat lower_rate; ///< velocity gradients, 1/s
   LaneMat higher_rate;
+  LaneVec lower_step;
+  LaneVec higher_step;
   LaneMat lower_turn;
   LaneMat higher_turn;
 
-  DeformingMotion(const PlainScene &scene, const Rows &a, const Rows &b) : TranslatingMotion(scene, a, b) {
+  DeformingMotion(const PlainScene &scene, const LaneBlocks &lower, const LaneBlocks &higher)
+      : TranslatingMotion(lower, higher) {
     const BlockSystem &system = scene.system;
-    const auto rates_of = [&](const Rows &rows) {
+    const auto rates_of = [&](const LaneBlocks &blocks) {
       std::array<Mat2, num_lanes> rates;
       for (std::size_t i = 0; i < num_lanes; ++i) {
-        const double spin = system.velocity[rows[i]].r;
-        rates[i] = system.is_deformable(rows[i]) ? scene.deforming[system.deformation_begin[rows[i]]].rate
-                                                 : Mat2{0.0, -spin, spin, 0.0};
+        const double spin = blocks.motion[i]->spin;
+        rates[i] = system.is_deformable(blocks.row[i])
+                       ? scene.deforming[system.deformation_begin[blocks.row[i]]].rate
+                       : Mat2{0.0, -spin, spin, 0.0};
       }
       return LaneMat::of([&](std::size_t i) { return &rates[i]; });
     };
-    lower_rate = rates_of(a);
-    higher_rate = rates_of(b);
-    lower_step = LaneVec::of([&](std::size_t i) { return &scene.increments[a[i]].u; });
-    higher_step = LaneVec::of([&](std::size_t i) { return &scene.increments[b[i]].u; });
-    lower_turn = LaneMat::of([&](std::size_t i) { return &scene.increments[a[i]].turn; });
-    higher_turn = LaneMat::of([&](std::size_t i) { return &scene.increments[b[i]].turn; });
+    lower_rate = rates_of(lower);
+    higher_rate = rates_of(higher);
+    take_turn(lower, lower_step, lower_turn);
+    take_turn(higher, higher_step, higher_turn);
   }
   [[nodiscard, gnu::always_inline]] LaneVec velocity_at(const LaneVec &x) const {
     return (lower_velocity + lower_rate(x - lower_centroid)) -
@@ -155,6 +175,12 @@ struct DeformingMotion : TranslatingMotion {
   }
   [[nodiscard, gnu::always_inline]] LaneVec slide_at(const LaneVec &x) const {
     return (lower_step + lower_turn(x - lower_centroid)) - (higher_step + higher_turn(x - higher_centroid));
+  }
+
+private:
+  [[gnu::always_inline]] static void take_turn(const LaneBlocks &blocks, LaneVec &step, LaneMat &turn) {
+    step = LaneVec::of([&](std::size_t i) { return &blocks.motion[i]->increment.u; });
+    turn = LaneMat::of([&](std::size_t i) { return &blocks.motion[i]->increment.turn; });
   }
 };
 

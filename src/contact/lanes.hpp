@@ -24,6 +24,7 @@ struct Mask {
 
   [[gnu::always_inline]] friend Mask operator&(const Mask &a, const Mask &b) { return {a.bits & b.bits}; }
   [[gnu::always_inline]] friend Mask operator|(const Mask &a, const Mask &b) { return {a.bits | b.bits}; }
+  [[gnu::always_inline]] friend Mask operator^(const Mask &a, const Mask &b) { return {a.bits ^ b.bits}; }
   [[gnu::always_inline]] friend Mask operator!(const Mask &a) { return {~a.bits}; }
   /// Bit i is lane i.
   [[nodiscard, gnu::always_inline]] unsigned by_lane() const {

@@ -133,8 +133,8 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   if (bonds.released) {
     memory.shear += bonds.shear; // stretched to this configuration already
   } else if (!force.born) {
-    const Vec2 slide =
-        slide_at(system, pair, force.point, increments_[pair.lower.value], increments_[pair.higher.value]);
+    const Vec2 slide = slide_at(system, pair, force.point, motions_[pair.lower.value].increment,
+                                motions_[pair.higher.value].increment);
     memory.shear += stiffness * dot(slide, tangent);
   }
   if (std::abs(memory.shear) > force.cap) {

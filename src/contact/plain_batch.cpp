@@ -9,6 +9,8 @@
 
 namespace gcpdda {
 
+const RegionMemory PlainLanes::no_memory{.slip = -1.0, .position = {}, .dilation = {}};
+
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions) {
   if (instructions == Instructions::widest) {
     if (std::unique_ptr<PlainBatch> wide = make_avx2_batch()) {

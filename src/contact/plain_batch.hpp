@@ -18,10 +18,24 @@ struct PlainScene {
   const BlockSystem &system;
   const Candidates &candidates;
   const ContactHistory &history;
-  std::span<const TrialIncrement> increments;
+  std::span<const BlockMotion> motions;
   std::span<const DeformingBlock> deforming; ///< by entry of BlockSystem::deformation
   double damping_ratio = 0.0;
   double stiffness_damping = 0.0;
+};
+
+/// Most pairs at a time.
+constexpr std::size_t most_lanes = 4;
+
+/// Up to as many pairs as there are lanes, with like numbers of edges, all rigid or none; lanes beyond repeat
+/// the last one.
+struct PlainLanes {
+  std::size_t count = 0;
+  std::array<const PlainPair *, most_lanes> pair;
+  std::array<const CandidatePair *, most_lanes> constants;
+  std::array<const RegionMemory *, most_lanes> memory; ///< no_memory where there is none
+
+  static const RegionMemory no_memory; ///< has a slip below 0
 };
 
 /// Evaluates as many pairs at once as the registers of its instructions hold. All instructions give the same
@@ -29,14 +43,19 @@ struct PlainScene {
 class PlainBatch {
 public:
   virtual ~PlainBatch() = default;
-  /// Most pairs at a time.
   [[nodiscard]] virtual std::size_t width() const = 0;
-  static constexpr std::size_t most_lanes = 4;
-  /// Evaluate up to width() entries of Candidates::plain with like numbers of edges, all rigid or none, with
-  /// the constants that go with each.
-  /// @return bit i is set where entry i touches
-  virtual unsigned evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
-                            std::span<const CandidatePair *const> constants) = 0;
+  /// @return bit i is set where lane i touches
+  virtual unsigned evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;
+  /// What evaluate_corners() can say of each lane, by bits.
+  struct Corners {
+    unsigned touching = 0;
+    unsigned apart = 0;
+  };
+  /// The same for those that overlap with one corner of each block, which is far less work
+  /// (lane_corners.hpp). Of the others some are seen not to touch, the rest is left to evaluate().
+  virtual Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) = 0;
+  /// Most edges of each block that evaluate_corners() looks at.
+  static constexpr std::size_t most_corner_edges = 4;
   /// Where results go, by lane; null where no one asks.
   struct Results {
     std::array<RegionForce *, most_lanes> force{};
@@ -44,9 +63,17 @@ public:
   };
   /// Write the results of lanes that touch: all of a force but its pair, birth and bond, and what of the
   /// memory two convex blocks have.
-  virtual void store(const Results &results) = 0;
+  /// @return bit i is set where the overlap of lane i exceeds what is allowed
+  virtual unsigned store(const Results &results) = 0;
   /// Of a lane that touches where a block is deformable.
   [[nodiscard]] virtual Mat2 damping_dyad(std::size_t lane) const = 0;
+  /// Of all that has been stored since these were taken last.
+  struct Extremes {
+    std::int64_t normals_undefined = 0;
+    double max_overlap = 0.0;
+    double max_overlap_share = 0.0;
+  };
+  virtual Extremes take_extremes() = 0;
 };
 
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions);

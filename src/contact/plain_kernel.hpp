@@ -2,7 +2,9 @@
 
 // What plain_batch.hpp promises, with one contact in each lane.
 
+#include "lane_corners.hpp"
 #include "lane_motion.hpp"
+#include "lane_region.hpp"
 #include "lane_stretch.hpp"
 #include "plain_batch.hpp"
 
@@ -11,145 +13,101 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <type_traits>
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// a b^T added by entries xx, xy, yx, yy.
-[[gnu::always_inline]] inline void add_outer(FourLanes &dyad, const LaneVec &a, const LaneVec &b) {
-  dyad[0] += a.x * b.x;
-  dyad[1] += a.x * b.y;
-  dyad[2] += a.y * b.x;
-  dyad[3] += a.y * b.y;
-}
-
-/// int q ds and int q s ds of a linear q.
-struct LaneTraction {
-  Lanes total;
-  Lanes along;
-
-  LaneTraction()
-      : total(0.0), along(0.0) {} // written out: an implied one is not compiled for the lanes' instructions
-
-  [[gnu::always_inline]] void add_linear(const Lanes &s0, const Lanes &q0, const Lanes &s1, const Lanes &q1) {
-    const Lanes length = s1 - s0;
-    const Lanes stretch = Lanes(0.5) * length * (q0 + q1);
-    total += stretch;
-    along += s0 * stretch + length * length * (q0 + Lanes(2.0) * q1) * Lanes(1.0 / 6.0);
-  }
-};
-
-/// Of q = max(-p, d) over a piece, p >= 0 and d linear.
-inline LaneTraction integrate_without_tension(const Lanes &length, const Lanes &p0, const Lanes &p1,
-                                              const Lanes &d0, const Lanes &d1) {
-  const Lanes sum0 = p0 + d0;
-  const Lanes sum1 = p1 + d1;
-  const Mask changes = ((sum0 > 0.0) & (sum1 < 0.0)) | ((sum0 < 0.0) & (sum1 > 0.0));
-  const Lanes q0 = max(-p0, d0);
-  const Lanes q1 = max(-p1, d1);
-  LaneTraction q;
-  if (!changes.any()) {
-    q.add_linear(0.0, q0, length, q1);
-    return q;
-  }
-  const Lanes share = sum0 / (sum0 - sum1);
-  const Lanes cut = select(changes, share * length, length);
-  const Lanes at_cut = select(changes, -(p0 + share * (p1 - p0)), q1);
-  q.add_linear(0.0, q0, cut, at_cut);
-  q.add_linear(cut, at_cut, length, q1);
-  return q;
-}
 
 class LaneBatch final : public PlainBatch {
 public:
   static_assert(num_lanes <= most_lanes);
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
-  unsigned evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
-                    std::span<const CandidatePair *const> constants) override;
-  void store(const Results &results) override;
-  [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const override;
+  unsigned evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
+  Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
+  unsigned store(const Results &results) override { return regions_.store(results); }
+  [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const override { return regions_.damping_dyad(lane); }
+  Extremes take_extremes() override { return regions_.take_extremes(); }
 
 private:
-  struct Constants;
-  using Torques = std::array<Lanes, 2>; ///< on the lower and the higher block
-
+  struct Pairs;
+  static LaneConstants load_constants(const PlainScene &scene, const Pairs &pairs);
   void integrate();
-  void measure();
-  template <class AnyMotion> void add_friction(const Constants &constants, const AnyMotion &motion);
-  template <class AnyMotion> void add_dashpot(const Constants &constants, const AnyMotion &motion);
-  template <class AnyMotion>
-  void add_friction_and_dashpots(const Constants &constants, const AnyMotion &motion);
+  void measure(const LaneConstants &constants);
+  template <class AnyMotion> void add_dashpot(const LaneConstants &constants, const AnyMotion &motion);
+  template <std::size_t lower_edges, std::size_t higher_edges>
+  Corners evaluate_corners(const PlainScene &scene, const Pairs &pairs);
+  template <class Overlap> void measure(const Overlap &overlap, const LaneConstants &constants);
+  template <class Overlap, class AnyMotion>
+  void add_dashpot(const Overlap &overlap, const LaneConstants &constants, const AnyMotion &motion);
+  template <class AddDashpot>
+  void add_friction_and_dashpots(const PlainScene &scene, const Pairs &pairs, const LaneConstants &constants,
+                                 AddDashpot &&add_dashpot);
 
   LaneSide lower_;
   LaneSide higher_;
   LaneStretches on_lower_;
   LaneStretches on_higher_;
-
-  // RegionForce and RegionMemory, one in each lane.
-  Mask touches_;
-  Mask undefined_;
-  LaneVec origin_;
-  LaneVec force_;
-  FourLanes dyad_;
-  Lanes pressure_;
-  LaneVec point_;
-  LaneVec normal_;
-  Lanes normal_force_;
-  Lanes overlap_;
-  Lanes extent_begin_;
-  Lanes extent_end_;
-  Lanes longest_;
-  Lanes elastic_;
-  Lanes shear_;
-  Lanes slip_;
-  Lanes cap_;
-  Mask slips_;
-  LaneVec damping_force_;
-  FourLanes damping_dyad_; ///< of pairs with a deformable block
-  Torques torque_;
-  Torques shear_torque_;
-  Torques damping_torque_;
-  RegionForce unwanted_; ///< takes what lanes write that no one asks
+  LaneRegions regions_;
 };
 
-struct LaneBatch::Constants {
-  Lanes half_stiffness;
-  Lanes tangential_stiffness;
-  Lanes tan_friction;
-  Lanes cohesion;
-  Lanes damping;
-  Lanes mass;
-  double damping_ratio;
-  double stiffness_damping;
-  Lanes was_there; ///< 1 where the region has a memory
-  Lanes shear;
-  Lanes longest;
-  Lanes slip;
+/// The blocks of the pair in each lane.
+struct LaneBatch::Pairs {
+  const PlainLanes &lanes;
+  const PlainPair &first; ///< all are like it
+  LaneBlocks lower;
+  LaneBlocks higher;
+
+  [[gnu::always_inline]] Pairs(const PlainScene &scene, const PlainLanes &given)
+      : lanes(given), first(*given.pair[0]) {
+    const BlockMotion *motions = scene.motions.data();
+    const std::uint32_t *chains = scene.candidates.chain_vertices.data();
+    const std::size_t higher_chain = first.lower_edges + std::size_t{1};
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      const PlainPair &plain = *lanes.pair[i];
+      lower.row[i] = plain.lower.value;
+      higher.row[i] = plain.higher.value;
+      lower.motion[i] = motions + plain.lower.value;
+      higher.motion[i] = motions + plain.higher.value;
+      lower.chain[i] = chains + plain.chain;
+      higher.chain[i] = chains + plain.chain + higher_chain;
+    }
+  }
 };
+
+inline LaneConstants LaneBatch::load_constants(const PlainScene &scene, const Pairs &pairs) {
+  // Each with what stands behind it.
+  const FourLanes strength =
+      load_by_lane([&](std::size_t i) { return &pairs.lanes.constants[i]->half_stiffness; });
+  const FourLanes dashpot = load_by_lane([&](std::size_t i) { return &pairs.lanes.constants[i]->damping; });
+  const FourLanes known = load_by_lane([&](std::size_t i) { return &pairs.lanes.memory[i]->shear; });
+  return {strength[0],
+          strength[1],
+          strength[2],
+          strength[3],
+          dashpot[0],
+          dashpot[1],
+          dashpot[2],
+          scene.damping_ratio,
+          scene.stiffness_damping,
+          known[2] >= 0.0,
+          known[0],
+          known[1],
+          max(0.0, known[2])};
+}
 
 inline void LaneBatch::integrate() {
+  LaneVec origin = lower_.vertex[0];
   for (std::size_t k = higher_.edges; k-- > 0;) {
-    origin_ = select(on_higher_[k].valid, on_higher_[k].begin, origin_);
+    origin = select(on_higher_[k].valid, on_higher_[k].begin, origin);
   }
   for (std::size_t k = lower_.edges; k-- > 0;) {
-    origin_ = select(on_lower_[k].valid, on_lower_[k].begin, origin_);
+    origin = select(on_lower_[k].valid, on_lower_[k].begin, origin);
   }
-  force_ = {0.0, 0.0};
-  FourLanes dyad{0.0, 0.0, 0.0, 0.0};
-  pressure_ = 0.0;
-  LaneVec pressure_moment{0.0, 0.0};
+  regions_.start(origin);
   const auto add = [&](const LaneStretch &stretch, const LaneVec &normal, const LaneVec &direction) {
-    if (!stretch.valid.any()) {
-      return;
+    if (stretch.valid.any()) {
+      const LaneVec arm = stretch.begin - origin;
+      regions_.add_pressure(stretch.pressure, stretch.pressure * arm + stretch.moment * perp(normal),
+                            direction);
     }
-    const LaneVec arm = stretch.begin - origin_;
-    const LaneVec moment = stretch.pressure * arm + stretch.moment * perp(normal);
-    force_ += stretch.pressure * direction;
-    add_outer(dyad, moment, direction);
-    pressure_ += stretch.pressure;
-    pressure_moment += moment;
   };
   for (std::size_t k = 0; k < lower_.edges; ++k) {
     add(on_lower_[k], lower_.normal[k], -lower_.normal[k]);
@@ -157,24 +115,16 @@ inline void LaneBatch::integrate() {
   for (std::size_t k = 0; k < higher_.edges; ++k) {
     add(on_higher_[k], higher_.normal[k], higher_.normal[k]);
   }
-  dyad_ = dyad;
-  touches_ = pressure_ > 0.0;
-  const Lanes resultant = sqrt(dot(force_, force_));
-  undefined_ = touches_ & (resultant <= Lanes(ContactForces::least_resultant) * pressure_);
-  const Mask defined = touches_ & !undefined_;
-  const Lanes whole = select(touches_, pressure_, 1.0);
-  point_ = origin_ + LaneVec{pressure_moment.x / whole, pressure_moment.y / whole};
-  normal_force_ = resultant;
-  const Lanes inverse = Lanes(1.0) / select(defined, resultant, 1.0);
-  normal_ = select(defined, inverse * force_, LaneVec{0.0, 0.0});
+  regions_.touches = regions_.has_pressure();
+  regions_.find_resultant();
 }
 
-inline void LaneBatch::measure() {
-  const LaneVec tangent = perp(normal_);
-  Lanes low_n = infinite;
-  Lanes low_t = infinite;
-  Lanes high_n = -infinite;
-  Lanes high_t = -infinite;
+inline void LaneBatch::measure(const LaneConstants &constants) {
+  const LaneVec normal = regions_.normal();
+  const LaneVec tangent = perp(normal);
+  const LaneVec point = regions_.point();
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  LaneRegions::Extent extent{infinite, infinite, -infinite, -infinite};
   Lanes deepest = 0.0;
   const auto add = [&](const LaneStretch &stretch) {
     if (!stretch.valid.any()) {
@@ -182,13 +132,13 @@ inline void LaneBatch::measure() {
     }
     deepest = max(deepest, stretch.deepest);
     for (const LaneVec &end : {stretch.begin, stretch.end}) {
-      const LaneVec x = end - point_;
-      const Lanes along_n = dot(x, normal_);
+      const LaneVec x = end - point;
+      const Lanes along_n = dot(x, normal);
       const Lanes along_t = dot(x, tangent);
-      low_n = select(stretch.valid, min(low_n, along_n), low_n);
-      high_n = select(stretch.valid, max(high_n, along_n), high_n);
-      low_t = select(stretch.valid, min(low_t, along_t), low_t);
-      high_t = select(stretch.valid, max(high_t, along_t), high_t);
+      extent.low_n = select(stretch.valid, min(extent.low_n, along_n), extent.low_n);
+      extent.high_n = select(stretch.valid, max(extent.high_n, along_n), extent.high_n);
+      extent.low_t = select(stretch.valid, min(extent.low_t, along_t), extent.low_t);
+      extent.high_t = select(stretch.valid, max(extent.high_t, along_t), extent.high_t);
     }
   };
   for (std::size_t k = 0; k < lower_.edges; ++k) {
@@ -197,53 +147,11 @@ inline void LaneBatch::measure() {
   for (std::size_t k = 0; k < higher_.edges; ++k) {
     add(on_higher_[k]);
   }
-  overlap_ = select(undefined_, Lanes(2.0) * deepest, min(high_n - low_n, Lanes(4.0) * deepest));
-  extent_begin_ = low_t;
-  extent_end_ = high_t;
+  regions_.take_extent(extent, deepest, constants);
 }
 
-template <class AnyMotion> void LaneBatch::add_friction(const Constants &constants, const AnyMotion &motion) {
-  const LaneVec tangent = perp(normal_);
-  const Lanes extent = extent_end_ - extent_begin_;
-  const Mask defined = touches_ & !undefined_;
-  longest_ = select(defined, max(constants.longest, extent), constants.longest);
-  cap_ = select(defined, normal_force_ * constants.tan_friction + constants.cohesion * extent, 0.0);
-  const Mask holds = cap_ > 0.0;
-  slips_ = !holds;
-  const Lanes stiffness = constants.tangential_stiffness * longest_;
-  const LaneVec slide = motion.slide_at(point_);
-  Lanes shear = select((constants.was_there > 0.0) & holds, constants.shear + stiffness * dot(slide, tangent),
-                       constants.shear);
-  const Mask breaks = holds & (abs(shear) > cap_);
-  slips_ = slips_ | breaks;
-  slip_ = select(breaks, constants.slip + (abs(shear) - cap_) / stiffness, constants.slip);
-  shear = select(breaks, select(shear < 0.0, -cap_, cap_), shear);
-  elastic_ = select(holds, shear, 0.0);
-  Lanes viscous = 0.0;
-  if (constants.damping_ratio > 0.0 || constants.stiffness_damping > 0.0) {
-    const LaneVec velocity = motion.velocity_at(point_);
-    const Lanes drag = (Lanes(2.0 * constants.damping_ratio) * sqrt(stiffness * constants.mass) +
-                        Lanes(constants.stiffness_damping) * stiffness) *
-                       dot(velocity, tangent);
-    viscous = select(holds, clamp(elastic_ + drag, -cap_, cap_) - elastic_, 0.0);
-  }
-  shear_ = elastic_ + viscous;
-  const LaneVec friction = -shear_ * tangent;
-  force_ += friction;
-  add_outer(dyad_, point_ - origin_, friction);
-  // A force at x_r has the torque of its size along t_r.
-  const Lanes lower_lever = cross(point_ - motion.lower_centroid, tangent);
-  const Lanes higher_lever = cross(point_ - motion.higher_centroid, tangent);
-  shear_torque_ = {-elastic_ * lower_lever, elastic_ * higher_lever};
-  damping_torque_ = {-viscous * lower_lever, viscous * higher_lever};
-  damping_force_ = -viscous * tangent;
-  if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
-    damping_dyad_ = {0.0, 0.0, 0.0, 0.0};
-    add_outer(damping_dyad_, point_ - origin_, damping_force_);
-  }
-}
-
-template <class AnyMotion> void LaneBatch::add_dashpot(const Constants &constants, const AnyMotion &motion) {
+template <class AnyMotion>
+void LaneBatch::add_dashpot(const LaneConstants &constants, const AnyMotion &motion) {
   Lanes facing_pressure = 0.0;
   std::array<Lanes, 2 * most_plain_edges> facing;
   const auto each = [&](auto &&visit) {
@@ -255,171 +163,180 @@ template <class AnyMotion> void LaneBatch::add_dashpot(const Constants &constant
     }
   };
   each([&](const LaneStretch &stretch, const LaneVec &normal, Lanes &share, double sign) {
-    share = max(0.0, Lanes(sign) * dot(normal_, normal));
+    share = max(0.0, Lanes(sign) * dot(regions_.normal(), normal));
     facing_pressure += share * stretch.pressure;
   });
-  const Lanes kept = min(1.0, normal_force_ / constants.half_stiffness /
-                                  select(facing_pressure > 0.0, facing_pressure, 1.0));
-  const LaneVec velocity = motion.velocity_at(origin_);
-  Lanes total = 0.0;
-  LaneVec moment{0.0, 0.0};
+  LaneDashpot dashpot(regions_, constants, facing_pressure);
+  const LaneVec velocity = motion.velocity_at(regions_.origin);
   each([&](const LaneStretch &stretch, const LaneVec &normal, const Lanes &share, double) {
-    if (!(stretch.valid & (share > 0.0)).any()) {
-      return;
+    if ((stretch.valid & (share > 0.0)).any()) {
+      dashpot.add(
+          stretch.valid, stretch.begin - regions_.origin, perp(normal), stretch.length,
+          [&] { return std::span(stretch.piece).first(stretch.num_pieces); }, share, motion, velocity);
     }
-    const LaneVec begin = stretch.begin - origin_;
-    const Lanes rate = constants.damping * share;
-    const Lanes closing = -rate * dot(velocity + motion.velocity_change(begin), normal_);
-    const Lanes slope = -rate * dot(motion.velocity_change(perp(normal)), normal_);
-    const Lanes closing_end = closing + slope * stretch.length;
-    LaneTraction q;
-    q.add_linear(0.0, closing, stretch.length, closing_end);
-    const Mask closes = (!stretch.valid) | ((closing >= 0.0) & (closing_end >= 0.0));
-    if ((!closes).any()) {
-      const Lanes releasable = kept * share * constants.half_stiffness;
-      LaneTraction cut;
-      for (std::size_t p = 0; p < stretch.num_pieces; ++p) {
-        const LanePiece &piece = stretch.piece[p];
-        const Lanes d = closing + slope * piece.begin;
-        const LaneTraction part =
-            integrate_without_tension(piece.length, releasable * piece.depth_begin,
-                                      releasable * piece.depth_end, d, d + slope * piece.length);
-        cut.total += part.total;
-        cut.along += part.along + piece.begin * part.total;
-      }
-      q.total = select(closes, q.total, cut.total);
-      q.along = select(closes, q.along, cut.along);
-    }
-    total += q.total;
-    moment += q.total * begin + q.along * perp(normal);
   });
-  const LaneVec push = total * normal_;
-  force_ += push;
-  add_outer(dyad_, moment, normal_);
-  damping_force_ += push;
-  if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
-    add_outer(damping_dyad_, moment, normal_);
-  }
-  const Lanes about_origin = cross(moment, normal_);
-  damping_torque_[0] += about_origin + cross(origin_ - motion.lower_centroid, push);
-  damping_torque_[1] += -about_origin - cross(origin_ - motion.higher_centroid, push);
+  regions_.add_dashpot(dashpot.total, dashpot.moment, motion);
 }
 
-template <class AnyMotion>
-void LaneBatch::add_friction_and_dashpots(const Constants &constants, const AnyMotion &motion) {
-  add_friction(constants, motion);
-  if (constants.damping_ratio > 0.0 || constants.stiffness_damping > 0.0) {
-    add_dashpot(constants, motion);
+template <class AddDashpot>
+void LaneBatch::add_friction_and_dashpots(const PlainScene &scene, const Pairs &pairs,
+                                          const LaneConstants &constants, AddDashpot &&add_dashpot) {
+  const auto add_with = [&](const auto &motion) {
+    regions_.add_friction(constants, motion);
+    if (constants.has_dashpots()) {
+      add_dashpot(motion);
+    }
+    regions_.find_torques(motion);
+  };
+  if (pairs.first.is_deformable) {
+    add_with(DeformingMotion(scene, pairs.lower, pairs.higher));
+  } else {
+    add_with(RigidMotion(pairs.lower, pairs.higher));
   }
-  const Lanes about_origin = dyad_[1] - dyad_[2];
-  torque_[0] = about_origin + cross(origin_ - motion.lower_centroid, force_);
-  torque_[1] = -about_origin - cross(origin_ - motion.higher_centroid, force_);
 }
 
-inline unsigned LaneBatch::evaluate(const PlainScene &scene, std::span<const std::uint32_t> entries,
-                                    std::span<const CandidatePair *const> given) {
-  const BlockSystem &system = scene.system;
-  Rows a;
-  Rows b;
-  Chains lower_chain;
-  Chains higher_chain;
-  std::array<const CandidatePair *, num_lanes> candidate;
-  static constexpr RegionMemory no_memory;
-  std::array<const RegionMemory *, num_lanes> memory;
-  std::array<double, num_lanes> was_there;
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    const std::size_t entry = std::min(i, entries.size() - 1);
-    const PlainPair &plain = scene.candidates.plain[entries[entry]];
-    candidate[i] = given[entry];
-    a[i] = plain.lower.value;
-    b[i] = plain.higher.value;
-    lower_chain[i] = scene.candidates.chain_vertices.data() + plain.chain;
-    higher_chain[i] = lower_chain[i] + plain.lower_edges + 1;
-    const auto old = scene.history.of_pair(plain.pair);
-    memory[i] = old.empty() ? &no_memory : old.data();
-    was_there[i] = old.empty() ? 0.0 : 1.0;
-  }
-  const PlainPair &first = scene.candidates.plain[entries[0]];
-  load_side(system, a, lower_chain, first.lower_edges, lower_);
-  load_side(system, b, higher_chain, first.higher_edges, higher_);
-  if (first.is_deformable) {
-    load_deformed_slopes(scene, a, lower_chain, lower_);
-    load_deformed_slopes(scene, b, higher_chain, higher_);
-  }
+inline unsigned LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
+  const Pairs pairs(scene, lanes);
+  const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
+    side.edges = edges;
+    for (std::size_t k = 0; k < edges; ++k) {
+      load_edge(scene.system, blocks, k, side);
+    }
+    side.vertex[edges] =
+        LaneVec::of([&](std::size_t i) { return &scene.system.vertex[blocks.chain[i][edges]]; });
+    load_box(blocks, side);
+    if (pairs.first.is_deformable) {
+      load_deformed_slopes(scene, blocks, side);
+    }
+  };
+  load(pairs.lower, pairs.first.lower_edges, lower_);
+  load(pairs.higher, pairs.first.higher_edges, higher_);
   cut_edges(lower_, higher_, on_lower_);
   cut_edges(higher_, lower_, on_higher_);
-  origin_ = lower_.vertex[0];
   integrate();
-  const unsigned touching = touches_.by_lane();
+  const unsigned touching = regions_.touches.by_lane();
   if (touching == 0) {
     return 0;
   }
-  const FourLanes strength =
-      load_by_lane([&](std::size_t i) { return &candidate[i]->half_stiffness; }); // and what stands behind it
-  const LaneVec dashpot = LaneVec::of([&](std::size_t i) { return &candidate[i]->damping; });
-  const FourLanes known = load_by_lane([&](std::size_t i) { return &memory[i]->shear; });
-  const Constants constants{strength[0],
-                            strength[1],
-                            strength[2],
-                            strength[3],
-                            dashpot.x,
-                            dashpot.y,
-                            scene.damping_ratio,
-                            scene.stiffness_damping,
-                            Lanes::of([&](std::size_t i) { return was_there[i]; }),
-                            known[0],
-                            known[1],
-                            known[2]};
-  force_ = constants.half_stiffness * force_;
-  for (Lanes &entry : dyad_) {
-    entry = constants.half_stiffness * entry;
-  }
-  normal_force_ = constants.half_stiffness * normal_force_;
-  measure();
-  if (first.is_deformable) {
-    add_friction_and_dashpots(constants, DeformingMotion(scene, a, b));
-  } else {
-    add_friction_and_dashpots(constants, RigidMotion(scene, a, b));
-  }
+  const LaneConstants constants = load_constants(scene, pairs);
+  regions_.take_stiffness(constants.half_stiffness);
+  measure(constants);
+  add_friction_and_dashpots(scene, pairs, constants,
+                            [&](const auto &motion) { add_dashpot(constants, motion); });
   return touching;
 }
 
-inline void LaneBatch::store(const Results &results) {
-  std::array<std::byte *, num_lanes> to;
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    to[i] = reinterpret_cast<std::byte *>(results.force[i] != nullptr ? results.force[i] : &unwanted_);
-  }
-  const auto put = [&](std::size_t offset, const Lanes &a, const Lanes &b, const Lanes &c, const Lanes &d)
-      __attribute__((always_inline)) {
-    store_by_lane(to, offset, a, b, c, d);
+// The corners and the places where the boundaries cross.
+template <class Overlap> void LaneBatch::measure(const Overlap &overlap, const LaneConstants &constants) {
+  const LaneVec normal = regions_.normal();
+  const LaneVec tangent = perp(normal);
+  const LaneVec to_point = regions_.point() - regions_.origin;
+  const auto &[first, second] = overlap.on_lower;
+  const auto &[third, fourth] = overlap.on_higher;
+  const LaneVec start = -to_point;
+  LaneRegions::Extent extent{dot(start, normal), dot(start, tangent), dot(start, normal),
+                             dot(start, tangent)};
+  const auto include = [&](const LaneVec &end) __attribute__((always_inline)) {
+    const LaneVec x = end - to_point;
+    const Lanes along_n = dot(x, normal);
+    const Lanes along_t = dot(x, tangent);
+    extent.low_n = min(extent.low_n, along_n);
+    extent.high_n = max(extent.high_n, along_n);
+    extent.low_t = min(extent.low_t, along_t);
+    extent.high_t = max(extent.high_t, along_t);
   };
-  const LaneVec shear_force = -elastic_ * perp(normal_);
-  put(offsetof(RegionForce, force), force_.x, force_.y, torque_[0], torque_[1]);
-  put(offsetof(RegionForce, shear_force), shear_force.x, shear_force.y, shear_torque_[0], shear_torque_[1]);
-  put(offsetof(RegionForce, damping_force), damping_force_.x, damping_force_.y, damping_torque_[0],
-      damping_torque_[1]);
-  put(offsetof(RegionForce, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
-  put(offsetof(RegionForce, origin), origin_.x, origin_.y, point_.x, point_.y);
-  put(offsetof(RegionForce, normal), normal_.x, normal_.y, normal_force_, shear_);
-  put(offsetof(RegionForce, cap), cap_, overlap_, select(undefined_, 0.0, extent_begin_),
-      select(undefined_, 0.0, extent_end_));
-  const unsigned undefined = undefined_.by_lane();
-  const unsigned slips = slips_.by_lane();
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    if (results.force[i] == nullptr) {
-      continue;
-    }
-    results.force[i]->normal_undefined = (undefined >> i & 1U) != 0;
-    RegionMemory &memory = *results.memory[i];
-    memory.shear = elastic_[i];
-    memory.longest = longest_[i];
-    memory.slip = slip_[i];
-    memory.state = (slips >> i & 1U) != 0 ? ContactState::slip : ContactState::stick;
-  }
+  include(first.length * first.direction);
+  include(second.length * second.direction);
+  include(third.begin);
+  regions_.take_extent(extent, max(max(first.deepest, second.deepest), max(third.deepest, fourth.deepest)),
+                       constants);
 }
 
-inline Mat2 LaneBatch::damping_dyad(std::size_t lane) const {
-  return {damping_dyad_[0][lane], damping_dyad_[1][lane], damping_dyad_[2][lane], damping_dyad_[3][lane]};
+template <class Overlap, class AnyMotion>
+void LaneBatch::add_dashpot(const Overlap &overlap, const LaneConstants &constants, const AnyMotion &motion) {
+  std::array<Lanes, 4> share;
+  Lanes facing_pressure = 0.0;
+  each<2>([&](auto i) __attribute__((always_inline)) {
+    share[i] = max(0.0, -dot(regions_.normal(), overlap.lower.normal[i]));
+    share[2 + i] = max(0.0, dot(regions_.normal(), overlap.higher.normal[i]));
+    facing_pressure += share[i] * overlap.on_lower[i].pressure;
+    facing_pressure += share[2 + i] * overlap.on_higher[i].pressure;
+  });
+  LaneDashpot dashpot(regions_, constants, facing_pressure);
+  const LaneVec velocity = motion.velocity_at(regions_.origin);
+  const auto add = [&](const auto &stretch, const Lanes &w) __attribute__((always_inline)) {
+    dashpot.add(
+        regions_.touches, stretch.begin, stretch.direction, stretch.length, [&] { return stretch.pieces(); },
+        w, motion, velocity);
+  };
+  each<2>([&](auto i) __attribute__((always_inline)) {
+    add(overlap.on_lower[i], share[i]);
+    add(overlap.on_higher[i], share[2 + i]);
+  });
+  regions_.add_dashpot(dashpot.total, dashpot.moment, motion);
+}
+
+template <std::size_t lower_edges, std::size_t higher_edges>
+PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const Pairs &pairs) {
+  LaneSide lower;
+  LaneSide higher;
+  each<lower_edges>([&](auto k) { load_edge(scene.system, pairs.lower, k, lower); });
+  each<higher_edges>([&](auto k) { load_edge(scene.system, pairs.higher, k, higher); });
+  load_box(pairs.lower, lower);
+  load_box(pairs.higher, higher);
+  if (pairs.first.is_deformable) {
+    lower.edges = lower_edges;
+    higher.edges = higher_edges;
+    load_deformed_slopes(scene, pairs.lower, lower);
+    load_deformed_slopes(scene, pairs.higher, higher);
+  }
+  CornerOverlap<lower_edges, higher_edges> overlap;
+  const Mask valid = overlap.find(lower, higher);
+  Corners result;
+  if ((!valid).any()) {
+    lower.vertex[lower_edges] = load_vertex(scene.system, pairs.lower, lower_edges);
+    higher.vertex[higher_edges] = load_vertex(scene.system, pairs.higher, higher_edges);
+    const Mask apart = are_beyond_a_line<lower_edges, higher_edges>(lower, higher) |
+                       are_beyond_a_line<higher_edges, lower_edges>(higher, lower);
+    result.apart = (apart & !valid).by_lane();
+    if (!valid.any()) {
+      return result;
+    }
+  }
+  regions_.start(overlap.lower.vertex);
+  each<2>([&](auto i) __attribute__((always_inline)) {
+    const auto &on_lower = overlap.on_lower[i];
+    const auto &on_higher = overlap.on_higher[i];
+    regions_.add_pressure(on_lower.pressure, on_lower.moment, -overlap.lower.normal[i]);
+    regions_.add_pressure(on_higher.pressure, on_higher.moment, overlap.higher.normal[i]);
+  });
+  regions_.touches = valid & regions_.has_pressure();
+  regions_.find_resultant();
+  result.touching = regions_.touches.by_lane();
+  if (result.touching == 0) {
+    return result;
+  }
+  const LaneConstants constants = load_constants(scene, pairs);
+  regions_.take_stiffness(constants.half_stiffness);
+  measure(overlap, constants);
+  add_friction_and_dashpots(scene, pairs, constants,
+                            [&](const auto &motion) { add_dashpot(overlap, constants, motion); });
+  return result;
+}
+
+inline PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) {
+  const Pairs pairs(scene, lanes);
+  Corners result;
+  const auto with = [&](auto lower) {
+    constexpr std::size_t more = most_corner_edges - 1;
+    each<more>([&](auto higher) {
+      if (pairs.first.lower_edges == lower && pairs.first.higher_edges == higher + 2) {
+        result = evaluate_corners<lower, higher + 2>(scene, pairs);
+      }
+    });
+  };
+  each<most_corner_edges - 1>([&](auto lower) { with(std::integral_constant<std::size_t, lower + 2>{}); });
+  return result;
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

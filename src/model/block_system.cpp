@@ -138,16 +138,30 @@ void keep_rows(BlockSystem &system, std::size_t count) {
 
 namespace {
 
+/// A Vec2 in one register.
+using Packed = double __attribute__((vector_size(2 * sizeof(double))));
+Packed packed(const Vec2 &a) {
+  return Packed{a.x, a.y};
+}
+Vec2 unpacked(const Packed &a) {
+  return {a[0], a[1]};
+}
+
 void pose_rigid(BlockSystem &system, std::size_t row) {
-  const Vec2 centre = system.trial_centroid[row];
+  const Packed centre = packed(system.trial_centroid[row]);
   const Rotation turn = Rotation::of(system.trial[row].r);
-  Aabb box;
+  const auto turned = [&](const Vec2 &a) { return turn.c * packed(a) + turn.s * Packed{-a.y, a.x}; };
+  const Aabb none;
+  Packed low = packed(none.low);
+  Packed high = packed(none.high);
   for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
-    system.vertex[k] = centre + turn(system.reference_vertex[k]);
-    system.normal[k] = turn(system.reference_normal[k]);
-    box.include(system.vertex[k]);
+    const Packed vertex = centre + turned(system.reference_vertex[k]);
+    system.vertex[k] = unpacked(vertex);
+    system.normal[k] = unpacked(turned(system.reference_normal[k]));
+    low = vertex < low ? vertex : low;
+    high = high < vertex ? vertex : high;
   }
-  system.box[row] = box;
+  system.box[row] = {unpacked(low), unpacked(high)};
 }
 
 void pose_deformable(BlockSystem &system, std::size_t row) {

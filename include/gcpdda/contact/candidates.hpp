@@ -42,6 +42,10 @@ struct PlainPair {
   bool is_deformable = false; ///< at least one block is
   bool is_mixed = false;      ///< CandidatePair::is_mixed
 
+  /// Has each block a corner in its chain, and no more than `most` edges?
+  [[nodiscard]] bool may_be_corners(std::size_t most) const {
+    return lower_edges > 1 && higher_edges > 1 && lower_edges <= most && higher_edges <= most;
+  }
   /// May share an evaluation.
   [[nodiscard]] bool is_like(const PlainPair &other) const {
     return lower_edges == other.lower_edges && higher_edges == other.higher_edges &&

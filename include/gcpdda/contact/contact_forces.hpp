@@ -79,6 +79,17 @@ struct TrialIncrement {
   Mat2 turn;
 };
 
+/// What all contacts of a block need besides its edges, in two lines of a cache. Four numbers each: the lanes
+/// read them so (lane_motion.hpp).
+struct alignas(64) BlockMotion {
+  Vec2 centroid; ///< of the trial configuration
+  Vec2 velocity;
+  TrialIncrement increment;
+  double spin = 0.0; ///< rad/s
+  double unused = 0.0;
+  Aabb box; ///< of the trial configuration
+};
+
 /// What contacts of a deformable block have in common.
 struct DeformingBlock {
   Mat2 slopes; ///< F*^-T/J: of a reference normal minus the gradient of the depth below that edge
@@ -117,6 +128,8 @@ struct ForceReport {
 };
 
 class PlainBatch;
+struct PlainScene;
+struct PlainLanes;
 
 /// What plain pairs are computed with: the widest registers this machine has, or those every machine has. The
 /// results are the same.
@@ -191,14 +204,19 @@ private:
 
   void evaluate_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                      std::span<RegionMemory> old);
-  void find_increments(const BlockSystem &system, std::size_t first, std::size_t last);
+  void find_motions(const BlockSystem &system, std::size_t first, std::size_t last);
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
   /// Entries [first, last) of Candidates::plain.
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                             std::size_t first, std::size_t last);
-  void evaluate_alike(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
-                      std::span<const std::uint32_t> entries);
+  void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, bool by_corners);
+  /// What the batch at hand found for the lanes that touch, as regions and their memory.
+  void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching);
+  /// Visit entries of Candidates::plain that are alike, as many at a time as there are lanes.
+  template <class Visit>
+  void for_batches(const Candidates &candidates, const ContactHistory &history,
+                   std::span<const std::uint32_t> entries, Visit &&visit);
   /// References to other regions hold until the next one is appended.
   RegionForce &append_force(const RegionForce &force = {});
   void drop_last_force() { --num_forces_; }
@@ -247,6 +265,7 @@ private:
   Overlap overlap_;
   std::unique_ptr<PlainBatch> batch_;
   std::vector<std::uint32_t> meeting_; ///< entries of Candidates::plain whose boxes meet
+  std::vector<std::uint32_t> others_;  ///< those of them that are not one corner in another
   std::vector<std::uint32_t> births_;  ///< plain pairs whose new regions must choose among laws
   std::array<CandidatePair, 4> own_;   ///< constants of mixed pairs at hand, by lane
   /// The first num_forces_ of them; the others are of evaluations before and spare making new ones.
@@ -255,7 +274,7 @@ private:
   std::vector<RegionRange> ranges_; ///< of forces_, one a pair
   ForceReport report_;              ///< of what has been evaluated so far
   ContactHistory next_;
-  std::vector<TrialIncrement> increments_;
+  std::vector<BlockMotion> motions_;      ///< one a row
   std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation
   std::vector<Mat2> damping_dyads_;       ///< by region, up to the last of a pair with a deformable block
   Mat2 damping_dyad_;                     ///< of the region at hand

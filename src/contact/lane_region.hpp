@@ -1,0 +1,364 @@
+#pragma once
+
+// What is known of the contact regions of as many pairs as there are lanes, once their normal pressure is
+// integrated: resultant, friction, dashpots and the torques of it all. The laws are those of
+// contact_forces.hpp.
+
+#include "lane_motion.hpp"
+#include "lanes.hpp"
+#include "plain_batch.hpp"
+
+#include <array>
+#include <span>
+#include <type_traits>
+
+namespace gcpdda::GCPDDA_INSTRUCTIONS {
+
+/// a b^T added by entries xx, xy, yx, yy.
+[[gnu::always_inline]] inline void add_outer(FourLanes &dyad, const LaneVec &a, const LaneVec &b) {
+  dyad[0] += a.x * b.x;
+  dyad[1] += a.x * b.y;
+  dyad[2] += a.y * b.x;
+  dyad[3] += a.y * b.y;
+}
+
+/// int q ds and int q s ds of a linear q.
+struct LaneTraction {
+  Lanes total;
+  Lanes along;
+
+  LaneTraction()
+      : total(0.0), along(0.0) {} // written out: an implied one is not compiled for the lanes' instructions
+
+  [[gnu::always_inline]] void add_linear(const Lanes &s0, const Lanes &q0, const Lanes &s1, const Lanes &q1) {
+    const Lanes length = s1 - s0;
+    const Lanes stretch = Lanes(0.5) * length * (q0 + q1);
+    total += stretch;
+    along += s0 * stretch + length * length * (q0 + Lanes(2.0) * q1) * Lanes(1.0 / 6.0);
+  }
+};
+
+/// Of q = max(-p, d) over a piece, p >= 0 and d linear.
+inline LaneTraction integrate_without_tension(const Lanes &length, const Lanes &p0, const Lanes &p1,
+                                              const Lanes &d0, const Lanes &d1) {
+  const Lanes sum0 = p0 + d0;
+  const Lanes sum1 = p1 + d1;
+  const Mask changes = ((sum0 > 0.0) & (sum1 < 0.0)) | ((sum0 < 0.0) & (sum1 > 0.0));
+  const Lanes q0 = max(-p0, d0);
+  const Lanes q1 = max(-p1, d1);
+  LaneTraction q;
+  if (!changes.any()) {
+    q.add_linear(0.0, q0, length, q1);
+    return q;
+  }
+  const Lanes share = sum0 / (sum0 - sum1);
+  const Lanes cut = select(changes, share * length, length);
+  const Lanes at_cut = select(changes, -(p0 + share * (p1 - p0)), q1);
+  q.add_linear(0.0, q0, cut, at_cut);
+  q.add_linear(cut, at_cut, length, q1);
+  return q;
+}
+
+/// What a pair's law and its past give.
+struct LaneConstants {
+  Lanes half_stiffness;
+  Lanes tangential_stiffness;
+  Lanes tan_friction;
+  Lanes cohesion;
+  Lanes damping;
+  Lanes mass;
+  Lanes allowed_overlap;
+  double damping_ratio;
+  double stiffness_damping;
+  Mask was_there; ///< the region has a memory
+  Lanes shear;
+  Lanes longest;
+  Lanes slip;
+
+  [[nodiscard]] bool has_dashpots() const { return damping_ratio > 0.0 || stiffness_damping > 0.0; }
+};
+
+/// RegionForce and RegionMemory, one in each lane.
+class LaneRegions {
+public:
+  using Torques = std::array<Lanes, 2>; ///< on the lower and the higher block
+
+  LaneRegions() : max_overlap_(0.0), max_overlap_share_(0.0) {} // written out, as that of LaneTraction
+
+  Mask touches;
+  Mask undefined;
+  LaneVec origin;
+
+  void start(const LaneVec &about) {
+    origin = about;
+    force_ = {0.0, 0.0};
+    dyad_ = {0.0, 0.0, 0.0, 0.0};
+    pressure_ = 0.0;
+    pressure_moment_ = {0.0, 0.0};
+  }
+  /// int d ds along an edge and int d (x - origin) ds, acting on the lower block along `direction`.
+  [[gnu::always_inline]] void add_pressure(const Lanes &pressure, const LaneVec &moment,
+                                           const LaneVec &direction) {
+    force_ += pressure * direction;
+    add_outer(dyad_, moment, direction);
+    pressure_ += pressure;
+    pressure_moment_ += moment;
+  }
+  [[nodiscard]] Mask has_pressure() const { return pressure_ > 0.0; }
+  /// With the pressure whole: direction, size and place of the resultant where `touches`.
+  void find_resultant();
+  void take_stiffness(const Lanes &half_stiffness);
+  /// Of the boundary of the overlap along n_r and t_r from x_r.
+  struct Extent {
+    Lanes low_n;
+    Lanes low_t;
+    Lanes high_n;
+    Lanes high_t;
+  };
+  void take_extent(const Extent &extent, const Lanes &deepest, const LaneConstants &constants);
+  template <class AnyMotion> void add_friction(const LaneConstants &constants, const AnyMotion &motion);
+  /// The traction `total` along n_r with its moment about the origin.
+  template <class AnyMotion>
+  void add_dashpot(const Lanes &total, const LaneVec &moment, const AnyMotion &motion);
+  /// With all forces in place.
+  template <class AnyMotion> void find_torques(const AnyMotion &motion);
+  unsigned store(const PlainBatch::Results &results);
+  PlainBatch::Extremes take_extremes();
+
+  [[nodiscard]] const LaneVec &point() const { return point_; }
+  [[nodiscard]] const LaneVec &normal() const { return normal_; }
+  [[nodiscard]] const Lanes &normal_force() const { return normal_force_; }
+  [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const {
+    return {damping_dyad_[0][lane], damping_dyad_[1][lane], damping_dyad_[2][lane], damping_dyad_[3][lane]};
+  }
+
+private:
+  LaneVec force_;
+  FourLanes dyad_;
+  Lanes pressure_;
+  LaneVec pressure_moment_;
+  LaneVec point_;
+  LaneVec normal_;
+  Lanes normal_force_;
+  Lanes overlap_;
+  Lanes overlap_share_; ///< of the narrowest width
+  Lanes extent_begin_;
+  Lanes extent_end_;
+  Lanes longest_;
+  Lanes elastic_;
+  Lanes shear_;
+  Lanes slip_;
+  Lanes cap_;
+  Mask slips_;
+  LaneVec damping_force_;
+  FourLanes damping_dyad_; ///< of pairs with a deformable block
+  Torques torque_;
+  Torques shear_torque_;
+  Torques damping_torque_;
+  Lanes max_overlap_; ///< so far
+  Lanes max_overlap_share_;
+  std::int64_t normals_undefined_ = 0;
+  RegionForce unwanted_; ///< takes what lanes write that no one asks
+};
+
+inline void LaneRegions::find_resultant() {
+  const Lanes resultant = sqrt(dot(force_, force_));
+  undefined = touches & (resultant <= Lanes(ContactForces::least_resultant) * pressure_);
+  const Mask defined = touches & !undefined;
+  const Lanes whole = select(touches, pressure_, 1.0);
+  point_ = origin + LaneVec{pressure_moment_.x / whole, pressure_moment_.y / whole};
+  normal_force_ = resultant;
+  const Lanes inverse = Lanes(1.0) / select(defined, resultant, 1.0);
+  normal_ = select(defined, inverse * force_, LaneVec{0.0, 0.0});
+}
+
+inline void LaneRegions::take_stiffness(const Lanes &half_stiffness) {
+  force_ = half_stiffness * force_;
+  for (Lanes &entry : dyad_) {
+    entry = half_stiffness * entry;
+  }
+  normal_force_ = half_stiffness * normal_force_;
+}
+
+inline void LaneRegions::take_extent(const Extent &extent, const Lanes &deepest,
+                                     const LaneConstants &constants) {
+  overlap_ = select(undefined, Lanes(2.0) * deepest, min(extent.high_n - extent.low_n, Lanes(4.0) * deepest));
+  extent_begin_ = extent.low_t;
+  extent_end_ = extent.high_t;
+  overlap_share_ = Lanes(0.5) * overlap_ / constants.allowed_overlap;
+}
+
+template <class AnyMotion>
+void LaneRegions::add_friction(const LaneConstants &constants, const AnyMotion &motion) {
+  const LaneVec tangent = perp(normal_);
+  const Lanes extent = extent_end_ - extent_begin_;
+  const Mask defined = touches & !undefined;
+  longest_ = select(defined, max(constants.longest, extent), constants.longest);
+  cap_ = select(defined, normal_force_ * constants.tan_friction + constants.cohesion * extent, 0.0);
+  const Mask holds = cap_ > 0.0;
+  slips_ = !holds;
+  const Lanes stiffness = constants.tangential_stiffness * longest_;
+  const LaneVec slide = motion.slide_at(point_);
+  Lanes shear =
+      select(constants.was_there & holds, constants.shear + stiffness * dot(slide, tangent), constants.shear);
+  const Mask breaks = holds & (abs(shear) > cap_);
+  slips_ = slips_ | breaks;
+  slip_ = select(breaks, constants.slip + (abs(shear) - cap_) / stiffness, constants.slip);
+  shear = select(breaks, select(shear < 0.0, -cap_, cap_), shear);
+  elastic_ = select(holds, shear, 0.0);
+  Lanes viscous = 0.0;
+  if (constants.has_dashpots()) {
+    const LaneVec velocity = motion.velocity_at(point_);
+    const Lanes drag = (Lanes(2.0 * constants.damping_ratio) * sqrt(stiffness * constants.mass) +
+                        Lanes(constants.stiffness_damping) * stiffness) *
+                       dot(velocity, tangent);
+    viscous = select(holds, clamp(elastic_ + drag, -cap_, cap_) - elastic_, 0.0);
+  }
+  shear_ = elastic_ + viscous;
+  const LaneVec friction = -shear_ * tangent;
+  force_ += friction;
+  add_outer(dyad_, point_ - origin, friction);
+  // A force at x_r has the torque of its size along t_r.
+  const Lanes lower_lever = cross(point_ - motion.lower_centroid, tangent);
+  const Lanes higher_lever = cross(point_ - motion.higher_centroid, tangent);
+  shear_torque_ = {-elastic_ * lower_lever, elastic_ * higher_lever};
+  damping_torque_ = {-viscous * lower_lever, viscous * higher_lever};
+  damping_force_ = -viscous * tangent;
+  if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
+    damping_dyad_ = {0.0, 0.0, 0.0, 0.0};
+    add_outer(damping_dyad_, point_ - origin, damping_force_);
+  }
+}
+
+template <class AnyMotion>
+void LaneRegions::add_dashpot(const Lanes &total, const LaneVec &moment, const AnyMotion &motion) {
+  const LaneVec push = total * normal_;
+  force_ += push;
+  add_outer(dyad_, moment, normal_);
+  damping_force_ += push;
+  if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
+    add_outer(damping_dyad_, moment, normal_);
+  }
+  const Lanes about_origin = cross(moment, normal_);
+  damping_torque_[0] += about_origin + cross(origin - motion.lower_centroid, push);
+  damping_torque_[1] += -about_origin - cross(origin - motion.higher_centroid, push);
+}
+
+template <class AnyMotion> void LaneRegions::find_torques(const AnyMotion &motion) {
+  const Lanes about_origin = dyad_[1] - dyad_[2];
+  torque_[0] = about_origin + cross(origin - motion.lower_centroid, force_);
+  torque_[1] = -about_origin - cross(origin - motion.higher_centroid, force_);
+}
+
+inline unsigned LaneRegions::store(const PlainBatch::Results &results) {
+  std::array<std::byte *, num_lanes> to;
+  std::array<double, num_lanes> is_wanted;
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    to[i] = reinterpret_cast<std::byte *>(results.force[i] != nullptr ? results.force[i] : &unwanted_);
+    is_wanted[i] = results.force[i] != nullptr ? 1.0 : 0.0;
+  }
+  const auto put = [&](std::size_t offset, const Lanes &a, const Lanes &b, const Lanes &c, const Lanes &d)
+      __attribute__((always_inline)) {
+    store_by_lane(to, offset, a, b, c, d);
+  };
+  const LaneVec shear_force = -elastic_ * perp(normal_);
+  put(offsetof(RegionForce, force), force_.x, force_.y, torque_[0], torque_[1]);
+  put(offsetof(RegionForce, shear_force), shear_force.x, shear_force.y, shear_torque_[0], shear_torque_[1]);
+  put(offsetof(RegionForce, damping_force), damping_force_.x, damping_force_.y, damping_torque_[0],
+      damping_torque_[1]);
+  put(offsetof(RegionForce, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
+  put(offsetof(RegionForce, origin), origin.x, origin.y, point_.x, point_.y);
+  put(offsetof(RegionForce, normal), normal_.x, normal_.y, normal_force_, shear_);
+  put(offsetof(RegionForce, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
+      select(undefined, 0.0, extent_end_));
+  const unsigned cancels = undefined.by_lane();
+  const unsigned slips = slips_.by_lane();
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    if (results.force[i] == nullptr) {
+      continue;
+    }
+    results.force[i]->normal_undefined = (cancels >> i & 1U) != 0;
+    normals_undefined_ += cancels >> i & 1U;
+    RegionMemory &memory = *results.memory[i];
+    memory.shear = elastic_[i];
+    memory.longest = longest_[i];
+    memory.slip = slip_[i];
+    memory.state = (slips >> i & 1U) != 0 ? ContactState::slip : ContactState::stick;
+  }
+  const Mask wanted = Lanes::of([&](std::size_t i) { return is_wanted[i]; }) > 0.0;
+  max_overlap_ = select(wanted, max(max_overlap_, overlap_), max_overlap_);
+  max_overlap_share_ = select(wanted, max(max_overlap_share_, overlap_share_), max_overlap_share_);
+  return (wanted & (overlap_share_ > 0.5)).by_lane();
+}
+
+inline PlainBatch::Extremes LaneRegions::take_extremes() {
+  PlainBatch::Extremes extremes{normals_undefined_};
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    extremes.max_overlap = max_overlap_[i] > extremes.max_overlap ? max_overlap_[i] : extremes.max_overlap;
+    extremes.max_overlap_share = max_overlap_share_[i] > extremes.max_overlap_share
+                                     ? max_overlap_share_[i]
+                                     : extremes.max_overlap_share;
+  }
+  normals_undefined_ = 0;
+  max_overlap_ = 0.0;
+  max_overlap_share_ = 0.0;
+  return extremes;
+}
+
+/// Damping traction along n_r of as many stretches as follow one another.
+class LaneDashpot {
+public:
+  LaneDashpot(const LaneRegions &regions, const LaneConstants &constants, const Lanes &facing_pressure)
+      : total(0.0), moment{0.0, 0.0}, regions_(regions), constants_(constants),
+        kept_(min(1.0, regions.normal_force() / constants.half_stiffness /
+                           select(facing_pressure > 0.0, facing_pressure, 1.0))) {}
+
+  Lanes total;
+  LaneVec moment; ///< about the origin
+
+  /// A stretch from `begin` (from the origin) on along `direction` with the share w of its normal along n_r;
+  /// `velocity` is that of the lower block against the higher one at the origin, pieces() tells the depths
+  /// along it.
+  template <class AnyMotion, class Pieces>
+  [[gnu::always_inline]] void add(const Mask &valid, const LaneVec &begin, const LaneVec &direction,
+                                  const Lanes &length, Pieces &&pieces, const Lanes &share,
+                                  const AnyMotion &motion, const LaneVec &velocity) {
+    const Lanes rate = constants_.damping * share;
+    const Lanes closing = -rate * dot(velocity + motion.velocity_change(begin), regions_.normal());
+    const Lanes slope = -rate * dot(motion.velocity_change(direction), regions_.normal());
+    const Lanes closing_end = closing + slope * length;
+    LaneTraction q;
+    q.add_linear(0.0, closing, length, closing_end);
+    const Mask closes = (!valid) | ((closing >= 0.0) & (closing_end >= 0.0));
+    if ((!closes).any()) {
+      const LaneTraction cut =
+          integrate_cut(pieces(), kept_ * share * constants_.half_stiffness, closing, slope);
+      q.total = select(closes, q.total, cut.total);
+      q.along = select(closes, q.along, cut.along);
+    }
+    total += q.total;
+    moment += q.total * begin + q.along * direction;
+  }
+
+private:
+  template <class Pieces>
+  static LaneTraction integrate_cut(const Pieces &pieces, const Lanes &releasable, const Lanes &closing,
+                                    const Lanes &slope) {
+    LaneTraction cut;
+    for (const LanePiece &piece : pieces) {
+      const Lanes d = closing + slope * piece.begin;
+      const LaneTraction part =
+          integrate_without_tension(piece.length, releasable * piece.depth_begin,
+                                    releasable * piece.depth_end, d, d + slope * piece.length);
+      cut.total += part.total;
+      cut.along += part.along + piece.begin * part.total;
+    }
+    return cut;
+  }
+
+  const LaneRegions &regions_;
+  const LaneConstants &constants_;
+  Lanes kept_;
+};
+
+} // namespace gcpdda::GCPDDA_INSTRUCTIONS
