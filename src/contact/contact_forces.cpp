@@ -160,7 +160,7 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
       damping_dyads_.back() = batch_->damping_dyad(i);
     }
     if ((too_deep >> i & 1U) != 0) {
-      note(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], *results.force[i]);
+      note_depth(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], *results.force[i]);
     }
   }
 }
@@ -206,7 +206,7 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
                          parameters_.damping_ratio,
                          parameters_.stiffness_damping};
   for_batches(candidates, history, meeting_, [&](std::span<const std::uint32_t> entries) {
-    if (plain[entries[0]].may_be_corners(PlainBatch::most_corner_edges)) {
+    if (plain[entries[0]].may_be_corners) {
       evaluate_alike(scene, entries, true);
     } else {
       others_.insert(others_.end(), entries.begin(), entries.end());
@@ -277,6 +277,11 @@ void ContactForces::note(const BlockSystem &system, const CandidatePair &pair, c
   report_.normals_undefined += force.normal_undefined ? 1 : 0;
   report_.max_overlap = std::max(report_.max_overlap, force.overlap);
   report_.max_overlap_share = std::max(report_.max_overlap_share, 0.5 * force.overlap / pair.allowed_overlap);
+  note_depth(system, pair, force);
+}
+
+void ContactForces::note_depth(const BlockSystem &system, const CandidatePair &pair,
+                               const RegionForce &force) {
   if (force.overlap > pair.allowed_overlap) {
     keep_first(report_.fault, {Fault::Cause::too_deep, system.properties[pair.lower.value].id,
                                system.properties[pair.higher.value].id, force.overlap, pair.allowed_overlap});

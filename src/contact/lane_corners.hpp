@@ -35,7 +35,7 @@ struct LaneCorner {
   std::array<LaneVec, 2> normal;
   std::array<LaneVec, 2> slope;
   std::array<Lanes, 2> length;
-  std::array<Mask, PlainBatch::most_corner_edges> has_line; ///< edges of the chain that are one of them
+  std::array<Mask, most_corner_edges> has_line; ///< edges of the chain that are one of them
 
   /// Along an edge away from the corner.
   [[nodiscard, gnu::always_inline]] LaneVec away(std::size_t edge) const {

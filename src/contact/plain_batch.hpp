@@ -51,11 +51,10 @@ public:
     unsigned touching = 0;
     unsigned apart = 0;
   };
-  /// The same for those that overlap with one corner of each block, which is far less work
-  /// (lane_corners.hpp). Of the others some are seen not to touch, the rest is left to evaluate().
+  /// The same, where PlainPair::may_be_corners, for those that overlap with one corner of each block, which
+  /// is far less work (lane_corners.hpp). Of the others some are seen not to touch, the rest is left to
+  /// evaluate().
   virtual Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) = 0;
-  /// Most edges of each block that evaluate_corners() looks at.
-  static constexpr std::size_t most_corner_edges = 4;
   /// Where results go, by lane; null where no one asks.
   struct Results {
     std::array<RegionForce *, most_lanes> force{};

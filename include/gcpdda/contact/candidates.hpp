@@ -41,15 +41,13 @@ struct PlainPair {
   std::uint8_t higher_edges = 0;
   bool is_deformable = false; ///< at least one block is
   bool is_mixed = false;      ///< CandidatePair::is_mixed
+  /// Neither block has more than most_corner_edges edges, and each a corner in its chain.
+  bool may_be_corners = false;
 
-  /// Has each block a corner in its chain, and no more than `most` edges?
-  [[nodiscard]] bool may_be_corners(std::size_t most) const {
-    return lower_edges > 1 && higher_edges > 1 && lower_edges <= most && higher_edges <= most;
-  }
   /// May share an evaluation.
   [[nodiscard]] bool is_like(const PlainPair &other) const {
     return lower_edges == other.lower_edges && higher_edges == other.higher_edges &&
-           is_deformable == other.is_deformable;
+           is_deformable == other.is_deformable && may_be_corners == other.may_be_corners;
   }
 };
 
@@ -76,6 +74,10 @@ struct Candidates {
 
 /// Most edges of one block of a plain pair.
 constexpr std::size_t most_plain_edges = 8;
+
+/// Most edges of blocks whose overlap of two corners has a way of its own (src/contact/lane_corners.hpp): of
+/// all edges, not of those in a chain, or the way would depend on the refreshes.
+constexpr std::size_t most_corner_edges = 4;
 
 /// What a pair's constants follow from.
 struct ContactParameters {

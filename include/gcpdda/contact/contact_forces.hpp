@@ -258,6 +258,7 @@ private:
   void add_shear(RegionForce &force, double elastic, double viscous);
   void add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction);
   void note(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force);
+  void note_depth(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force);
   /// Torques of the region at hand, from its dyads, which are whole.
   void finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force);
 
