@@ -118,7 +118,9 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   } else {
     found.touching = batch_->evaluate(scene, lanes);
   }
-  if (found.touching != 0) {
+  if (found.touching != 0 && is_again_) {
+    store_again(lanes, found.touching);
+  } else if (found.touching != 0) {
     store_alike(scene, lanes, found.touching);
   }
 }
@@ -147,15 +149,16 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
     results.memory[i] = &memory;
     ++num_forces_;
   }
-  const unsigned too_deep = batch_->store(results);
-  if (too_deep == 0 && !lanes.pair[0]->is_deformable) {
+  const bool is_deformable = lanes.pair[0]->is_deformable;
+  const unsigned too_deep = batch_->store(results, is_deformable ? Details::now : details_);
+  if (too_deep == 0 && !is_deformable) {
     return;
   }
   for (std::size_t i = 0; i < lanes.count; ++i) {
     if (results.force[i] == nullptr) {
       continue;
     }
-    if (lanes.pair[i]->is_deformable) {
+    if (is_deformable) {
       damping_dyads_.resize(static_cast<std::size_t>(results.force[i] - forces_.data()) + 1);
       damping_dyads_.back() = batch_->damping_dyad(i);
     }
@@ -163,6 +166,20 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
       note_depth(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], *results.force[i]);
     }
   }
+}
+
+void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
+  PlainBatch::Results results;
+  std::array<RegionMemory, most_lanes> known;
+  for (std::size_t i = 0; i < lanes.count; ++i) {
+    const PlainPair &plain = *lanes.pair[i];
+    // The general way, which mixed pairs are born by, finds details at once.
+    if ((touching >> i & 1U) != 0 && !(plain.is_mixed && lanes.memory[i] == &PlainLanes::no_memory)) {
+      results.force[i] = &forces_[ranges_[plain.pair].begin];
+      results.memory[i] = &known[i];
+    }
+  }
+  batch_->store(results, Details::now);
 }
 
 template <class Visit>
@@ -184,6 +201,40 @@ void ContactForces::for_batches(const Candidates &candidates, const ContactHisto
 }
 
 // First those that may touch with one corner of each block; those that do not are left to the general lanes.
+void ContactForces::evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries) {
+  others_.clear();
+  for_batches(scene.candidates, scene.history, entries, [&](std::span<const std::uint32_t> batch) {
+    if (scene.candidates.plain[batch[0]].may_be_corners) {
+      evaluate_alike(scene, batch, true);
+    } else {
+      others_.insert(others_.end(), batch.begin(), batch.end());
+    }
+  });
+  for_batches(scene.candidates, scene.history, others_,
+              [&](std::span<const std::uint32_t> batch) { evaluate_alike(scene, batch, false); });
+}
+
+// The history that the evaluation began with is kept in next_, the velocities in motions_.
+void ContactForces::find_details(const BlockSystem &system, const Candidates &candidates) {
+  if (has_details_) {
+    return;
+  }
+  has_details_ = true;
+  meeting_.clear();
+  for (std::size_t k = 0; k < candidates.plain.size(); ++k) {
+    const PlainPair &plain = candidates.plain[k];
+    if (ranges_[plain.pair].count > 0 && !plain.is_deformable) {
+      meeting_.push_back(static_cast<std::uint32_t>(k));
+    }
+  }
+  is_again_ = true;
+  evaluate_corners_first({system, candidates, next_, motions_, deforming_, parameters_.damping_ratio,
+                          parameters_.stiffness_damping},
+                         meeting_);
+  is_again_ = false;
+  batch_->take_extremes(); // they have been told
+}
+
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                                          ContactHistory &history, std::size_t first, std::size_t last) {
   const std::vector<PlainPair> &plain = candidates.plain;
@@ -196,24 +247,10 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
   meeting_.resize(num_meeting);
   report_.evaluations += static_cast<std::int64_t>(num_meeting);
   births_.clear();
-  others_.clear();
   next_.regions.resize(num_forces_ + num_meeting);
-  const PlainScene scene{system,
-                         candidates,
-                         history,
-                         motions_,
-                         deforming_,
-                         parameters_.damping_ratio,
-                         parameters_.stiffness_damping};
-  for_batches(candidates, history, meeting_, [&](std::span<const std::uint32_t> entries) {
-    if (plain[entries[0]].may_be_corners) {
-      evaluate_alike(scene, entries, true);
-    } else {
-      others_.insert(others_.end(), entries.begin(), entries.end());
-    }
-  });
-  for_batches(candidates, history, others_,
-              [&](std::span<const std::uint32_t> entries) { evaluate_alike(scene, entries, false); });
+  evaluate_corners_first({system, candidates, history, motions_, deforming_, parameters_.damping_ratio,
+                          parameters_.stiffness_damping},
+                         meeting_);
   next_.regions.resize(num_forces_);
   const PlainBatch::Extremes seen = batch_->take_extremes();
   report_.normals_undefined += seen.normals_undefined;
@@ -242,7 +279,9 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
 }
 
 void ContactForces::evaluate_interior(const BlockSystem &system, const Candidates &candidates,
-                                      ContactHistory &history) {
+                                      ContactHistory &history, Details details) {
+  details_ = details;
+  has_details_ = details == Details::now;
   motions_.resize(system.num_rows());
   deforming_.resize(system.deformation.size());
   find_motions(system, 0, system.num_owned);

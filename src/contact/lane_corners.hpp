@@ -166,20 +166,34 @@ template <std::size_t lines>
   return leaves;
 }
 
-/// Where all of the edges of `own` that can take part lie beyond a line of `other`, by more than rounding:
-/// the blocks are apart.
+/// Do all of the edges of `own` that can take part lie beyond a line of `other`?
+struct BeyondLine {
+  Mask all{};     ///< they do
+  Mask clearly{}; ///< by more than rounding
+};
+
 template <std::size_t edges, std::size_t lines>
-Mask are_beyond_a_line(const LaneSide &own, const LaneSide &other) {
+BeyondLine find_line_between(const LaneSide &own, const LaneSide &other) {
   const Lanes rounding = Lanes(1e-9) * (other.high.x - other.low.x + other.high.y - other.low.y);
-  Mask beyond{};
+  BeyondLine beyond;
   each<lines>([&](auto j) __attribute__((always_inline)) {
     Lanes deepest = dot(other.slope[j], other.vertex[j] - own.vertex[0]);
     each<edges>([&](auto k) __attribute__((always_inline)) {
       deepest = max(deepest, dot(other.slope[j], other.vertex[j] - own.vertex[k + 1]));
     });
-    beyond = beyond | (deepest < -rounding);
+    beyond.all = beyond.all | (deepest <= 0.0);
+    beyond.clearly = beyond.clearly | (deepest < -rounding);
   });
   return beyond;
+}
+
+/// Where evaluate() would find no pressure either: no edge of either block has an end below all lines of the
+/// other one, or a line keeps them apart whatever rounding does.
+template <std::size_t lower_edges, std::size_t higher_edges>
+Mask are_apart(const LaneSide &lower, const LaneSide &higher) {
+  const BeyondLine first = find_line_between<lower_edges, higher_edges>(lower, higher);
+  const BeyondLine second = find_line_between<higher_edges, lower_edges>(higher, lower);
+  return (first.all & second.all) | first.clearly | second.clearly;
 }
 
 /// The boundary of an overlap of two corners: two stretches of each.

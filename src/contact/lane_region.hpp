@@ -122,7 +122,7 @@ public:
   void add_dashpot(const Lanes &total, const LaneVec &moment, const AnyMotion &motion);
   /// With all forces in place.
   template <class AnyMotion> void find_torques(const AnyMotion &motion);
-  unsigned store(const PlainBatch::Results &results);
+  unsigned store(const PlainBatch::Results &results, Details details);
   PlainBatch::Extremes take_extremes();
 
   [[nodiscard]] const LaneVec &point() const { return point_; }
@@ -250,7 +250,7 @@ template <class AnyMotion> void LaneRegions::find_torques(const AnyMotion &motio
   torque_[1] = -about_origin - cross(origin - motion.higher_centroid, force_);
 }
 
-inline unsigned LaneRegions::store(const PlainBatch::Results &results) {
+inline unsigned LaneRegions::store(const PlainBatch::Results &results, Details details) {
   std::array<std::byte *, num_lanes> to;
   std::array<double, num_lanes> is_wanted;
   for (std::size_t i = 0; i < num_lanes; ++i) {
@@ -266,11 +266,17 @@ inline unsigned LaneRegions::store(const PlainBatch::Results &results) {
   put(offsetof(RegionForce, shear_force), shear_force.x, shear_force.y, shear_torque_[0], shear_torque_[1]);
   put(offsetof(RegionForce, damping_force), damping_force_.x, damping_force_.y, damping_torque_[0],
       damping_torque_[1]);
-  put(offsetof(RegionForce, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
-  put(offsetof(RegionForce, origin), origin.x, origin.y, point_.x, point_.y);
-  put(offsetof(RegionForce, normal), normal_.x, normal_.y, normal_force_, shear_);
-  put(offsetof(RegionForce, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
-      select(undefined, 0.0, extent_end_));
+  const Mask wanted = Lanes::of([&](std::size_t i) { return is_wanted[i]; }) > 0.0;
+  max_overlap_ = select(wanted, max(max_overlap_, overlap_), max_overlap_);
+  max_overlap_share_ = select(wanted, max(max_overlap_share_, overlap_share_), max_overlap_share_);
+  const unsigned too_deep = (wanted & (overlap_share_ > 0.5)).by_lane();
+  if (details == Details::now || too_deep != 0) {
+    put(offsetof(RegionForce, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
+    put(offsetof(RegionForce, origin), origin.x, origin.y, point_.x, point_.y);
+    put(offsetof(RegionForce, normal), normal_.x, normal_.y, normal_force_, shear_);
+    put(offsetof(RegionForce, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
+        select(undefined, 0.0, extent_end_));
+  }
   const unsigned cancels = undefined.by_lane();
   const unsigned slips = slips_.by_lane();
   for (std::size_t i = 0; i < num_lanes; ++i) {
@@ -285,10 +291,7 @@ inline unsigned LaneRegions::store(const PlainBatch::Results &results) {
     memory.slip = slip_[i];
     memory.state = (slips >> i & 1U) != 0 ? ContactState::slip : ContactState::stick;
   }
-  const Mask wanted = Lanes::of([&](std::size_t i) { return is_wanted[i]; }) > 0.0;
-  max_overlap_ = select(wanted, max(max_overlap_, overlap_), max_overlap_);
-  max_overlap_share_ = select(wanted, max(max_overlap_share_, overlap_share_), max_overlap_share_);
-  return (wanted & (overlap_share_ > 0.5)).by_lane();
+  return too_deep;
 }
 
 inline PlainBatch::Extremes LaneRegions::take_extremes() {

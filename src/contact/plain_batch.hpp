@@ -63,7 +63,7 @@ public:
   /// Write the results of lanes that touch: all of a force but its pair, birth and bond, and what of the
   /// memory two convex blocks have.
   /// @return bit i is set where the overlap of lane i exceeds what is allowed
-  virtual unsigned store(const Results &results) = 0;
+  virtual unsigned store(const Results &results, Details details) = 0;
   /// Of a lane that touches where a block is deformable.
   [[nodiscard]] virtual Mat2 damping_dyad(std::size_t lane) const = 0;
   /// Of all that has been stored since these were taken last.

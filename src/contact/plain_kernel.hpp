@@ -22,7 +22,9 @@ public:
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
   unsigned evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
-  unsigned store(const Results &results) override { return regions_.store(results); }
+  unsigned store(const Results &results, Details details) override {
+    return regions_.store(results, details);
+  }
   [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const override { return regions_.damping_dyad(lane); }
   Extremes take_extremes() override { return regions_.take_extremes(); }
 
@@ -296,8 +298,7 @@ PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const P
   if ((!valid).any()) {
     lower.vertex[lower_edges] = load_vertex(scene.system, pairs.lower, lower_edges);
     higher.vertex[higher_edges] = load_vertex(scene.system, pairs.higher, higher_edges);
-    const Mask apart = are_beyond_a_line<lower_edges, higher_edges>(lower, higher) |
-                       are_beyond_a_line<higher_edges, lower_edges>(higher, lower);
+    const Mask apart = are_apart<lower_edges, higher_edges>(lower, higher);
     result.apart = (apart & !valid).by_lane();
     if (!valid.any()) {
       return result;

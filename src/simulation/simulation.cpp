@@ -188,7 +188,7 @@ void Simulation::prescribe_motion() {
 void Simulation::evaluate_contacts() {
   {
     const auto scope = phases_.measure(Phase::forces);
-    contacts_.evaluate_interior(blocks_, candidates_, history_);
+    contacts_.evaluate_interior(blocks_, candidates_, history_, Details::on_demand);
   }
   finish_ghosts();
   const auto scope = phases_.measure(Phase::forces);

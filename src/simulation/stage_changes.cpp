@@ -312,7 +312,7 @@ void Simulation::unload(const std::vector<std::int64_t> &removed, double duratio
       if (!holds(removed, blocks_.properties[other].id.value)) {
         continue;
       }
-      for (const RegionForce &force : contacts_.of_pair(number)) {
+      for (const RegionForce &force : contacts().of_pair(number)) {
         const ContactPart part = contact_part(force, is_lower, blocks_.trial_centroid[row]);
         load.rigid += {part.force, part.dyad.xy - part.dyad.yx};
         if (blocks_.is_deformable(row)) {

@@ -53,13 +53,14 @@ struct RegionForce {
   bool born = false;             ///< not there at the evaluation before
   bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
   bool bonded = false; ///< a bond (bonds.hpp): normal_force is minus its tension, which joins shear_force
-  // Four numbers each: the lanes write them so (plain_kernel.hpp).
+  // Four numbers each: the lanes write them so (lane_region.hpp).
   Vec2 force; ///< normal, friction and dashpot, N/m
   PairTorques torque{};
   Vec2 shear_force; ///< elastic part of friction in `force`; acts at `point`
   PairTorques shear_torque{};
   Vec2 damping_force; ///< dashpots in `force`
   PairTorques damping_torque{};
+  // Details, which a step does not need where both blocks are rigid, see Details.
   Mat2 dyad;                 ///< int (x - origin) df^T, N
   Vec2 origin;               ///< what dyads are about
   Vec2 point;                ///< x_r
@@ -135,6 +136,9 @@ struct PlainLanes;
 /// results are the same.
 enum class Instructions { widest, portable };
 
+/// When the details of a RegionForce are found: with its sums, or if find_details() asks for them.
+enum class Details { now, on_demand };
+
 /// Evaluates pairs; buffers live as long as it does.
 class ContactForces {
 public:
@@ -155,10 +159,15 @@ public:
     return evaluate_border(system, candidates, history);
   }
   /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
-  void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history);
+  void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
+                         Details details = Details::now);
   /// ... and then the rest.
   ForceReport evaluate_border(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history);
+
+  /// The details of all regions, if they were not found with the last evaluation: as long as trial
+  /// configuration and candidates are those of it.
+  void find_details(const BlockSystem &system, const Candidates &candidates);
 
   /// All touching regions, those of a pair together; region i is that of history.regions[i].
   [[nodiscard]] std::span<const RegionForce> regions() const { return {forces_.data(), num_forces_}; }
@@ -211,8 +220,11 @@ private:
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                             std::size_t first, std::size_t last);
   void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, bool by_corners);
+  void evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching);
+  /// Once more, with details.
+  void store_again(const PlainLanes &lanes, unsigned touching);
   /// Visit entries of Candidates::plain that are alike, as many at a time as there are lanes.
   template <class Visit>
   void for_batches(const Candidates &candidates, const ContactHistory &history,
@@ -272,6 +284,9 @@ private:
   /// The first num_forces_ of them; the others are of evaluations before and spare making new ones.
   std::vector<RegionForce> forces_;
   std::size_t num_forces_ = 0;
+  Details details_ = Details::now; ///< asked for with the evaluation
+  bool has_details_ = true;
+  bool is_again_ = false;           ///< find_details() is at work
   std::vector<RegionRange> ranges_; ///< of forces_, one a pair
   ForceReport report_;              ///< of what has been evaluated so far
   ContactHistory next_;

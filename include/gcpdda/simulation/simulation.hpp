@@ -139,7 +139,11 @@ public:
   [[nodiscard]] const BlockSystem &blocks() const { return blocks_; }
   [[nodiscard]] const Candidates &candidates() const { return candidates_; }
   [[nodiscard]] const ContactHistory &history() const { return history_; }
-  [[nodiscard]] const ContactForces &contacts() const { return contacts_; }
+  /// With all details.
+  [[nodiscard]] const ContactForces &contacts() const {
+    contacts_.find_details(blocks_, candidates_);
+    return contacts_;
+  }
   [[nodiscard]] const BlockForces &forces() const { return forces_; }
   [[nodiscard]] const Bolts &bolts() const { return bolts_; }
   [[nodiscard]] const DomainMap &domain_map() const { return map_; }
@@ -270,7 +274,7 @@ private:
   Ghosts ghosts_;
   Candidates candidates_;
   ContactHistory history_;
-  ContactForces contacts_;
+  mutable ContactForces contacts_; ///< details are found when somebody asks
   Bolts bolts_;
   BlockForces forces_; ///< at the last evaluation
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
