@@ -7,7 +7,7 @@
 #include "support/eigenvalues.hpp"
 #include "support/setting.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -78,21 +78,28 @@ double slope(std::span<const double> y) {
 /// Largest root of the recurrence x_{i+3} = p x_{i+2} + q x_{i+1} + s x_i that fits best: three unknowns a
 /// step cannot obey a longer one. `rate`: log of the growth so far known, which scales the equations alike.
 double recurrence_root(std::span<const double> x, double rate) {
-  const auto n = static_cast<Eigen::Index>(x.size()) - 3;
+  constexpr double excited = 3e-4; // of the largest singular value
   const double largest_x = std::abs(
       *std::max_element(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
-  const auto scaled = [&](Eigen::Index i) {
-    return x[static_cast<std::size_t>(i)] / largest_x * std::exp(-rate * static_cast<double>(i));
+  const auto scaled = [&](std::size_t i) {
+    return x[i] / largest_x * std::exp(-rate * static_cast<double>(i));
   };
-  Eigen::MatrixXd before(n, 3);
-  Eigen::VectorXd after(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    before.row(i) << scaled(i), scaled(i + 1), scaled(i + 2);
-    after(i) = scaled(i + 3);
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i + 3 < x.size(); ++i) {
+    const Eigen::Vector3d before(scaled(i), scaled(i + 1), scaled(i + 2));
+    normal += before * before.transpose();
+    moment += scaled(i + 3) * before;
   }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(3e-4); // a root that is not excited has no equation; least norm puts it inside
-  const Eigen::Vector3d fit = solver.compute(before).solve(after);
+  // A root that is not excited has no equation; least norm puts it inside.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(normal);
+  Eigen::Vector3d fit = Eigen::Vector3d::Zero();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (parts.eigenvalues()(k) > excited * excited * parts.eigenvalues()(2)) {
+      const Eigen::Vector3d direction = parts.eigenvectors().col(k);
+      fit += direction.dot(moment) / parts.eigenvalues()(k) * direction;
+    }
+  }
   Eigen::Matrix3d companion;
   companion << 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, fit(0), fit(1), fit(2);
   return std::exp(rate) * spectral_radius(companion);

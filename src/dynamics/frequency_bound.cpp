@@ -1,6 +1,9 @@
 #include "gcpdda/dynamics/frequency_bound.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+
+#include <array>
+#include <cmath>
 
 namespace gcpdda {
 
@@ -60,6 +63,38 @@ Matrix6 boundary_stiffness(std::span<const Vec2> vertices, double normal_stiffne
   return stiffness;
 }
 
+/// L^-1 K L^-T of a deformable block's mass L L^T, which couples F11 with F12 and F21 with F22 only: what the
+/// eigenvalues of M^-1 K are those of. The upper triangle of K is not read.
+Matrix6 over_mass(const Matrix6 &stiffness, double mass, const Mat2 &second_moment) {
+  const double l_u = std::sqrt(mass);
+  const double l_xx = std::sqrt(second_moment.xx);
+  const double l_yx = second_moment.yx / l_xx;
+  const double l_yy = std::sqrt(second_moment.yy - l_yx * l_yx);
+  const std::array<double, 6> inverse{1.0 / l_u, 1.0 / l_u, 1.0 / l_xx, 1.0 / l_yy, 1.0 / l_xx, 1.0 / l_yy};
+  Matrix6 scaled = stiffness.selfadjointView<Eigen::Lower>();
+  const auto solve = [&](auto &&row) { // row(i) of L^-1 times what has these rows
+    for (const Eigen::Index i : {0, 1, 2, 3, 4, 5}) {
+      if (i == 3 || i == 5) {
+        row(i) -= l_yx * row(i - 1);
+      }
+      row(i) *= inverse[static_cast<std::size_t>(i)];
+    }
+  };
+  solve([&](Eigen::Index i) { return scaled.row(i); });
+  solve([&](Eigen::Index i) { return scaled.col(i); });
+  return scaled;
+}
+
+/// Of a symmetric matrix. The steps of Eigen::SelfAdjointEigenSolver and its bits, without those for
+/// eigenvectors: they take the compiler three times as long as all the rest.
+double largest_eigenvalue(const Matrix6 &matrix) {
+  const double scale = Matrix6(matrix.triangularView<Eigen::Lower>()).cwiseAbs().maxCoeff();
+  const Eigen::Tridiagonalization<Matrix6> tridiagonal(matrix / scale);
+  Eigen::SelfAdjointEigenSolver<Matrix6> solver;
+  solver.computeFromTridiagonal(tridiagonal.diagonal(), tridiagonal.subDiagonal(), Eigen::EigenvaluesOnly);
+  return scale * solver.eigenvalues().maxCoeff();
+}
+
 double deformable_bound(const BlockSystem &system, std::size_t row, double normal_stiffness,
                         double tangential_stiffness, Elasticity elasticity,
                         std::span<const PointSpring> springs) {
@@ -78,15 +113,7 @@ double deformable_bound(const BlockSystem &system, std::size_t row, double norma
         0.0, d.stiffness_shear;
     stiffness.bottomRightCorner<4, 4>() += strain.transpose() * elastic * strain;
   }
-  const double mass_of_block = system.properties[row].mass;
-  const Mat2 &s = d.second_moment;
-  Matrix6 mass = Matrix6::Zero();
-  mass.diagonal().head<2>().setConstant(mass_of_block);
-  for (const Eigen::Index i : {2, 4}) {
-    mass.block<2, 2>(i, i) << s.xx, s.xy, s.yx, s.yy;
-  }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> solver(stiffness, mass, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().maxCoeff();
+  return largest_eigenvalue(over_mass(stiffness, system.properties[row].mass, d.second_moment));
 }
 
 } // namespace

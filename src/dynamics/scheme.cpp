@@ -1,8 +1,9 @@
 #include "gcpdda/dynamics/scheme.hpp"
 
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/dynamics/eigenvalues.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace gcpdda {
 
@@ -73,7 +74,7 @@ double amplification(const Scheme &s, double w, double xi) {
   step.row(0) = d + v + (0.5 - s.beta) * a + s.beta * a_new;
   step.row(1) = v + (1.0 - s.gamma) * a + s.gamma * a_new;
   step.row(2) = a_new;
-  return step.eigenvalues().cwiseAbs().maxCoeff();
+  return spectral_radius(std::span(step.data(), 9));
 }
 
 double stability_limit(const Scheme &scheme, double damping_ratio) {

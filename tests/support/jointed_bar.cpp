@@ -10,11 +10,11 @@ namespace gcpdda::testing {
 // Unknowns u_i and e_i L.
 double jointed_bar_frequency(int num_blocks, double youngs_modulus, double joint_stiffness) {
   const int n = num_blocks;
-  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  Eigen::VectorXd mass(2 * n);
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   for (int i = 0; i < n; ++i) {
-    mass(2 * i, 2 * i) = rock_density;
-    mass(2 * i + 1, 2 * i + 1) = rock_density / 12.0;
+    mass(2 * i) = rock_density;
+    mass(2 * i + 1) = rock_density / 12.0;
     stiffness(2 * i + 1, 2 * i + 1) += youngs_modulus;
   }
   for (int joint = 0; joint <= n; ++joint) {

@@ -22,8 +22,8 @@ constexpr double normal_stiffness = 3e6;
 constexpr double tangential_stiffness = 1e6;
 constexpr double density = 2000.0;
 
-Eigen::Matrix3d mass_of(const BlockProperties &p) {
-  return Eigen::Vector3d(p.mass, p.mass, p.inertia).asDiagonal();
+Eigen::Vector3d mass_of(const BlockProperties &p) {
+  return {p.mass, p.mass, p.inertia};
 }
 
 /// Row of T^T: generalised force of a unit traction along d at offset r from the centroid.
@@ -82,9 +82,8 @@ double bound_of(const BlockSystem &system, double k_t) {
 }
 
 double largest_frequency(const BlockSystem &system, const Matrix6 &stiffness) {
-  Matrix6 mass = Matrix6::Zero();
-  mass.topLeftCorner<3, 3>() = mass_of(system.properties[0]);
-  mass.bottomRightCorner<3, 3>() = mass_of(system.properties[1]);
+  Eigen::Matrix<double, 6, 1> mass;
+  mass << mass_of(system.properties[0]), mass_of(system.properties[1]);
   const Matrix6 symmetric = 0.5 * (stiffness + stiffness.transpose());
   return squared_frequencies(symmetric, mass).maxCoeff();
 }
@@ -206,7 +205,7 @@ double largest_of_chain(int num_blocks, bool deformable) {
       stiffness += normal_stiffness * gap * gap.transpose();
     }
   }
-  return squared_frequencies(stiffness, mass.asDiagonal().toDenseMatrix()).maxCoeff();
+  return squared_frequencies(stiffness, mass).maxCoeff();
 }
 
 // 4 k/m and 12 k/m are what long chains reach, as cos^2(pi/2N) does 1: the bound of deformable blocks is

@@ -2,6 +2,8 @@
 
 #include "gcpdda/dynamics/scheme.hpp"
 
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/dynamics/eigenvalues.hpp"
 #include "gcpdda/dynamics/integrate.hpp"
 #include "support/blocks.hpp"
 #include "support/eigenvalues.hpp"
@@ -10,9 +12,12 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace gcpdda::scheme_test {
 namespace {
@@ -133,6 +138,23 @@ void advance(BlockSystem &system, const Scheme &scheme, double time_step, Force 
   predict(system, scheme, time_step);
   const BlockForces forces{{{{force(system.trial[0].u.x, system.velocity[0].u.x), 0.0}, 0.0}}, {}};
   ASSERT_FALSE(solve_and_update(system, forces, scheme, time_step, Elasticity::implicit));
+}
+
+// Roots of (z - 0.5)(z^2 - 2 a z + a^2 + b^2), real and in pairs, the larger ones first and last.
+TEST(SpectralRadius, OfACompanionMatrix) {
+  for (const auto &[a, b] :
+       {std::pair{0.3, 0.9}, std::pair{-0.2, 0.1}, std::pair{1.0, 0.0}, std::pair{0.0, 3.0}}) {
+    const double square = a * a + b * b;
+    const std::array<double, 9> matrix{0.0,         0.0, 0.5 * square, 1.0,          0.0,
+                                       -square - a, 0.0, 1.0,          2.0 * a + 0.5};
+    // A double root is known to the square root of rounding.
+    const double tolerance = b == 0.0 ? 1e-7 : 1e-14;
+    EXPECT_NEAR(gcpdda::spectral_radius(matrix), std::max(0.5, std::sqrt(square)), tolerance)
+        << a << " " << b;
+  }
+  EXPECT_EQ(gcpdda::spectral_radius(std::array{-3.0}), 3.0);
+  EXPECT_EQ(gcpdda::spectral_radius(std::array{0.0, 0.0, 0.0, 0.0}), 0.0);
+  EXPECT_THROW(gcpdda::spectral_radius(std::array{1.0, 2.0, 3.0}), InternalError);
 }
 
 // The columns of the matrix that the product's step applies to unit states, with dt = 1, and its spectrum.

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <span>
+
+namespace gcpdda {
+
+/// Largest absolute eigenvalue of a square real matrix given column by column.
+double spectral_radius(std::span<const double> matrix);
+
+} // namespace gcpdda
