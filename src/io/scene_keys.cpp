@@ -272,7 +272,7 @@ constexpr Key all_keys[] = {
   {"stage[].blocks", Kind::names, optional, any, "", "<none>", "[\"wall.0.3\", \"wall.0.4\"]", "Names of the blocks to excavate, also of generated ones or those of the block file."},
   {"stage[].region", Kind::polygon, optional, from_to(-1e9, 1e9), "", "<none>", "[[0, 0], [4, 0], [4, 3], [0, 3]]", "[m] Polygon; blocks whose centroid lies in it when the stage begins are excavated, fixed ones too."},
   {"stage[].openings", Kind::names, optional, any, "", "<none>", "[\"tunnel\"]", "Names of [[opening]] tables whose blocks to excavate."},
-  {"stage[].relax", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.5", "[s] Time over which the forces of excavated blocks on those that stay fall linearly to zero; 0: at once."},
+  {"stage[].relax", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.5", "[s] Time over which the forces of excavated blocks, and of bolts in them, on those that stay fall linearly to zero; 0: at once."},
   {"stage[].set", Kind::assignments, optional, any, "", "<none>", "{ \"joint.default.friction_angle_deg\" = 25.0 }", "Values of the scene that change when the stage begins, by path as with --set: keys of [run] that can change (gravity, time_step, safety, contact_damping, local_damping, elasticity, potential), any value of a [joint.NAME], [material.NAME], [water.NAME] or (but its kind) [support.NAME], block.NAME.fixed, block.NAME.load, bolt.NAME.active and bolt_pattern.NAME.active."},
 
   {"fos", Kind::table, optional, any, "", "", "[fos]", "How gcpdda fos looks for the factor of safety; the other commands do not care."},
