@@ -3,7 +3,8 @@
     xvfb-run -a pvbatch --force-offscreen-rendering run/paraview.py results/wall wall.png [TIME]
 
 Without TIME the last frame is drawn. In the ParaView window the same: open run.hdf.series, then the filters
-Extract Surface and Triangulate, without which polygons that are not convex are filled wrongly.
+Extract Surface and Triangulate, without which polygons that are not convex are filled wrongly. Bolts are lines of
+their own: bolts.hdf.series.
 """
 
 import pathlib
@@ -16,6 +17,32 @@ from paraview.simple import (
     ColorBy, CreateView, ExtractSurface, GetColorTransferFunction, GetScalarBar, OpenDataFile, Render, SaveScreenshot,
     Show, Triangulate,
 )
+
+
+def show_scale(name, preset, title, view):
+    colours = GetColorTransferFunction(name)
+    colours.ApplyPreset(preset, True)
+    bar = GetScalarBar(colours, view)
+    bar.Title, bar.ComponentTitle = title, ""
+    bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
+    bar.Visibility = 1
+    return bar
+
+
+def show_bolts(path, view):
+    """Those in place at the view's time, by their tension."""
+    bolts = OpenDataFile(str(path))
+    bolts.UpdatePipeline(view.ViewTime)
+    count = bolts.GetDataInformation().GetNumberOfCells()
+    print(f"{count} lines of bolts")
+    if count == 0:
+        return
+    lines = Show(bolts, view)
+    lines.LineWidth = 5.0
+    ColorBy(lines, ("CELLS", "axial_force"))
+    lines.RescaleTransferFunctionToDataRange(False, True)
+    bar = show_scale("axial_force", "Inferno (matplotlib)", "tension of a bolt (N)", view)
+    bar.WindowLocation = "Upper Right Corner"
 
 
 def main(directory, picture, time=None):
@@ -38,17 +65,15 @@ def main(directory, picture, time=None):
     blocks = Show(Triangulate(Input=surface), view)
     ColorBy(blocks, ("CELLS", "displacement", "Magnitude"))
     blocks.RescaleTransferFunctionToDataRange(False, True)
-    colours = GetColorTransferFunction("displacement")
-    colours.ApplyPreset("Viridis (matplotlib)", True)
-    bar = GetScalarBar(colours, view)
-    bar.Title, bar.ComponentTitle = "displacement (m)", ""
-    bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
-    bar.Visibility = 1
+    show_scale("displacement", "Viridis (matplotlib)", "displacement (m)", view)
 
     edges = Show(surface, view)
     edges.Representation = "Wireframe"
     ColorBy(edges, ("CELLS", None))
     edges.AmbientColor = edges.DiffuseColor = [0.12, 0.14, 0.16]
+
+    if (series := pathlib.Path(directory).resolve() / "bolts.hdf.series").exists():
+        show_bolts(series, view)
 
     view.ResetCamera(True)
     Render(view)

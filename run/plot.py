@@ -7,12 +7,12 @@
     run/plot.py results/seismic_slope --field permanent --since shaking --out permanent.png
     run/plot.py results/seismic_slope --rayleigh --out damping.png
 
-Fixed blocks are grey and hatched, phreatic lines blue and dashed, bolts orange, as thick as they are loaded, red
-where they have yielded, dotted where they are broken. Panels and pictures of one call share axes and colour scale.
+Fixed blocks are grey and hatched, phreatic lines blue and dashed. Bolts are coloured by their tension, joint by joint,
+with a dot where they have yielded and dashed where they are broken. Panels and pictures of one call share axes and
+colour scales.
 """
 
 import argparse
-import csv
 import json
 import pathlib
 import sys
@@ -26,7 +26,7 @@ import matplotlib.animation
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.patches import Patch
 
@@ -219,22 +219,46 @@ def draw_water(axes, directory):
         axes.plot(at, np.interp(at, x, y), color="#2f7fd6", lw=1.2, ls=(0, (5, 2)), zorder=3)
 
 
-def draw_bolts(axes, directory, time):
-    """Bolts in place at a time, by their largest tension."""
-    path = directory / "history" / "bolts.csv"
-    if not path.exists():
-        return
-    with open(path, newline="") as file:
-        rows = [row for row in csv.DictReader(file)]
-    largest = max((abs(float(row["axial[N]"])) for row in rows), default=0.0) or 1.0
-    for row in rows:
-        if not np.isclose(float(row["time[s]"]), time, rtol=1e-9, atol=1e-12):
-            continue
-        colour = "#c81e1e" if int(row["yielded"]) else "#f08c1a"
-        style = ":" if int(row["broken"]) else "-"
-        width = 0.6 + 1.6 * max(float(row["axial[N]"]), 0.0) / largest
-        axes.plot([float(row["x_head[m]"]), float(row["x_tip[m]"])], [float(row["y_head[m]"]), float(row["y_tip[m]"])],
-                  color=colour, lw=width, ls=style, solid_capstyle="round", zorder=4)
+class Bolts:
+    """Lines of the bolts in place in each frame, one colour scale for all."""
+
+    def __init__(self, paths):
+        self.of_frame = [self.read(path.with_name(path.name.replace("frame_", "bolts_"))) for path in paths]
+        tensions = np.concatenate([tension for _, tension, _ in self.of_frame])
+        largest = float(np.abs(tensions).max(initial=0.0))
+        self.present = len(tensions) > 0
+        self.factor, self.unit = unit_prefix("N", largest)
+        low = min(0.0, float(tensions.min(initial=0.0)) * self.factor)
+        self.scale = ScalarMappable(Normalize(low, largest * self.factor or 1.0), "YlOrRd")
+
+    @staticmethod
+    def read(path):
+        """Lines, their tension in N, their state."""
+        if not path.exists():
+            return [], np.empty(0), np.empty(0, dtype=int)
+        with h5py.File(path) as file:
+            grid = file["VTKHDF"]
+            points, ends = grid["Points"][:, :2], grid["Offsets"][:]
+            lines = [points[a:b] for a, b in zip(ends[:-1], ends[1:])]
+            return lines, grid["CellData/axial_force"][:], grid["CellData/state"][:]
+
+    def draw(self, axes, number):
+        lines, tension, state = self.of_frame[number]
+        if not lines:
+            return
+        styles = [(0, (1.2, 1.0)) if s == 2 else "-" for s in state]
+        axes.add_collection(LineCollection(lines, colors=EDGE, linewidths=2.6, linestyles=styles, zorder=4))
+        axes.add_collection(LineCollection(lines, colors=self.scale.to_rgba(tension * self.factor), linewidths=1.7,
+                                           linestyles=styles, zorder=5))
+        marks = np.array([0.5 * (line[(len(line) - 1) // 2] + line[len(line) // 2])
+                          for line, s in zip(lines, state) if s > 0]).reshape(-1, 2)
+        axes.scatter(*marks.T, s=9.0, c="white", edgecolors=EDGE, linewidths=0.7, zorder=6)
+
+    def explain(self, figure, axes):
+        if self.present:
+            bar = figure.colorbar(self.scale, ax=axes, shrink=0.85, aspect=28 * axes[0].get_gridspec().nrows, pad=0.02)
+            bar.set_label(f"tension of a bolt ({self.unit})")
+            bar.outline.set_linewidth(0.5)
 
 
 def grid_shape(number, size):
@@ -243,14 +267,14 @@ def grid_shape(number, size):
     return -(-number // columns), columns
 
 
-def new_figure(frames, number, colours, arguments):
+def new_figure(frames, number, colours, bolts, arguments):
     low, high = np.reshape(arguments.window, (2, 2)) if arguments.window else view(frames)
     title = arguments.title
     rows, columns = grid_shape(number, high - low)
     ratio = float(np.clip((high - low)[1] / (high - low)[0], 0.2, 2.5))
     panel = min(6.4 if columns == 1 else 4.2, 7.0 / ratio / (1 if columns == 1 else 1.3))
     panel = max(panel, 3.0)
-    size = (columns * panel + 1.7, rows * (panel * ratio + 0.7) + (0.35 if title else 0.0) + (0.4 if colours.by_kind else 0.0))
+    size = (columns * panel + 1.7 + (1.0 if bolts.present else 0.0), rows * (panel * ratio + 0.7) + (0.35 if title else 0.0) + (0.4 if colours.by_kind else 0.0))
     figure, axes = plt.subplots(rows, columns, squeeze=False, figsize=size, sharex=True, sharey=True)
     figure.set_layout_engine("constrained", rect=(0, 0.4 / size[1], 1, 1 - 0.4 / size[1]) if colours.by_kind else (0, 0, 1, 1))
     if title:
@@ -262,32 +286,32 @@ def new_figure(frames, number, colours, arguments):
         panel_axes.set_xlabel("x (m)" if below else "")
         panel_axes.set_ylabel("y (m)" if i % columns == 0 else "")
     colours.explain(figure, list(axes.flat), frames)
+    bolts.explain(figure, list(axes.flat))
     return figure, list(axes.flat)[:number]
 
 
-def save_picture(frames, colours, arguments, reference):
-    figure, panels = new_figure(frames, len(frames), colours, arguments)
-    for axes, frame in zip(panels, frames):
+def save_picture(frames, colours, bolts, arguments, reference):
+    figure, panels = new_figure(frames, len(frames), colours, bolts, arguments)
+    for number, (axes, frame) in enumerate(zip(panels, frames)):
         draw(axes, frame, colours, reference)
         draw_water(axes, arguments.directory)
-        draw_bolts(axes, arguments.directory, frame.time)
+        bolts.draw(axes, number)
         axes.set_title(f"t = {frame.time:.4g} s", fontsize=9)
     figure.savefig(arguments.out, dpi=arguments.dpi, bbox_inches="tight", pad_inches=0.06)
 
 
-def save_movie(frames, colours, arguments, reference):
-    figure, (axes,) = new_figure(frames, 1, colours, arguments)
+def save_movie(frames, colours, bolts, arguments, reference):
+    figure, (axes,) = new_figure(frames, 1, colours, bolts, arguments)
 
-    def show(frame):
+    def show(number):
+        frame = frames[number]
         for old in list(axes.collections):
             old.remove()
-        for old in list(axes.lines):
-            old.remove()
         draw(axes, frame, colours, reference)
-        draw_bolts(axes, arguments.directory, frame.time)
+        bolts.draw(axes, number)
         axes.set_title(f"t = {frame.time:.3f} s", fontsize=9)
 
-    movie = matplotlib.animation.FuncAnimation(figure, show, frames=frames, init_func=lambda: None)
+    movie = matplotlib.animation.FuncAnimation(figure, show, frames=len(frames), init_func=lambda: None)
     movie.save(arguments.out, writer=matplotlib.animation.PillowWriter(fps=arguments.fps), dpi=min(arguments.dpi, 110))
 
 
@@ -315,7 +339,8 @@ def main():
         return
     if (arguments.field == "permanent") != (arguments.since is not None):
         parser.error("--field permanent and --since STAGE belong together")
-    frames = [Frame(path, arguments.field) for path in chosen_frames(arguments.directory, arguments.frame)]
+    paths = chosen_frames(arguments.directory, arguments.frame)
+    frames = [Frame(path, arguments.field) for path in paths]
     first = Frame(chosen_frames(arguments.directory, "first")[0], arguments.field)
     for frame in frames:
         start = first.points_of(frame.blocks)
@@ -324,7 +349,7 @@ def main():
         make_permanent(frames, Frame(frame_before(arguments.directory, arguments.since), arguments.field))
     colours = Colours(arguments.field, frames)
     save = save_movie if arguments.out.suffix == ".gif" else save_picture
-    save(frames, colours, arguments, first if arguments.compare else None)
+    save(frames, colours, Bolts(paths), arguments, first if arguments.compare else None)
 
 
 if __name__ == "__main__":

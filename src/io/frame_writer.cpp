@@ -139,12 +139,13 @@ void write_cell_data(CollectiveFile &file, RowRange cells, const std::vector<Fra
   three_columns("contact_force", [](const FrameRow &row) { return row.contact_force; });
 }
 
-std::string series_index(const std::vector<std::pair<int, double>> &frames) {
+/// @param kind  of the files, "frame" or "bolts"
+std::string series_index(const std::vector<std::pair<int, double>> &frames, const char *kind) {
   std::string text = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [";
   const char *separator = "\n";
   for (const auto &[index, time] : frames) {
-    text += fmt::format("{}    {{\"name\": \"frames/{}\", \"time\": {:.17g}}}", separator, frame_name(index),
-                        time);
+    text += fmt::format("{}    {{\"name\": \"frames/{}_{:06}.hdf\", \"time\": {:.17g}}}", separator, kind,
+                        index, time);
     separator = ",\n";
   }
   return text + "\n  ]\n}\n";
@@ -258,6 +259,32 @@ void FrameWriter::write(int index, double time, FrameData data) {
   write_indices();
 }
 
+// A few rows, which the root writes.
+void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
+  const BoltFrame mine = communicator_.is_root() ? frame : BoltFrame{};
+  const RowRange cells = rows_in_rank_order(communicator_, std::ssize(mine.rows));
+  const RowRange points = rows_in_rank_order(communicator_, std::ssize(mine.points));
+  CollectiveFile file(communicator_, directory_ / "frames" / fmt::format("bolts_{:06}.hdf", index));
+  vtk::write_header(file, time);
+  vtk::write_cells(file, cells, points, vtk::CellType::poly_line,
+                   vtk::column(mine.rows, [](const BoltRow &row) { return row.num_points; }));
+  vtk::write_points(file, points, mine.points);
+  const auto column = [&](const char *name, auto get) {
+    file.dataset(vtk::cell_data(name), cells, vtk::column(mine.rows, get));
+  };
+  column("bolt", [](const BoltRow &row) { return row.bolt; });
+  column("support", [](const BoltRow &row) { return row.support; });
+  column("state", [](const BoltRow &row) { return row.state; });
+  column("axial_force", [](const BoltRow &row) { return row.axial_force; });
+  column("shear_force", [](const BoltRow &row) { return row.shear_force; });
+  column("extension", [](const BoltRow &row) { return row.extension; });
+  column("slide", [](const BoltRow &row) { return row.slide; });
+  file.publish();
+  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+  bolt_frames_.emplace_back(index, time);
+  write_indices();
+}
+
 void FrameWriter::write_topology(int index, const FrameData &slab) {
   const RowRange cells = rows_in_rank_order(communicator_, std::ssize(slab.rows));
   const RowRange points = rows_in_rank_order(communicator_, std::ssize(slab.vertices));
@@ -284,7 +311,10 @@ const FrameWriter::Topology &FrameWriter::topology_of(int frame) const {
 
 void FrameWriter::write_indices() const {
   on_root(communicator_, [this] {
-    write_file(directory_ / "run.hdf.series", series_index(frames_));
+    write_file(directory_ / "run.hdf.series", series_index(frames_, "frame"));
+    if (!bolt_frames_.empty()) {
+      write_file(directory_ / "bolts.hdf.series", series_index(bolt_frames_, "bolts"));
+    }
     std::vector<IndexedFrame> indexed;
     for (const auto &[index, time] : frames_) {
       const Topology &topology = topology_of(index);
@@ -314,6 +344,11 @@ void FrameWriter::continue_behind(const std::vector<double> &times) {
   on_root(communicator_, [&] {
     const hdf5::QuietErrors quiet;
     const hdf5::File needed(hdf5::open_to_read(folder / topology_name(0)));
+    for (const auto &[index, time] : frames_) {
+      if (std::filesystem::exists(folder / fmt::format("bolts_{:06}.hdf", index))) {
+        bolt_frames_.emplace_back(index, time);
+      }
+    }
     for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
       const auto first = number_of(entry.path().filename().string(), "topology", ".h5");
       if (!first || *first >= std::ssize(times)) {
@@ -338,10 +373,11 @@ void FrameWriter::continue_behind(const std::vector<double> &times) {
     std::vector<std::filesystem::path> later;
     for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
-      const auto frame = number_of(name, "frame", ".hdf");
-      const auto contacts = frame ? frame : number_of(name, "contacts", ".hdf");
-      const std::int64_t number = contacts ? *contacts : number_of(name, "topology", ".h5").value_or(-1);
-      if (number >= std::ssize(times)) {
+      std::optional<std::int64_t> number = number_of(name, "topology", ".h5");
+      for (const char *kind : {"frame", "contacts", "bolts"}) {
+        number = number ? number : number_of(name, kind, ".hdf");
+      }
+      if (number.value_or(-1) >= std::ssize(times)) {
         later.push_back(entry.path());
       }
     }

@@ -12,7 +12,7 @@
 /// The VTKHDF 1.0 UnstructuredGrid layout, shared by frames of blocks and of contacts.
 namespace gcpdda::vtk {
 
-enum class CellType : std::uint8_t { line = 3, polygon = 7 };
+enum class CellType : std::uint8_t { line = 3, poly_line = 4, polygon = 7 };
 
 /// The groups and the attributes that make the file VTKHDF, and its time.
 void write_header(CollectiveFile &file, double time);

@@ -3,6 +3,7 @@
 #include "durable_file.hpp"
 
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/base/text.hpp"
 
 #include <fmt/format.h>
 
@@ -85,7 +86,11 @@ HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monito
   for (std::size_t i = 0; i < pending_.size(); ++i) {
     const std::string header = header_of(i);
     if (std::isfinite(last_time)) {
-      write_file(path_of(i), header + rows_until(path_of(i), header, last_time));
+      const std::string rows = rows_until(path_of(i), header, last_time);
+      write_file(path_of(i), header + rows);
+      if (i > monitors_.size()) {
+        note_bolts(rows);
+      }
     } else {
       write_to(path_of(i), header, std::ios::trunc);
     }
@@ -139,6 +144,42 @@ void HistoryWriter::write_bolts(double time, const std::vector<BoltHistoryRow> &
         fmt::format("{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{}\n",
                     time, row.name, row.head.x, row.head.y, row.tip.x, row.tip.y, row.axial, row.shear,
                     row.extension, row.slide, row.links, row.yielded, row.broken);
+    note_bolt(time, row);
+  }
+}
+
+void HistoryWriter::note_bolt(double time, const BoltHistoryRow &row) {
+  const auto [found, is_new] = load_of_.emplace(row.name, bolt_loads_.size());
+  if (is_new) {
+    bolt_loads_.emplace_back();
+  }
+  BoltLoad &load = bolt_loads_[found->second];
+  load.last = row;
+  load.time = time;
+  load.axial = is_new ? row.axial : std::max(load.axial, row.axial);
+  load.shear = std::max(load.shear, row.shear);
+}
+
+// As write_bolts has written them.
+void HistoryWriter::note_bolts(std::string_view rows) {
+  while (!rows.empty()) {
+    const std::size_t end = rows.find('\n');
+    const CsvRow<13> row(rows.substr(0, end));
+    rows.remove_prefix(end + 1);
+    const auto number = [&](std::size_t k) {
+      return to_number(row.fields[k], std::numeric_limits<double>::max()).value_or(0.0);
+    };
+    const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(number(k)); };
+    note_bolt(number(0), {std::string(row.fields[1]),
+                          {number(2), number(3)},
+                          {number(4), number(5)},
+                          number(6),
+                          number(7),
+                          number(8),
+                          number(9),
+                          count(10),
+                          count(11),
+                          count(12)});
   }
 }
 

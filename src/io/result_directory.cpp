@@ -33,7 +33,7 @@ bool is_own_file(const fs::path &folder, const fs::path &path) {
   }
   if (folder == "frames") {
     return is_numbered(name, "frame", ".hdf") || is_numbered(name, "contacts", ".hdf") ||
-           is_numbered(name, "topology", ".h5");
+           is_numbered(name, "bolts", ".hdf") || is_numbered(name, "topology", ".h5");
   }
   if (folder == "checkpoints") {
     return is_numbered(name, "checkpoint", ".h5");
@@ -44,7 +44,8 @@ bool is_own_file(const fs::path &folder, const fs::path &path) {
   if (folder == "history") {
     return is_own_history(path);
   }
-  return name == "run.hdf.series" || name == "run.xdmf" || name == "summary.json";
+  return name == "run.hdf.series" || name == "bolts.hdf.series" || name == "run.xdmf" ||
+         name == "summary.json";
 }
 
 std::vector<fs::path> own_files(const fs::path &directory) {

@@ -193,7 +193,7 @@ bool can_change(const Path &path) {
     return std::find(names.begin(), names.end(), last) != names.end();
   };
   if (path.front() == "run") {
-    return path.size() == 2 && is_one_of({"gravity", "time_step", "safety", "contact_damping",
+    return path.size() == 2 && is_one_of({"gravity", "time_step", "safety", "contact_damping", "rayleigh",
                                           "local_damping", "elasticity", "potential"});
   }
   if (path.front() == "joint") {

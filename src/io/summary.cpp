@@ -41,6 +41,27 @@ std::vector<JsonObject> stage_objects(const RunSummary &summary) {
   return objects;
 }
 
+std::vector<JsonObject> bolt_objects(const std::vector<BoltLoad> &loads) {
+  std::vector<JsonObject> objects;
+  for (const BoltLoad &load : loads) {
+    objects.push_back(JsonObject()
+                          .add("name", load.last.name)
+                          .add("support", load.support)
+                          .add("installed", load.installed)
+                          .add("in_place", load.in_place)
+                          .add("axial", load.last.axial)
+                          .add("shear", load.last.shear)
+                          .add("largest_axial", load.axial)
+                          .add("largest_shear", load.shear)
+                          .add("extension", load.last.extension)
+                          .add("slide", load.last.slide)
+                          .add("joints", load.last.links)
+                          .add("yielded", load.last.yielded)
+                          .add("broken", load.last.broken));
+  }
+  return objects;
+}
+
 } // namespace
 
 void write_summary(const std::filesystem::path &directory, const RunSummary &summary) {
@@ -86,6 +107,9 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
       .add("counters", counters)
       .add("verdict", summary.verdict)
       .add("message", summary.message);
+  if (!summary.bolts.empty()) {
+    object.add("bolts", bolt_objects(summary.bolts));
+  }
   if (!summary.stages.empty()) {
     object.add("stages", stage_objects(summary));
   }

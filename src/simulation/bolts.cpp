@@ -256,6 +256,21 @@ void Bolts::add_forces(const BlockSystem &system, std::span<RigidDof> forces) co
   }
 }
 
+std::vector<LinkPull> Bolts::pulls_from(const std::function<bool(std::int64_t)> &goes,
+                                        const BlockSystem &system) const {
+  std::vector<LinkPull> pulls;
+  for (std::size_t k = 0; k < here_.size(); ++k) {
+    const BoltLink &link = links_[here_[k].link];
+    for (std::size_t side = 0; side < 2; ++side) {
+      const std::size_t row = here_[k].rows[side];
+      if (row < system.num_owned && goes(link.end[1 - side].block) && !goes(link.end[side].block)) {
+        pulls.push_back({row, forces_[k].rigid[side], forces_[k].gradient[side]});
+      }
+    }
+  }
+  return pulls;
+}
+
 std::span<const PointSpring> Bolts::springs_at(std::int64_t block) const {
   const auto [first, last] = std::equal_range(spring_block_.begin(), spring_block_.end(), block);
   return {springs_.data() + (first - spring_block_.begin()), static_cast<std::size_t>(last - first)};
@@ -283,16 +298,26 @@ void Bolts::add_energies_at(const BlockSystem &system, double share, LinkEnergie
   }
 }
 
-std::vector<BoltReport> Bolts::report(const Communicator &communicator, const Scene &scene,
-                                      const BlockSystem &system) const {
-  struct Where {
-    std::uint32_t link;
-    Vec2 head;
-    Vec2 tip;
-    LinkMemory memory;
+// How far the line of a link goes on beyond its ends, towards the bolt's head and its tip; negative where it
+// stops short of them.
+std::array<double, 2> Bolts::reach_of(std::size_t link) const {
+  const auto to_head = [&](std::size_t k) { return links_[k].overhang[0] + 0.5 * links_[k].length; };
+  const auto half_way = [&](std::size_t a, std::size_t b) {
+    return 0.5 * (to_head(b) - to_head(a) - links_[link].length);
   };
-  std::vector<Where> mine;
+  const BoltLink &own = links_[link];
+  const bool is_first = link == 0 || links_[link - 1].bolt != own.bolt;
+  const bool is_last = link + 1 == links_.size() || links_[link + 1].bolt != own.bolt;
+  return {is_first ? own.overhang[0] : half_way(link - 1, link),
+          is_last ? own.overhang[1] : half_way(link, link + 1)};
+}
+
+std::vector<LinkLine> Bolts::lines(const Communicator &communicator, const BlockSystem &system) const {
+  std::vector<LinkLine> mine;
   for (const Here &here : here_) {
+    if (!here.counts) {
+      continue;
+    }
     const BoltLink &link = links_[here.link];
     const std::size_t head = link.head_first ? 0 : 1;
     const double sign = link.head_first ? 1.0 : -1.0; // of the bolt's direction in D
@@ -300,28 +325,34 @@ std::vector<BoltReport> Bolts::report(const Communicator &communicator, const Sc
       return trial_position(system, here.rows[side],
                             link.end[side].point + (sign * beyond) * link.end[side].along);
     };
-    if (here.counts) {
-      mine.push_back(
-          {here.link, position(head, -link.overhang[0]), position(1 - head, link.overhang[1]), link.memory});
-    }
+    const auto [towards_head, towards_tip] = reach_of(here.link);
+    mine.push_back({here.link,
+                    {position(head, -towards_head), position(head, 0.5 * link.length),
+                     position(1 - head, -0.5 * link.length), position(1 - head, towards_tip)},
+                    link.memory});
   }
-  std::vector<Where> all;
+  std::vector<LinkLine> all;
   for (const auto &theirs : communicator.all_gather(mine)) {
     all.insert(all.end(), theirs.begin(), theirs.end());
   }
-  std::sort(all.begin(), all.end(), [](const Where &a, const Where &b) { return a.link < b.link; });
+  std::sort(all.begin(), all.end(), [](const LinkLine &a, const LinkLine &b) { return a.link < b.link; });
+  return all;
+}
+
+std::vector<BoltReport> Bolts::report(const Communicator &communicator, const Scene &scene,
+                                      const BlockSystem &system) const {
   std::vector<BoltReport> reports;
-  for (const auto &[number, head, tip, memory] : all) {
+  for (const auto &[number, points, memory] : lines(communicator, system)) {
     const std::int64_t bolt = links_[number].bolt;
     if (reports.empty() || reports.back().bolt != bolt) {
       BoltReport &fresh = reports.emplace_back();
       fresh.bolt = bolt;
-      fresh.head = head;
+      fresh.head = points.front();
       fresh.axial = memory.axial;
       fresh.extension = memory.extension;
     }
     BoltReport &report = reports.back();
-    report.tip = tip;
+    report.tip = points.back();
     report.axial = std::max(report.axial, memory.axial);
     report.shear = std::max(report.shear, std::abs(memory.shear));
     report.extension = std::max(report.extension, memory.extension);

@@ -212,8 +212,23 @@ private:
                     bound.undamped_step / bound.time_step));
   }
 
+  /// Where a stage has its own, and what it costs if the joints and bolts are those of the start.
+  std::string rayleigh_of(const Stage &stage, double &before) {
+    const double now = stage.after ? stage.after->run.rayleigh.stiffness_damping : before;
+    const double omega = simulation_.bound().omega_max;
+    if (std::exchange(before, now) == now || now == 0.0 || omega == 0.0) {
+      return "";
+    }
+    const double ratio = 0.5 * now * omega;
+    return fmt::format(
+        ", Rayleigh damping with ratio {:.3g} at the fastest joint: without it the step would be "
+        "{:.3g} times as long",
+        ratio, stability_limit(simulation_.scheme(), 0.0) / stability_limit(simulation_.scheme(), ratio));
+  }
+
   std::string stage_lines() {
     std::string text;
+    double damping = simulation_.scene().run.rayleigh.stiffness_damping;
     for (const Stage &stage : simulation_.stages()) {
       std::string what =
           stage.kind == StageKind::excavate
@@ -222,7 +237,8 @@ private:
                                               stage.tolerance, stage.duration)
           : stage.takes_steps() ? fmt::format(", {:g} s", stage.duration)
                                 : "";
-      text += line("stage", fmt::format("'{}': {}{}", stage.name, word_of(stage.kind), what));
+      text += line("stage", fmt::format("'{}': {}{}{}", stage.name, word_of(stage.kind), what,
+                                        rayleigh_of(stage, damping)));
     }
     return text;
   }

@@ -244,4 +244,59 @@ std::vector<BoltHistoryRow> collect_bolts(const Simulation &simulation) {
   return rows;
 }
 
+BoltFrame collect_bolt_lines(const Simulation &simulation) {
+  const Scene &scene = simulation.scene();
+  BoltFrame frame;
+  for (const LinkLine &line : simulation.bolts().lines(simulation.communicator(), simulation.blocks())) {
+    const BoltLink &link = simulation.bolts().links()[line.link];
+    const std::int32_t number = scene.bolts[static_cast<std::size_t>(link.bolt)].support;
+    const SupportType &support = scene.supports[static_cast<std::size_t>(number)];
+    BoltRow row;
+    row.bolt = link.bolt;
+    row.support = number;
+    row.state = line.memory.broken ? 2 : line.memory.yielded ? 1 : 0;
+    row.axial_force = support.spacing * line.memory.axial;
+    row.shear_force = support.spacing * line.memory.shear;
+    row.extension = line.memory.extension;
+    row.slide = line.memory.slide;
+    if (support.kind == SupportType::Kind::anchored) { // straight from end to end
+      frame.points.insert(frame.points.end(), {line.points.front(), line.points.back()});
+      row.num_points = 2;
+    } else {
+      frame.points.insert(frame.points.end(), line.points.begin(), line.points.end());
+      row.num_points = 4;
+    }
+    frame.rows.push_back(row);
+  }
+  return frame;
+}
+
+// A bolt is put in when it becomes active, at the end of the stage before.
+std::vector<BoltLoad> with_installation(std::vector<BoltLoad> loads, const std::vector<Bolt> &at_start,
+                                        const Simulation &simulation) {
+  const StageState &stage = simulation.stage();
+  const std::vector<BoltLink> &links = simulation.bolts().links();
+  for (BoltLoad &load : loads) {
+    const auto found = std::find_if(at_start.begin(), at_start.end(),
+                                    [&](const Bolt &bolt) { return bolt.name == load.last.name; });
+    if (found == at_start.end()) {
+      continue;
+    }
+    const auto number = static_cast<std::size_t>(found - at_start.begin());
+    bool is_active = found->active;
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(stage.index); ++k) {
+      if (const auto &after = simulation.stages()[k].after) {
+        load.installed =
+            after->bolts[number].active && !is_active ? stage.results[k - 1].time : load.installed;
+        is_active = after->bolts[number].active;
+      }
+    }
+    load.in_place = std::any_of(links.begin(), links.end(), [&](const BoltLink &link) {
+      return static_cast<std::size_t>(link.bolt) == number;
+    });
+    load.support = simulation.scene().supports[static_cast<std::size_t>(found->support)].name;
+  }
+  return loads;
+}
+
 } // namespace gcpdda

@@ -40,6 +40,7 @@ public:
   /// @param lock  of the folder, if there is one yet
   SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
       : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
+        bolts_at_start_(scene.bolts),
         simulation_(communicator, scene, options.restart ? options.directory : options.from) {
     if (!options.restart) {
       begin_results(scene, options);
@@ -280,6 +281,9 @@ private:
       if (simulation_.scene().output.contacts) {
         frames_->write_contacts(index, simulation_.time(), collect_contacts(simulation_));
       }
+      if (!bolts_at_start_.empty()) {
+        frames_->write_bolts(index, simulation_.time(), collect_bolt_lines(simulation_));
+      }
     }
     if (history_due) {
       write_history(failed);
@@ -360,19 +364,7 @@ private:
     const bool failed = simulation_.fault().has_value();
     const bool stopped = !simulation_.finished();
     RunSummary summary;
-    const bool waited = simulation_.is_staged() && !failed && !stopped && last_stage().until_verdict;
-    const Verdict verdict = simulation_.stage().verdict;
-    summary.verdict = failed ? "failed" : stopped ? "stopped" : waited ? word_of(verdict) : "completed";
-    summary.message = failed   ? fault_message(simulation_)
-                      : waited ? fmt::format("stage '{}' {} at t = {:g} s", last_stage().name,
-                                             verdict == Verdict::undecided ? "reached its limit undecided"
-                                             : verdict == Verdict::failed  ? "has failed"
-                                                                           : "has settled",
-                                             simulation_.time())
-                      : stopped
-                          ? fmt::format("stopped by a signal at t = {:g} s, go on with gcpdda restart {}",
-                                        simulation_.time(), directory_.string())
-                          : fmt::format("reached t = {:g} s", simulation_.time());
+    tell_end(simulation_, directory_, summary);
     if (stopped) {
       contacts_at_end_ = count_contacts();
     }
@@ -390,16 +382,15 @@ private:
         "{} steps, {} contacts at the end, largest overlap {:.3g} m, energy residual {:.3g} J/m, "
         "{:.3g} s in the step loop",
         summary.steps, summary.contacts, summary.max_overlap, summary.energy.residual, summary.wall_s));
+    if (!summary.bolts.empty()) {
+      log_->line(words_on_loads(summary.bolts));
+    }
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());
     if (stopped) {
       forget_stop_signal(); // one that came too late is for what follows
     }
     return {failed ? 5 : stopped ? 6 : exit_code_of_stages(), summary};
-  }
-
-  [[nodiscard]] const Stage &last_stage() const {
-    return simulation_.stages()[static_cast<std::size_t>(simulation_.stage().index)];
   }
 
   void fill(RunSummary &summary) {
@@ -433,6 +424,8 @@ private:
       summary.permanent_block = block_name(simulation_.scene(), farthest->block);
     }
     summary.energy = energy_;
+    const std::vector<BoltLoad> loads = histories_ ? histories_->bolt_loads() : std::vector<BoltLoad>();
+    summary.bolts = with_installation(loads, bolts_at_start_, simulation_); // of the root
     if (simulation_.restored()) {
       summary.restarted_at = simulation_.restored()->facts.time;
     }
@@ -464,6 +457,7 @@ private:
   Communicator communicator_;
   std::filesystem::path directory_;
   bool is_bare_;
+  std::vector<Bolt> bolts_at_start_;
   Simulation simulation_;
   std::optional<HistoryWriter> histories_;
   std::optional<RunLog> log_;

@@ -1,5 +1,6 @@
 #include "run_words.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace gcpdda {
@@ -34,6 +35,47 @@ std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_er
       "fidelity: {} rigid and {} deformable blocks; rigid leaves out up to {:.2g} of the joints' "
       "compliance k_n L/(E + k_n L), accepted are {:g}{}",
       fidelity.num_rigid, fidelity.num_deformable, fidelity.worst_rigid, accepted_error, deformable);
+}
+
+void tell_end(const Simulation &simulation, const std::filesystem::path &directory, RunSummary &summary) {
+  const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
+  const Verdict verdict = simulation.stage().verdict;
+  if (simulation.fault()) {
+    summary.verdict = "failed";
+    summary.message = fault_message(simulation);
+  } else if (!simulation.finished()) {
+    summary.verdict = "stopped";
+    summary.message = fmt::format("stopped by a signal at t = {:g} s, go on with gcpdda restart {}",
+                                  simulation.time(), directory.string());
+  } else if (simulation.is_staged() && stage.until_verdict) {
+    summary.verdict = word_of(verdict);
+    summary.message = fmt::format("stage '{}' {} at t = {:g} s", stage.name,
+                                  verdict == Verdict::undecided ? "reached its limit undecided"
+                                  : verdict == Verdict::failed  ? "has failed"
+                                                                : "has settled",
+                                  simulation.time());
+  } else {
+    summary.verdict = "completed";
+    summary.message = fmt::format("reached t = {:g} s", simulation.time());
+  }
+}
+
+std::string words_on_loads(const std::vector<BoltLoad> &loads) {
+  const auto most = [&](double BoltLoad::*force) {
+    return *std::max_element(loads.begin(), loads.end(),
+                             [force](const BoltLoad &a, const BoltLoad &b) { return a.*force < b.*force; });
+  };
+  const auto count = [&](std::int64_t BoltHistoryRow::*what) {
+    return std::count_if(loads.begin(), loads.end(),
+                         [what](const BoltLoad &load) { return load.last.*what > 0; });
+  };
+  const BoltLoad axial = most(&BoltLoad::axial);
+  const BoltLoad shear = most(&BoltLoad::shear);
+  return fmt::format(
+      "bolts: largest tension {:.4g} N in '{}', largest shear {:.4g} N in '{}'; of {} bolts {} "
+      "yielded and {} broke",
+      axial.axial, axial.last.name, shear.shear, shear.last.name, loads.size(),
+      count(&BoltHistoryRow::yielded), count(&BoltHistoryRow::broken));
 }
 
 std::string words_on_bolts(const Simulation &simulation) {

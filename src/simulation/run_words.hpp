@@ -1,8 +1,11 @@
 #pragma once
 
+#include "gcpdda/io/result_files.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 namespace gcpdda {
 
@@ -11,6 +14,12 @@ std::string fault_message(const Simulation &simulation);
 
 /// Which blocks are rigid, and what that leaves out.
 std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_error);
+
+/// Tell in `summary` how a run has ended, and why.
+void tell_end(const Simulation &simulation, const std::filesystem::path &directory, RunSummary &summary);
+
+/// The most loaded bolts, and how many have yielded and broken.
+std::string words_on_loads(const std::vector<BoltLoad> &loads);
 
 /// How many bolts there are, and what they do to the step.
 std::string words_on_bolts(const Simulation &simulation);

@@ -298,7 +298,8 @@ void Simulation::excavate(const std::vector<std::int64_t> &ids, double relax) {
   std::sort(stage_.removed.begin(), stage_.removed.end());
 }
 
-// What the excavated blocks put on each of the others, summed in the order of their ids.
+// What the excavated blocks put on each of the others, summed in the order of their ids, and what each bolt
+// from them pulls with: what it was grouted in goes as gradually as the rock does.
 void Simulation::unload(const std::vector<std::int64_t> &removed, double duration) {
   std::vector<Unloading> mine;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
@@ -324,6 +325,10 @@ void Simulation::unload(const std::vector<std::int64_t> &removed, double duratio
     if (touches && !holds(removed, block.id.value)) {
       mine.push_back(load);
     }
+  }
+  const auto goes = [&](std::int64_t id) { return holds(removed, id); };
+  for (const LinkPull &pull : bolts_.pulls_from(goes, blocks_)) {
+    mine.push_back({blocks_.properties[pull.row].id.value, pull.rigid, pull.gradient, time(), duration});
   }
   for (const auto &from_rank : communicator_.all_gather(mine)) {
     stage_.unloading.insert(stage_.unloading.end(), from_rank.begin(), from_rank.end());

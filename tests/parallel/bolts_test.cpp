@@ -1,5 +1,6 @@
 // Bolts on many ranks: the same bytes as on one, through migration, refresh, stages and a restart.
 
+#include "gcpdda/base/text.hpp"
 #include "gcpdda/io/checkpoint.hpp"
 #include "gcpdda/io/run_comparison.hpp"
 #include "gcpdda/simulation/restart.hpp"
@@ -10,7 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <sstream>
 
 namespace gcpdda::bolts_test {
@@ -62,6 +65,43 @@ double last_sum(const fs::path &run, std::size_t column) {
   return sum;
 }
 
+/// The table of summary.json against the rows of history/bolts.csv: its forces are theirs, and so are the
+/// times at which bolts were put in, up to the row before the first of each.
+void expect_loads_of_history(const fs::path &run) {
+  std::map<std::string, std::array<double, 2>> largest;
+  double last = 0.0;
+  std::string last_names;
+  for (const std::string &line : testing::lines_of(testing::file_text(run / "history/bolts.csv"))) {
+    const CsvRow<13> row(line);
+    if (row.fields[0] == "time[s]") {
+      continue;
+    }
+    auto &[axial, shear] = largest[std::string(row.fields[1])];
+    axial = std::max(axial, std::stod(std::string(row.fields[6])));
+    shear = std::max(shear, std::stod(std::string(row.fields[7])));
+    const double time = std::stod(std::string(row.fields[0]));
+    last_names = time > last ? "" : last_names;
+    last_names += "," + std::string(row.fields[1]) + ",";
+    last = time;
+  }
+  std::string table = testing::summary_text(run, "bolts");
+  EXPECT_EQ(testing::count_of(table, "\"name\""), std::ssize(largest));
+  EXPECT_EQ(largest.size(), 17U);
+  for (const auto &[name, forces] : largest) {
+    const std::size_t begin = table.find("{\"name\": \"" + name + "\"");
+    ASSERT_NE(begin, std::string::npos) << name;
+    const std::string entry = table.substr(begin, table.find('}', begin) - begin);
+    const auto holds = [&](const std::string &member) { return entry.find(member) != std::string::npos; };
+    EXPECT_TRUE(holds(fmt::format("\"largest_axial\": {}, \"largest_shear\": {},", forces[0], forces[1])))
+        << entry;
+    const bool comes_later = name.starts_with("bolt") && std::stoi(name.substr(4)) % 2 == 1;
+    EXPECT_TRUE(holds(comes_later ? "\"installed\": 0.01," : "\"installed\": 0,")) << entry;
+    const bool in_place = last_names.find("," + name + ",") != std::string::npos;
+    EXPECT_TRUE(holds(in_place ? "\"in_place\": true" : "\"in_place\": false")) << entry;
+    EXPECT_EQ(in_place, name != "cable2");
+  }
+}
+
 TEST(Bolts, AreTheSameOnAnyNumberOfRanksAndThroughARestart) {
   const Communicator world = Communicator::world();
   const testing::SharedFolder folder(world);
@@ -89,6 +129,11 @@ TEST(Bolts, AreTheSameOnAnyNumberOfRanksAndThroughARestart) {
       }
     }
     EXPECT_EQ(testing::summary_text(together, "energy"), testing::summary_text(alone, "energy"));
+    for (const fs::path &run : {together, resumed}) {
+      EXPECT_EQ(testing::summary_text(run, "bolts"), testing::summary_text(alone, "bolts"));
+      EXPECT_TRUE(fs::exists(run / "frames/bolts_000002.hdf"));
+    }
+    expect_loads_of_history(alone);
     EXPECT_EQ(summary_number(resumed, "restarted_at"), 0.01);
     constexpr std::size_t joints = 10;
     EXPECT_GE(last_sum(alone, joints), 100);

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 Scene shaken_slope(const std::string &fidelity) {
   Scene scene = testing::scene_of(R"([run]
 fidelity = ")" + fidelity + R"("
-rayleigh = { ratio = 0.05, frequency = 20.0 }
+rayleigh = { ratio = 0.2, frequency = 20.0 }
 [material.rock]
 density = 2600.0
 youngs_modulus = 5e8
@@ -59,6 +59,7 @@ duration = 0.02
 name = "shaking"
 kind = "run"
 duration = 0.03
+set = { "run.rayleigh" = { ratio = 0.05, frequency = 20.0 } }
 )");
   for (int k = 0; k <= 20; ++k) {
     const double t = 0.002 * k;

@@ -191,6 +191,30 @@ relax = 0.5
   }
 }
 
+// What it says of a stage's own damping is what it says where the damping is that of the run.
+TEST(InspectPlan, TellsWhatTheDampingOfAStageCosts) {
+  const WorkFolder folder;
+  std::string toml = odd_scene();
+  toml.erase(toml.find("duration = 1.0\n"), 15);
+  folder.write("plan.toml",
+               toml + "[[stage]]\nkind = \"run\"\nduration = 1.0\n[[stage]]\nname = \"shaking\"\nkind "
+                      "= \"run\"\nduration = 1.0\nset = { \"run.rayleigh\" = { ratio = 0.05, "
+                      "frequency = 5.0 } }\n[[stage]]\nkind = \"run\"\nduration = 1.0\n");
+  const std::string by_stage = run_gcpdda(0, {"inspect", "plan.toml"}, folder).out;
+  const std::string by_run =
+      run_gcpdda(0, {"inspect", "plan.toml", "--set", "run.rayleigh={ratio=0.05,frequency=5.0}"}, folder).out;
+  const auto word_after = [](const std::string &text, const std::string &before) {
+    const std::size_t begin = text.find(before) + before.size();
+    return text.substr(begin, text.find(' ', begin) - begin);
+  };
+  EXPECT_EQ(count_of(by_stage, "Rayleigh"), 1) << by_stage;
+  const std::string stage = "'shaking': run, 1 s, Rayleigh damping with ratio ";
+  EXPECT_EQ(count_of(by_stage, stage), 1) << by_stage;
+  EXPECT_EQ(word_after(by_stage, stage), word_after(by_run, "beta 0.001592 s; ratio ")) << by_run;
+  const std::string line = by_run.substr(by_run.find("without it the step would be at most "));
+  EXPECT_EQ(word_after(by_stage, "without it the step would be "), word_after(line, " s, ")) << line;
+}
+
 TEST_F(Inspect, TellsSubdomainsAndCosts) {
   EXPECT_TRUE(std::regex_search(outcome_.out, std::regex("subdomains +4 by [^:]+: [01] to [2-5] blocks each, "
                                                          "imbalance of the work [0-9.]+\n")))

@@ -54,7 +54,8 @@ const std::vector<std::string> stages{
     "[[stage]]\nname = \"gravity\"\nkind = \"settle\"\nlimit = 1.98\ntolerance = 1e-3\n",
     "[[stage]]\nname = \"opening\"\nkind = \"excavate\"\nregion = [[3, 0], [5, 0], [5, 1], [3, 1]]\nrelax = "
     "0.02\n",
-    "[[stage]]\nkind = \"run\"\nduration = 0.04\n",
+    "[[stage]]\nkind = \"run\"\nduration = 0.04\nset = { \"run.rayleigh\" = { ratio = 0.1, frequency = 30.0 "
+    "} }\n",
     "[[stage]]\nkind = \"change\"\nset = { \"joint.default.friction_angle_deg\" = 20.0, "
     "\"joint.default.normal_stiffness\" = 5e8 }\n",
     "[[stage]]\nname = \"weak\"\nkind = \"run\"\nduration = 0.04\n"};

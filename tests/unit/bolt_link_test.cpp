@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fmt/format.h>
 #include <random>
 
 namespace gcpdda::testing::bolt_link_test {
@@ -282,6 +283,37 @@ TEST(BoltPieces, AnchoredBoltsJoinTheirTwoEnds) {
   EXPECT_NEAR(links[0].end[1].point.y, 0.4, 1e-12);
   pieces = {{0, 5, 0.0, 0.2}};
   EXPECT_TRUE(links_of(upright(), 0, support, pieces).empty());
+}
+
+// From head to tip without a gap but where a joint has slipped, whatever the blocks do.
+TEST(BoltLines, FollowTheBolt) {
+  std::string toml = head({.duration = 0.01}) +
+                     "[support.bar]\nkind = \"grouted\"\naxial_stiffness = 1e6\nshear_stiffness = 1e6\n"
+                     "active_length = 0.3\n[[bolt]]\nsupport = \"bar\"\nfrom = [0.5, 3.9]\nto = [0.7, 0.1]\n";
+  for (int k = 0; k < 4; ++k) { // sheared
+    toml += block_toml(fmt::format("b{}", k), rectangle({0.0, 1.0 * k}, {1.0, 1.0 + k}),
+                       fmt::format("velocity = [{}, 0, {}]", 2.0 * k * k, 0.3 * k));
+  }
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  const auto lines = [&] { return simulation.bolts().lines(Communicator::self(), simulation.blocks()); };
+  constexpr double rounding = 1e-12;
+  const std::vector<LinkLine> start = lines();
+  ASSERT_EQ(start.size(), 3U);
+  EXPECT_NEAR(norm(start.front().points.front() - Vec2{0.5, 3.9}), 0.0, rounding);
+  EXPECT_NEAR(norm(start.back().points.back() - Vec2{0.7, 0.1}), 0.0, rounding);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(start[k].points[1].y, 3.0 - static_cast<double>(k), rounding);
+    EXPECT_NEAR(norm(start[k].points[2] - start[k].points[1]), 0.0, rounding);
+  }
+  advance(simulation, 0.01);
+  const std::vector<LinkLine> end = lines();
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(norm(end[k].points.back() - end[k + 1].points.front()), 0.0, rounding);
+  }
+  // The upper of two blocks is faster to the right by 10, 6 and 2 m/s, and hardly held back.
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(end[k].points[1].x - end[k].points[2].x, 0.1 - 0.04 * static_cast<double>(k), 5e-3);
+  }
 }
 
 // Both neighbours of a joint hold a bolt that runs along it; that is no crossing.

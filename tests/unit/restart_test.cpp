@@ -225,6 +225,48 @@ FrameData two_triangles(double rotation) {
   return data;
 }
 
+/// It comes with frame 1.
+BoltFrame one_bolt(int frame) {
+  BoltRow row;
+  row.num_points = 2;
+  row.axial_force = 0.1 * frame;
+  return frame == 0 ? BoltFrame{} : BoltFrame{{row}, {{0, 0}, {1, 1}}};
+}
+
+// Largest forces of all rows, the last of them, in the order of the bolts' first rows.
+TEST_F(CutResults, LoadsOfBoltsGoOnAsIfNeverStopped) {
+  const auto row = [](const char *name, double axial, double shear, std::int64_t yielded) {
+    return BoltHistoryRow{name, {0.1, 0.2}, {0.3, 0.4}, axial, shear, 1e-3, 2e-3, 5, yielded, 0};
+  };
+  const auto expect_loads = [&](const std::vector<BoltLoad> &loads) {
+    ASSERT_EQ(loads.size(), 3U);
+    EXPECT_EQ(loads[0].last.name, "pulled");
+    EXPECT_EQ(loads[0].axial, 1e5 / 3.0);
+    EXPECT_EQ(loads[0].shear, 7.0);
+    EXPECT_EQ(loads[0].last.axial, 2e4);
+    EXPECT_EQ(loads[0].last.yielded, 1);
+    EXPECT_EQ(loads[0].time, 0.3);
+    EXPECT_EQ(loads[1].last.name, "pressed");
+    EXPECT_EQ(loads[1].axial, -1.0);
+    EXPECT_EQ(loads[1].time, 0.1);
+    EXPECT_EQ(loads[2].last.name, "late");
+  };
+  const auto write_last = [&](HistoryWriter &writer) {
+    writer.write_bolts(0.3, {row("pulled", 2e4, 6.0, 1), row("late", 1.0, 0.0, 0)});
+    writer.flush();
+  };
+  HistoryWriter whole(folder_, {}, true);
+  whole.write_bolts(0.1, {row("pulled", 1e4, 7.0, 0), row("pressed", -1.0, 0.0, 0)});
+  whole.write_bolts(0.2, {row("pulled", 1e5 / 3.0, 5.0, 0)});
+  whole.flush();
+  write_last(whole);
+  expect_loads(whole.bolt_loads());
+  HistoryWriter resumed(folder_, {}, 0.2 + 0.5e-3, true);
+  EXPECT_EQ(resumed.bolt_loads().size(), 2U);
+  write_last(resumed);
+  expect_loads(resumed.bolt_loads());
+}
+
 TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
   for (const char *run : {"whole", "cut"}) {
     FrameWriter writer(Communicator::self(), folder_ / run, 2);
@@ -232,6 +274,7 @@ TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
     for (int k = 0; k < 4; ++k) {
       writer.write(k, 0.1 * k, two_triangles(k));
       writer.write_contacts(k, 0.1 * k, {});
+      writer.write_bolts(k, 0.1 * k, one_bolt(k));
     }
     EXPECT_EQ(writer.times(), (std::vector<double>{0.0, 0.1, 0.2, 0.1 * 3}));
   }
@@ -240,14 +283,17 @@ TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
   FrameWriter writer(Communicator::self(), folder_ / "cut", 2);
   writer.continue_behind({0.0, 0.1});
   EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/run.hdf.series"), "\"name\""), 2);
+  EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/bolts.hdf.series"), "\"name\""), 2);
   EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/run.xdmf"), "<Time "), 2);
   EXPECT_EQ(testing::listing(folder_ / "cut/frames"),
-            (std::vector<std::string>{"contacts_000000.hdf", "contacts_000001.hdf", "frame_000000.hdf",
-                                      "frame_000001.hdf", "frame_000002.txt", "topology_000000.h5"}));
+            (std::vector<std::string>{"bolts_000000.hdf", "bolts_000001.hdf", "contacts_000000.hdf",
+                                      "contacts_000001.hdf", "frame_000000.hdf", "frame_000001.hdf",
+                                      "frame_000002.txt", "topology_000000.h5"}));
   fs::remove(folder_ / "cut/frames/frame_000002.txt");
   for (int k = 2; k < 4; ++k) {
     writer.write(k, 0.1 * k, two_triangles(k));
     writer.write_contacts(k, 0.1 * k, {});
+    writer.write_bolts(k, 0.1 * k, one_bolt(k));
   }
   EXPECT_EQ(compare_runs(folder_ / "whole", folder_ / "cut"), std::vector<std::string>());
 }

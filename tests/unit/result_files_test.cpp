@@ -116,7 +116,9 @@ TEST_F(ResultFiles, OverwriteRemovesOnlyWhatARunWrites) {
                                         "frames/frame_000000.hdf",
                                         "frames/frame_000001.hdf.tmp",
                                         "frames/contacts_000000.hdf",
+                                        "frames/bolts_000000.hdf",
                                         "frames/topology_000000.h5",
+                                        "bolts.hdf.series",
                                         "history/a.csv",
                                         "decomposition/owners_0.csv"};
   const std::vector<std::string> foreign = {"notes.txt", "frames/movie.gif", "frames/frame_of_mine.hdf",

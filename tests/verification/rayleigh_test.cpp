@@ -24,29 +24,33 @@ struct Oscillator {
   std::function<double(const Simulation &)> at;
 };
 
-/// From the ways between turning points: ln(A_1/A_n) = pi (n - 1) xi/sqrt(1 - xi^2), wherever it comes to
-/// rest.
-double ratio_of(const Oscillator &oscillator, double least_at) {
+Setting setting_of(const Oscillator &oscillator) {
   const double period = 1.0 / oscillator.frequency;
-  Setting setting{.duration = 6.0 * period,
-                  .time_step = period / 400.0,
-                  .gravity = {},
-                  .normal_stiffness = stiffness,
-                  .friction_deg = 60.0,
-                  .damping = 0.0,
-                  .run_keys =
-                      fmt::format("rayleigh = {{ ratio = {}, frequency = {:.17g} }}\nplane = \"stress\"\n",
-                                  ratio, least_at),
-                  .fidelity = oscillator.name == "rock" ? "deformable" : "rigid",
-                  .youngs_modulus = 1e9};
+  return {.duration = 6.0 * period,
+          .time_step = period / 400.0,
+          .gravity = {},
+          .normal_stiffness = stiffness,
+          .friction_deg = 60.0,
+          .damping = 0.0,
+          .run_keys = "plane = \"stress\"\n",
+          .fidelity = oscillator.name == "rock" ? "deformable" : "rigid",
+          .youngs_modulus = 1e9};
+}
+
+std::string toml_of(const Oscillator &oscillator, const Setting &setting) {
   std::string toml = head(setting);
   toml.erase(toml.find("contact_damping"),
              toml.find('\n', toml.find("contact_damping")) + 1 - toml.find("contact_damping"));
-  Simulation simulation(Communicator::self(), scene_of(toml + oscillator.toml));
+  return toml + oscillator.toml;
+}
+
+/// To the end of the stage: ln(A_1/A_n) = pi (n - 1) xi/sqrt(1 - xi^2) from the ways between turning points,
+/// wherever it comes to rest.
+double ratio_of(Simulation &simulation, const Oscillator &oscillator) {
   std::vector<double> turns;
   double before = oscillator.at(simulation);
   double last = before;
-  while (!simulation.finished()) {
+  while (!simulation.stage_is_over()) {
     step(simulation);
     const double now = oscillator.at(simulation);
     if ((last - before) * (now - last) < 0.0) { // the vertex of the parabola
@@ -61,6 +65,10 @@ double ratio_of(const Oscillator &oscillator, double least_at) {
   const double decrement =
       std::log(std::abs((turns[1] - turns[0]) / (turns[n - 1] - turns[n - 2]))) / static_cast<double>(n - 2);
   return decrement / std::hypot(std::numbers::pi, decrement);
+}
+
+std::string rayleigh_toml(double least, double frequency) {
+  return fmt::format("{{ ratio = {}, frequency = {:.17g} }}", least, frequency);
 }
 
 std::vector<Oscillator> oscillators() {
@@ -100,11 +108,35 @@ std::vector<Oscillator> oscillators() {
 TEST(Rayleigh, RatioFollowsItsCurve) {
   for (const Oscillator &oscillator : oscillators()) {
     for (const double least_at : {0.25, 1.0, 4.0}) { // times the frequency
+      Setting setting = setting_of(oscillator);
+      setting.run_keys += "rayleigh = " + rayleigh_toml(ratio, least_at * oscillator.frequency) + "\n";
+      Simulation simulation(Communicator::self(), scene_of(toml_of(oscillator, setting)));
       expect_value(
           fmt::format("Rayleigh damping, {}, least at {} of its frequency: ratio", oscillator.name, least_at),
-          0.5 * ratio * (least_at + 1.0 / least_at), ratio_of(oscillator, least_at * oscillator.frequency),
-          5e-3);
+          0.5 * ratio * (least_at + 1.0 / least_at), ratio_of(simulation, oscillator), 5e-3);
     }
+  }
+}
+
+// A stage brings its own: strong damping first, then little.
+TEST(Rayleigh, RatioIsThatOfTheStage) {
+  constexpr double later = 0.01;
+  constexpr double least_at = 2.0;
+  for (const Oscillator &oscillator : oscillators()) {
+    Setting setting = setting_of(oscillator);
+    setting.run_keys += "rayleigh = " + rayleigh_toml(ratio, oscillator.frequency) + "\n";
+    const std::string stage =
+        fmt::format("[[stage]]\nkind = \"run\"\nduration = {:.17g}\n", setting.duration);
+    Simulation simulation(Communicator::self(),
+                          scene_of(without_duration(toml_of(oscillator, setting)) + stage + stage +
+                                   "set = { \"run.rayleigh\" = " +
+                                   rayleigh_toml(later, least_at * oscillator.frequency) + " }\n"));
+    expect_value(fmt::format("Rayleigh damping, {}, first stage: ratio", oscillator.name), ratio,
+                 ratio_of(simulation, oscillator), 5e-3);
+    simulation.end_stage();
+    simulation.begin_next_stage();
+    expect_value(fmt::format("Rayleigh damping, {}, second stage: ratio", oscillator.name),
+                 0.5 * later * (least_at + 1.0 / least_at), ratio_of(simulation, oscillator), 5e-3);
   }
 }
 

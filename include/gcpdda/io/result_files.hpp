@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -49,6 +51,25 @@ struct ContactRow {
   double slip = 0.0;    ///< m, accumulated
 };
 
+/// A bolt where it crosses a joint, or all of a cable: a line of `num_points` from the side of its head to
+/// that of its tip. Forces are those of one bolt.
+struct BoltRow {
+  std::int64_t bolt = 0; ///< in the order of the scene
+  std::int32_t support = 0;
+  std::int32_t num_points = 0;
+  std::uint8_t state = 0;   ///< 0 elastic, 1 has yielded, 2 broken
+  double axial_force = 0.0; ///< N, tension positive
+  double shear_force = 0.0; ///< N, positive where the rock towards the tip has moved to the left
+  double extension = 0.0;   ///< m
+  double slide = 0.0;       ///< m, with the sign of the shear force
+};
+
+/// All bolts, the same on every rank; points concatenated in the order of `rows`.
+struct BoltFrame {
+  std::vector<BoltRow> rows;
+  std::vector<Vec2> points;
+};
+
 /// Ids are cut into one contiguous slab per rank; a slab's owner writes its rows.
 /// First id of rank's slab, of num_blocks ids over num_ranks ranks; slab_begin(n, p, p) == n.
 std::int64_t slab_begin(std::int64_t num_blocks, int num_ranks, int rank);
@@ -70,6 +91,8 @@ public:
   void write(int index, double time, FrameData data);
   /// The same for frames/contacts_<index>.hdf; every region is on exactly one rank.
   void write_contacts(int index, double time, std::vector<ContactRow> rows);
+  /// The same for frames/bolts_<index>.hdf, behind write(index), and bolts.hdf.series.
+  void write_bolts(int index, double time, const BoltFrame &frame);
   /// False once HDF5 has broken a collective write into independent ones: slow, and worth a test.
   [[nodiscard]] bool all_writes_collective() const { return all_writes_collective_; }
   /// Of all frames, s; frame k is the k-th.
@@ -93,6 +116,7 @@ private:
   std::vector<Topology> topologies_; ///< by first frame
   bool all_writes_collective_ = true;
   std::vector<std::pair<int, double>> frames_;
+  std::vector<std::pair<int, double>> bolt_frames_; ///< known to the root
 };
 
 /// One row of history/<name>.csv, without its time; a point has position and the first two velocities only.
@@ -135,6 +159,17 @@ struct BoltHistoryRow {
   std::int64_t broken = 0;
 };
 
+/// What one bolt has borne, for summary.json.
+struct BoltLoad {
+  BoltHistoryRow last;    ///< its last row
+  double time = 0.0;      ///< of it, s
+  double axial = 0.0;     ///< largest tension of all its rows, N
+  double shear = 0.0;     ///< N
+  double installed = 0.0; ///< when it was put in last, s; the next two are not known to the history
+  bool in_place = false;
+  std::string support;
+};
+
 /// Writes history/*.csv. Lives on the root rank only; no member is collective.
 class HistoryWriter {
 public:
@@ -147,6 +182,8 @@ public:
   void write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row);
   void write_energy(double time, const EnergyRow &row);
   void write_bolts(double time, const std::vector<BoltHistoryRow> &rows);
+  /// Of all bolts that have rows, also of those from before a restart, in the order they came.
+  [[nodiscard]] const std::vector<BoltLoad> &bolt_loads() const { return bolt_loads_; }
   /// What has been written is on its way to the disk; throws FileError when the disk is full.
   void flush();
   /// What has been flushed is on the disk. Throws FileError.
@@ -155,10 +192,14 @@ public:
 private:
   [[nodiscard]] std::string header_of(std::size_t history) const;
   [[nodiscard]] std::filesystem::path path_of(std::size_t history) const;
+  void note_bolt(double time, const BoltHistoryRow &row);
+  void note_bolts(std::string_view rows);
 
   std::filesystem::path directory_;
   std::vector<Monitor> monitors_;
   bool has_bolts_;
+  std::vector<BoltLoad> bolt_loads_;
+  std::unordered_map<std::string, std::size_t> load_of_; ///< by name
   std::vector<std::string> pending_; ///< text not yet appended, per monitor, of energy, and of bolts if any
 };
 
@@ -199,6 +240,7 @@ struct RunSummary {
     std::string verdict;
     StageResult result;
   };
+  std::vector<BoltLoad> bolts;   ///< those that have been in place
   std::vector<StageLine> stages; ///< those that have begun; none in a scene without stages
   std::string verdict;
   std::string message;

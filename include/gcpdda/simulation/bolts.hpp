@@ -39,6 +39,15 @@ void append_pieces(const Bolt &bolt, std::int64_t index, std::span<const Vec2> p
 std::vector<BoltLink> links_of(const Bolt &bolt, std::int64_t index, const SupportType &support,
                                std::vector<BoltPiece> &pieces);
 
+/// A link as a line, from halfway to the link before, or the bolt's head, to halfway to the next, or its tip.
+struct LinkLine {
+  std::uint32_t link = 0; ///< index into Bolts::links()
+  /// m; the second and third are the middle of the link as the block towards the head and the one towards the
+  /// tip carry it, and part as the joint opens and slips.
+  std::array<Vec2, 4> points;
+  LinkMemory memory;
+};
+
 /// What is written of a bolt: largest values over its links, for one bolt.
 struct BoltReport {
   std::int64_t bolt = 0;
@@ -51,6 +60,13 @@ struct BoltReport {
   std::int64_t links = 0;
   std::int64_t yielded = 0; ///< links that have yielded, broken ones included
   std::int64_t broken = 0;
+};
+
+/// What a link does to an owned row at the last evaluation.
+struct LinkPull {
+  std::size_t row = 0;
+  RigidDof rigid; ///< about the trial centroid
+  Mat2 gradient;  ///< on F
 };
 
 /// Energies of links, J/m.
@@ -92,6 +108,10 @@ public:
   /// What they do to F, by entry of BlockSystem::deformation of owned rows.
   [[nodiscard]] Mat2 gradient_force(std::size_t deformation) const { return gradient_[deformation]; }
 
+  /// On the owned blocks that stay, of links from blocks that go; in the order of the links.
+  [[nodiscard]] std::vector<LinkPull> pulls_from(const std::function<bool(std::int64_t)> &goes,
+                                                 const BlockSystem &system) const;
+
   /// Of the links at a block.
   [[nodiscard]] std::span<const PointSpring> springs_at(std::int64_t block) const;
 
@@ -100,6 +120,9 @@ public:
   /// ... and as they would be in the posed trial configuration.
   void add_energies_at(const BlockSystem &system, double share, LinkEnergies &sums) const;
 
+  /// Of all links, in their order, in the posed trial configuration. Collective.
+  [[nodiscard]] std::vector<LinkLine> lines(const Communicator &communicator,
+                                            const BlockSystem &system) const;
   /// Of all bolts that have links, in their order. Collective.
   [[nodiscard]] std::vector<BoltReport> report(const Communicator &communicator, const Scene &scene,
                                                const BlockSystem &system) const;
@@ -119,6 +142,7 @@ private:
     bool counts = false; ///< this rank tells the others of it
   };
   void find_ends(const Communicator &communicator, const BlockSystem &system, std::size_t first);
+  [[nodiscard]] std::array<double, 2> reach_of(std::size_t link) const;
 
   std::vector<BoltLink> links_;
   std::vector<LinkLaw> laws_;

@@ -18,6 +18,14 @@ std::vector<ContactRow> collect_contacts(const Simulation &simulation);
 /// Rows of the bolts that are in place; complete on every rank. Collective.
 std::vector<BoltHistoryRow> collect_bolts(const Simulation &simulation);
 
+/// Lines of the bolts that are in place; complete on every rank. Collective.
+BoltFrame collect_bolt_lines(const Simulation &simulation);
+
+/// The loads of a history with what the stages know of their bolts.
+/// @param at_start  Scene::bolts as the scene states them
+std::vector<BoltLoad> with_installation(std::vector<BoltLoad> loads, const std::vector<Bolt> &at_start,
+                                        const Simulation &simulation);
+
 /// Rows of the scene's monitors, in their order; complete on every rank. Collective.
 std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation);
 
