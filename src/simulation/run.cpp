@@ -276,9 +276,9 @@ private:
     const double cpu_start = cpu_seconds();
     if (output_due) {
       const int index = num_frames_++;
-      frames_->write(index, simulation_.time(), collect_frame(simulation_));
+      frames_->write(index, simulation_.time(), SimulationFrame(simulation_));
       if (simulation_.scene().output.contacts) {
-        frames_->write_contacts(index, simulation_.time(), collect_contacts(simulation_));
+        frames_->write_contacts(index, simulation_.time(), SimulationContacts(simulation_));
       }
     }
     if (history_due) {
@@ -299,6 +299,7 @@ private:
     const double cpu_start = cpu_seconds();
     const Clock::time_point start = Clock::now();
     on_root(communicator_, [&] { histories_->sync(); });
+    frames_->sync();
     RunFacts facts = simulation_.facts();
     ledger_->tell(facts);
     facts.frame_times = frames_->times();
@@ -380,6 +381,7 @@ private:
     for (const Diagnostic &warning : simulation_.warnings()) {
       log_->line(to_string(warning));
     }
+    frames_->sync();
     on_root(communicator_, [&] { write_summary(directory_, summary); });
     write_owners_of_blocks();
     log_->line("wall seconds   min      mean       max over ranks");
