@@ -47,11 +47,14 @@ private:
 template <class Outline, class Distance>
 Outline keep_positive(const Outline &polygon, const Distance &distance) {
   Outline kept;
+  const double first = polygon.size() > 0 ? distance(polygon[0]) : 0.0;
+  double db = first;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const bool is_last = i + 1 == polygon.size();
     const Vec2 a = polygon[i];
-    const Vec2 b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    const double da = distance(a);
-    const double db = distance(b);
+    const Vec2 b = polygon[is_last ? 0 : i + 1];
+    const double da = db;
+    db = is_last ? first : distance(b);
     if (da >= 0.0) {
       kept.push_back(a);
     }

@@ -38,6 +38,27 @@ void call_on(const std::filesystem::path &path, int flags, const std::string &wh
   }
 }
 
+void write_unfinished(const std::filesystem::path &path, const std::string &text) {
+  const std::filesystem::path unfinished = unfinished_name(path);
+  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+  if (!stream) {
+    fail("create", unfinished, std::strerror(errno));
+  }
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream) {
+    fail("write", unfinished, std::strerror(errno));
+  }
+}
+
+void take_final_name(const std::filesystem::path &path) {
+  std::error_code error;
+  std::filesystem::rename(unfinished_name(path), path, error);
+  if (error) {
+    fail("rename to", path, error.message());
+  }
+}
+
 } // namespace
 
 PassingFiles::PassingFiles() {
@@ -77,25 +98,17 @@ void publish(const std::filesystem::path &path) {
   call_on(unfinished, O_WRONLY, "end", {},
           [](int descriptor) { return ::ftruncate(descriptor, ::lseek(descriptor, 0, SEEK_END)); });
   sync_file(unfinished);
-  std::error_code error;
-  std::filesystem::rename(unfinished, path, error);
-  if (error) {
-    fail("rename to", path, error.message());
-  }
+  take_final_name(path);
 }
 
 void write_file(const std::filesystem::path &path, const std::string &text) {
-  const std::filesystem::path unfinished = unfinished_name(path);
-  std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
-  if (!stream) {
-    fail("create", unfinished, std::strerror(errno));
-  }
-  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  stream.close();
-  if (!stream) {
-    fail("write", unfinished, std::strerror(errno));
-  }
+  write_unfinished(path, text);
   publish(path);
+}
+
+void write_index(const std::filesystem::path &path, const std::string &text) {
+  write_unfinished(path, text);
+  take_final_name(path);
 }
 
 void make_directory(const std::filesystem::path &path) {

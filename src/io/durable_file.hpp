@@ -20,6 +20,9 @@ void publish(const std::filesystem::path &path);
 /// The whole file at once, under its final name only when complete. Throws FileError.
 void write_file(const std::filesystem::path &path, const std::string &text);
 
+/// The same for a file that can be made again from what is on the disk: it is not synced.
+void write_index(const std::filesystem::path &path, const std::string &text);
+
 /// What has been written to a file, or the names in a folder, are on the disk afterwards. Throws FileError.
 void sync_file(const std::filesystem::path &path);
 void sync_directory(const std::filesystem::path &path);

@@ -1,10 +1,11 @@
 // One file per frame, its rows in BlockId order whatever the number of ranks: ids are cut into one slab per
-// rank, every row travels once to the owner of its slab, and all ranks write their slabs together. What never
-// changes is in a topology file of its own, which the frames link to.
+// rank, every row travels once to the owner of its slab, and all ranks write their slabs together, strip by
+// strip. What never changes is in a topology file of its own, which the frames link to.
 
 #include "gcpdda/io/result_files.hpp"
 
 #include "durable_file.hpp"
+#include "frame_strips.hpp"
 #include "hdf5_input.hpp"
 #include "hdf5_vtk_layout.hpp"
 #include "numbered_name.hpp"
@@ -31,79 +32,6 @@ std::string topology_name(int index) {
   return fmt::format("topology_{:06}.h5", index);
 }
 
-// Calls act(row, first vertex, last vertex) for each row.
-template <class Act>
-void for_each_row(const std::vector<FrameRow> &rows, const std::vector<Vec2> &vertices, Act act) {
-  auto vertex = vertices.begin();
-  for (const FrameRow &row : rows) {
-    act(row, vertex, vertex + row.num_vertices);
-    vertex += row.num_vertices;
-  }
-}
-
-bool is_sound(const FrameData &data, std::int64_t num_blocks) {
-  std::int64_t num_vertices = 0;
-  for (const FrameRow &row : data.rows) {
-    if (row.block < 0 || row.block >= num_blocks || row.num_vertices < 1) {
-      return false;
-    }
-    num_vertices += row.num_vertices;
-  }
-  return num_vertices == std::ssize(data.vertices);
-}
-
-using PlacedRow = std::pair<const FrameRow *, const Vec2 *>; ///< with its first vertex
-
-/// Rows and vertices of this rank's slab, in BlockId order. A frame of all blocks is the largest thing that
-/// passes through a rank: what has been handed on is freed at once.
-FrameData route_to_slabs(const Communicator &communicator, std::int64_t num_blocks, FrameData data) {
-  expect_on_all_ranks(communicator, is_sound(data, num_blocks), "frame rows with valid ids and vertices");
-  const auto num_ranks = static_cast<std::size_t>(communicator.size());
-  const auto owner_of = [&](const FrameRow &row) {
-    return static_cast<std::size_t>(slab_owner(num_blocks, communicator.size(), row.block));
-  };
-  std::vector<std::vector<FrameRow>> rows(num_ranks);
-  std::vector<std::vector<Vec2>> vertices(num_ranks);
-  if (num_ranks == 1) {
-    rows[0] = std::move(data.rows);
-    vertices[0] = std::move(data.vertices);
-  } else {
-    for_each_row(data.rows, data.vertices, [&](const FrameRow &row, auto first, auto last) {
-      rows[owner_of(row)].push_back(row);
-      vertices[owner_of(row)].insert(vertices[owner_of(row)].end(), first, last);
-    });
-    data = {};
-  }
-  rows = communicator.all_to_all(std::move(rows));
-  vertices = communicator.all_to_all(std::move(vertices));
-
-  std::vector<PlacedRow> order;
-  for (std::size_t rank = 0; rank < num_ranks; ++rank) {
-    for_each_row(rows[rank], vertices[rank],
-                 [&](const FrameRow &row, auto first, auto) { order.emplace_back(&row, &*first); });
-  }
-  const auto by_block = [](const PlacedRow &a, const PlacedRow &b) {
-    return a.first->block < b.first->block;
-  };
-  const bool is_sorted = std::is_sorted(order.begin(), order.end(), by_block);
-  std::sort(order.begin(), order.begin() + (is_sorted ? 0 : std::ssize(order)), by_block);
-  const bool once =
-      std::adjacent_find(order.begin(), order.end(), [&](const PlacedRow &a, const PlacedRow &b) {
-        return !by_block(a, b);
-      }) == order.end();
-  expect_on_all_ranks(communicator, once, "each block on exactly one rank's frame data");
-  if (num_ranks == 1 && is_sorted) {
-    return {std::move(rows[0]), std::move(vertices[0])};
-  }
-  FrameData slab;
-  slab.rows.reserve(order.size());
-  for (const auto &[row, first] : order) {
-    slab.rows.push_back(*row);
-    slab.vertices.insert(slab.vertices.end(), first, first + row->num_vertices);
-  }
-  return slab;
-}
-
 // XDMF wants its own mixture: for each cell 3 (a polygon), the number of its vertices, their numbers.
 void write_xdmf_cells(CollectiveFile &file, RowRange cells, RowRange points,
                       const std::vector<std::int32_t> &sizes) {
@@ -122,22 +50,79 @@ void write_xdmf_cells(CollectiveFile &file, RowRange cells, RowRange points,
       mixed);
 }
 
-void write_cell_data(CollectiveFile &file, RowRange cells, const std::vector<FrameRow> &rows) {
-  const auto column = [&](const char *name, auto get) {
-    file.dataset(vtk::cell_data(name), cells, vtk::column(rows, get));
+/// Datasets of a frame, and the buffers that their pieces are made in.
+class FrameTables {
+public:
+  FrameTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points)
+      : file_(file), points_{file.table<double>(vtk::at("Points"), num_points, 3), {}},
+        kind_{file.table<std::uint8_t>(vtk::cell_data("kind"), num_cells), {}},
+        rotation_{file.table<double>(vtk::cell_data("rotation"), num_cells), {}},
+        displacement_{file.table<double>(vtk::cell_data("displacement"), num_cells, 3), {}},
+        velocity_{file.table<double>(vtk::cell_data("velocity"), num_cells, 3), {}},
+        stress_{file.table<double>(vtk::cell_data("stress"), num_cells, 3), {}},
+        contact_force_{file.table<double>(vtk::cell_data("contact_force"), num_cells, 3), {}} {}
+
+  /// Collective.
+  void write(std::int64_t first_cell, std::int64_t first_point,
+             const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t num_points) {
+    fill(rows, static_cast<std::size_t>(num_points));
+    write(points_, first_point);
+    write(kind_, first_cell);
+    for (const Column<double> *column : {&rotation_, &displacement_, &velocity_, &stress_, &contact_force_}) {
+      write(*column, first_cell);
+    }
+  }
+
+private:
+  template <class T> struct Column {
+    CollectiveFile::Table table;
+    std::vector<T> values;
+
+    /// Where the values of this many rows go.
+    T *make_room(std::size_t num_rows) {
+      values.resize(table.columns * num_rows);
+      return values.data();
+    }
   };
-  const auto three_columns = [&](const char *name, auto get) {
-    file.dataset(vtk::cell_data(name), cells, vtk::three_columns(rows, get), 3);
-  };
-  column("kind", [](const FrameRow &row) { return row.kind; });
-  column("rotation", [](const FrameRow &row) { return row.rotation; });
-  three_columns("displacement", [](const FrameRow &row) {
-    return std::array{row.displacement.x, row.displacement.y, 0.0};
-  });
-  three_columns("velocity", [](const FrameRow &row) { return row.velocity; });
-  three_columns("stress", [](const FrameRow &row) { return row.stress; });
-  three_columns("contact_force", [](const FrameRow &row) { return row.contact_force; });
-}
+  template <class T> void write(const Column<T> &column, std::int64_t first) {
+    file_.write(column.table, first, std::span<const T>(column.values));
+  }
+
+  static double *put(double *place, const std::array<double, 3> &triple) {
+    return std::copy(triple.begin(), triple.end(), place);
+  }
+
+  // All columns in one pass: rows are longer than what a column takes of them.
+  void fill(const std::vector<FrameStrips::PlacedRow> &rows, std::size_t num_points) {
+    double *point = points_.make_room(num_points);
+    std::uint8_t *kind = kind_.make_room(rows.size());
+    double *rotation = rotation_.make_room(rows.size());
+    double *displacement = displacement_.make_room(rows.size());
+    double *velocity = velocity_.make_room(rows.size());
+    double *stress = stress_.make_room(rows.size());
+    double *contact_force = contact_force_.make_room(rows.size());
+    for (const auto &[row, first] : rows) {
+      for (const Vec2 *vertex = first; vertex != first + row->num_vertices; ++vertex) {
+        point = put(point, {vertex->x, vertex->y, 0.0});
+      }
+      *kind++ = row->kind;
+      *rotation++ = row->rotation;
+      displacement = put(displacement, {row->displacement.x, row->displacement.y, 0.0});
+      velocity = put(velocity, row->velocity);
+      stress = put(stress, row->stress);
+      contact_force = put(contact_force, row->contact_force);
+    }
+  }
+
+  CollectiveFile &file_;
+  Column<double> points_;
+  Column<std::uint8_t> kind_;
+  Column<double> rotation_;
+  Column<double> displacement_;
+  Column<double> velocity_;
+  Column<double> stress_;
+  Column<double> contact_force_;
+};
 
 /// @param kind  of the files, "frame" or "bolts"
 std::string series_index(const std::vector<std::pair<int, double>> &frames, const char *kind) {
@@ -223,23 +208,63 @@ int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block) {
 }
 
 FrameWriter::FrameWriter(const Communicator &communicator, std::filesystem::path directory,
-                         std::int64_t num_blocks)
-    : communicator_(communicator), directory_(std::move(directory)), num_blocks_(num_blocks) {
+                         std::int64_t num_blocks, std::int64_t ids_per_strip)
+    : communicator_(communicator), directory_(std::move(directory)), num_blocks_(num_blocks),
+      ids_per_strip_(ids_per_strip > 0 ? ids_per_strip : usual_ids_per_strip(communicator.size())) {
   on_root(communicator_, [this] { make_directory(directory_ / "frames"); });
 }
 
-void FrameWriter::write(int index, double time, FrameData data) {
-  expect(frames_.empty() || index > frames_.back().first, "frames in the order of their numbers");
-  const FrameData slab = route_to_slabs(communicator_, num_blocks_, std::move(data));
-  const RowRange cells = rows_in_rank_order(communicator_, std::ssize(slab.rows));
-  const RowRange points = rows_in_rank_order(communicator_, std::ssize(slab.vertices));
+/// What a topology holds of this rank's slab.
+struct FrameWriter::Cells {
+  std::vector<std::int64_t> block;
+  std::vector<std::int32_t> material;
+  std::vector<std::int32_t> num_vertices;
+  RowRange cells;
+  RowRange points;
+};
 
-  if (topologies_.empty() || topologies_.back().num_cells != cells.total) {
-    expect(topologies_.empty() ? cells.total == num_blocks_ : cells.total < topologies_.back().num_cells,
-           "all blocks in the first frame, none that come later");
-    write_topology(index, slab);
+// The same for all frames until blocks go: whoever owns them then, a strip has its place in the file.
+FrameWriter::Cells FrameWriter::survey(const FrameSource &source) {
+  Cells slab;
+  FrameStrips strips(communicator_, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
+  places_.clear();
+  Place place;
+  for (int number = 0; number < strips.size(); ++number) {
+    strips.bring(number);
+    place = {place.first_cell + place.num_cells, std::ssize(strips.rows()),
+             place.first_point + place.num_points, strips.num_vertices()};
+    places_.push_back(place);
+    for (const auto &[row, vertex] : strips.rows()) {
+      slab.block.push_back(row->block);
+      slab.material.push_back(row->material);
+      slab.num_vertices.push_back(row->num_vertices);
+    }
   }
-  expect(points.total == topologies_.back().num_points, "as many vertices as in the topology");
+  slab.cells = rows_in_rank_order(communicator_, place.first_cell + place.num_cells);
+  slab.points = rows_in_rank_order(communicator_, place.first_point + place.num_points);
+  for (Place &strip : places_) {
+    strip.first_cell += slab.cells.first;
+    strip.first_point += slab.points.first;
+  }
+  expect_on_all_ranks(communicator_, strips.are_sound(),
+                      "each block on exactly one rank's frame data, with its vertices");
+  return slab;
+}
+
+void FrameWriter::write(int index, double time, const FrameSource &source) {
+  expect(frames_.empty() || index > frames_.back().first, "frames in the order of their numbers");
+  std::int64_t num_cells = source.num_rows();
+  communicator_.sum(std::span(&num_cells, 1));
+  if (topologies_.empty() || topologies_.back().num_cells != num_cells) {
+    expect(topologies_.empty() ? num_cells == num_blocks_ : num_cells < topologies_.back().num_cells,
+           "all blocks in the first frame, none that come later");
+    const Cells slab = survey(source);
+    expect(slab.cells.total == num_cells, "as many rows as the source says");
+    write_topology(index, slab);
+  } else if (places_.empty()) {
+    const Cells slab = survey(source);
+    expect(slab.points.total == topologies_.back().num_points, "as many vertices as in the topology");
+  }
   const std::string topology = topology_name(topologies_.back().first_frame);
 
   CollectiveFile file(communicator_, directory_ / "frames" / frame_name(index));
@@ -250,8 +275,7 @@ void FrameWriter::write(int index, double time, FrameData data) {
   for (const char *name : constant_cell_data) {
     file.link(vtk::cell_data(name), topology);
   }
-  vtk::write_points(file, points, slab.vertices);
-  write_cell_data(file, cells, slab.rows);
+  expect_on_all_ranks(communicator_, write_strips(file, source), "each block once, with the vertices it had");
   file.publish();
   all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
 
@@ -259,44 +283,34 @@ void FrameWriter::write(int index, double time, FrameData data) {
   write_indices();
 }
 
-// A few rows, which the root writes.
-void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
-  const BoltFrame mine = communicator_.is_root() ? frame : BoltFrame{};
-  const RowRange cells = rows_in_rank_order(communicator_, std::ssize(mine.rows));
-  const RowRange points = rows_in_rank_order(communicator_, std::ssize(mine.points));
-  CollectiveFile file(communicator_, directory_ / "frames" / fmt::format("bolts_{:06}.hdf", index));
-  vtk::write_header(file, time);
-  vtk::write_cells(file, cells, points, vtk::CellType::poly_line,
-                   vtk::column(mine.rows, [](const BoltRow &row) { return row.num_points; }));
-  vtk::write_points(file, points, mine.points);
-  const auto column = [&](const char *name, auto get) {
-    file.dataset(vtk::cell_data(name), cells, vtk::column(mine.rows, get));
-  };
-  column("bolt", [](const BoltRow &row) { return row.bolt; });
-  column("support", [](const BoltRow &row) { return row.support; });
-  column("state", [](const BoltRow &row) { return row.state; });
-  column("axial_force", [](const BoltRow &row) { return row.axial_force; });
-  column("shear_force", [](const BoltRow &row) { return row.shear_force; });
-  column("extension", [](const BoltRow &row) { return row.extension; });
-  column("slide", [](const BoltRow &row) { return row.slide; });
-  file.publish();
-  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
-  bolt_frames_.emplace_back(index, time);
-  write_indices();
+// False on a rank whose rows are not what they should be; it writes none of them.
+bool FrameWriter::write_strips(CollectiveFile &file, const FrameSource &source) const {
+  bool as_expected = true;
+  FrameTables tables(file, topologies_.back().num_cells, topologies_.back().num_points);
+  FrameStrips strips(communicator_, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
+  for (int number = 0; number < strips.size(); ++number) {
+    strips.bring(number);
+    const Place &place = places_[static_cast<std::size_t>(number)];
+    as_expected = as_expected && strips.are_sound() && std::ssize(strips.rows()) == place.num_cells &&
+                  strips.num_vertices() == place.num_points;
+    if (as_expected) {
+      tables.write(place.first_cell, place.first_point, strips.rows(), place.num_points);
+    } else {
+      tables.write(0, 0, {}, 0);
+    }
+  }
+  return as_expected;
 }
 
-void FrameWriter::write_topology(int index, const FrameData &slab) {
-  const RowRange cells = rows_in_rank_order(communicator_, std::ssize(slab.rows));
-  const RowRange points = rows_in_rank_order(communicator_, std::ssize(slab.vertices));
-  const auto sizes = vtk::column(slab.rows, [](const FrameRow &row) { return row.num_vertices; });
+void FrameWriter::write_topology(int index, const Cells &slab) {
+  const auto &[blocks, materials, sizes, cells, points] = slab;
   CollectiveFile file(communicator_, directory_ / "frames" / topology_name(index));
   file.group("/VTKHDF");
   file.group("/VTKHDF/CellData");
-  vtk::write_cells(file, cells, points, vtk::CellType::polygon, sizes);
-  file.dataset(vtk::cell_data("block"), cells,
-               vtk::column(slab.rows, [](const FrameRow &row) { return row.block; }));
-  file.dataset(vtk::cell_data("material"), cells,
-               vtk::column(slab.rows, [](const FrameRow &row) { return row.material; }));
+  vtk::CellTables(file, cells.total, points.total, vtk::CellType::polygon)
+      .write(cells.first, points.first, sizes);
+  file.dataset(vtk::cell_data("block"), cells, blocks);
+  file.dataset(vtk::cell_data("material"), cells, materials);
   write_xdmf_cells(file, cells, points, sizes);
   file.publish();
   all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
@@ -311,9 +325,9 @@ const FrameWriter::Topology &FrameWriter::topology_of(int frame) const {
 
 void FrameWriter::write_indices() const {
   on_root(communicator_, [this] {
-    write_file(directory_ / "run.hdf.series", series_index(frames_, "frame"));
+    write_index(directory_ / "run.hdf.series", series_index(frames_, "frame"));
     if (!bolt_frames_.empty()) {
-      write_file(directory_ / "bolts.hdf.series", series_index(bolt_frames_, "bolts"));
+      write_index(directory_ / "bolts.hdf.series", series_index(bolt_frames_, "bolts"));
     }
     std::vector<IndexedFrame> indexed;
     for (const auto &[index, time] : frames_) {
@@ -321,7 +335,20 @@ void FrameWriter::write_indices() const {
       indexed.push_back(
           {index, time, topology.num_cells, topology.num_points, topology_name(topology.first_frame)});
     }
-    write_file(directory_ / "run.xdmf", xdmf_index(indexed));
+    write_index(directory_ / "run.xdmf", xdmf_index(indexed));
+  });
+}
+
+void FrameWriter::sync() const {
+  if (frames_.empty()) {
+    return;
+  }
+  on_root(communicator_, [this] {
+    sync_file(directory_ / "run.hdf.series");
+    sync_file(directory_ / "run.xdmf");
+    if (!bolt_frames_.empty()) {
+      sync_file(directory_ / "bolts.hdf.series");
+    }
   });
 }
 

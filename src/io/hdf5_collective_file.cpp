@@ -141,48 +141,59 @@ void CollectiveFile::reserve_space(const hdf5::Dataset &dataset) {
   reserved_ = std::max(reserved_, end);
 }
 
-void CollectiveFile::write_dataset(const std::string &name, RowRange rows, hsize_t columns, Values values) {
-  const std::string what = "write " + file_name(path_, name);
-  const auto count = static_cast<hsize_t>(rows.count);
-  hdf5::Dataspace file_space;
-  hdf5::Dataspace memory_space;
-  hdf5::Dataset dataset;
-  const hdf5::Properties transfer(H5Pcreate(H5P_DATASET_XFER));
-
+CollectiveFile::Table CollectiveFile::make_table(const std::string &name, std::int64_t rows, hsize_t columns,
+                                                 hid_t file_type, hid_t memory_type) {
+  Table table{{}, memory_type, columns, rows};
   on_all_ranks(communicator_, [&] {
-    file_space = simple_space(static_cast<hsize_t>(rows.total), columns);
-    memory_space = simple_space(std::max<hsize_t>(count, 1), columns);
+    const hdf5::Dataspace space = simple_space(static_cast<hsize_t>(rows), columns);
+    const hdf5::Properties creation = plain_dataset();
+    table.dataset = hdf5::Dataset(hdf5::checked(H5Dcreate2(file_.get(), name.c_str(), file_type, space.get(),
+                                                           H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                                                "write " + file_name(path_, name)));
+    reserve_space(table.dataset);
+  });
+  return table;
+}
+
+void CollectiveFile::write_rows(const Table &table, std::int64_t first, hsize_t count, const void *values) {
+  if (table.rows == 0) {
+    return; // nothing is allocated then, and a collective write of nothing fails for want of an address
+  }
+  const std::string what = "write " + path_.string();
+  const hdf5::Properties transfer(H5Pcreate(H5P_DATASET_XFER));
+  try {
+    const hdf5::Dataspace file_space = simple_space(static_cast<hsize_t>(table.rows), table.columns);
+    const hdf5::Dataspace memory_space = simple_space(std::max<hsize_t>(count, 1), table.columns);
     if (count == 0) {
       hdf5::checked(H5Sselect_none(file_space.get()), what);
       hdf5::checked(H5Sselect_none(memory_space.get()), what);
     } else {
-      const std::array<hsize_t, 2> start{static_cast<hsize_t>(rows.first), 0};
-      const std::array<hsize_t, 2> extent{count, columns};
+      const std::array<hsize_t, 2> start{static_cast<hsize_t>(first), 0};
+      const std::array<hsize_t, 2> extent{count, table.columns};
       hdf5::checked(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr,
                                         extent.data(), nullptr),
                     what);
     }
     hdf5::checked(H5Pset_dxpl_mpio(transfer.get(), H5FD_MPIO_COLLECTIVE), what);
-    const hdf5::Properties creation = plain_dataset();
-    dataset =
-        hdf5::Dataset(hdf5::checked(H5Dcreate2(file_.get(), name.c_str(), values.file_type, file_space.get(),
-                                               H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-                                    what));
-    reserve_space(dataset);
-  });
-  if (rows.total == 0) {
-    return; // nothing is allocated then, and a collective write of nothing fails for want of an address
-  }
-  on_all_ranks(communicator_, [&] {
     // A rank without rows still takes part; HDF5 refuses a null pointer from it.
     static constexpr double nothing = 0.0;
-    hdf5::checked(H5Dwrite(dataset.get(), values.memory_type, memory_space.get(), file_space.get(),
-                           transfer.get(), count == 0 ? &nothing : values.first),
+    hdf5::checked(H5Dwrite(table.dataset.get(), table.memory_type, memory_space.get(), file_space.get(),
+                           transfer.get(), count == 0 ? &nothing : values),
                   what);
-  });
+  } catch (const FileError &error) {
+    failed_write_ = failed_write_.empty() ? error.what() : failed_write_;
+  }
   H5D_mpio_actual_io_mode_t mode = H5D_MPIO_NO_COLLECTIVE;
   H5Pget_mpio_actual_io_mode(transfer.get(), &mode);
   all_writes_collective_ = all_writes_collective_ && mode != H5D_MPIO_NO_COLLECTIVE;
+}
+
+void CollectiveFile::agree_on_writes() {
+  on_all_ranks(communicator_, [&] {
+    if (!failed_write_.empty()) {
+      throw FileError(failed_write_);
+    }
+  });
 }
 
 void CollectiveFile::number(const std::string &name, std::int64_t value) {
@@ -234,6 +245,7 @@ void CollectiveFile::link(const std::string &name, const std::string &file) {
 }
 
 void CollectiveFile::publish() {
+  agree_on_writes();
   on_all_ranks(communicator_, [&] {
     if (!close(file_)) {
       throw FileError("cannot close " + unfinished_name(path_).string() + ": " + hdf5::last_error());

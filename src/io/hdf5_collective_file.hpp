@@ -48,7 +48,24 @@ public:
   void dataset(const std::string &name, RowRange rows, const std::vector<T> &values, hsize_t columns = 1) {
     expect(values.size() == static_cast<std::size_t>(rows.count) * columns,
            "a value for each row and column");
-    write_dataset(name, rows, columns, {NumberType<T>::file(), NumberType<T>::memory(), values.data()});
+    write(table<T>(name, rows.total, columns), rows.first, std::span(values));
+    agree_on_writes();
+  }
+  /// A dataset whose rows are written piece by piece.
+  struct Table {
+    hdf5::Dataset dataset;
+    hid_t memory_type;
+    hsize_t columns;
+    std::int64_t rows;
+  };
+  /// @param rows  of all ranks; shape as above
+  template <class T> Table table(const std::string &name, std::int64_t rows, hsize_t columns = 1) {
+    return make_table(name, rows, columns, NumberType<T>::file(), NumberType<T>::memory());
+  }
+  /// This rank's rows from `first` on, which nobody else writes; other ranks take part with theirs or with
+  /// none. What fails is told by `publish`.
+  template <class T> void write(const Table &table, std::int64_t first, std::span<const T> values) {
+    write_rows(table, first, values.size() / table.columns, values.data());
   }
   /// A dataset of shape (1); every rank gives the same value.
   void number(const std::string &name, std::int64_t value);
@@ -58,7 +75,7 @@ public:
   void attribute(const std::string &object, const std::string &name, const std::string &ascii);
   /// `name` here stands for `name` in the file `file` of the same folder.
   void link(const std::string &name, const std::string &file);
-  /// Close, sync, rename.
+  /// Close, sync, rename. No table lives any more.
   void publish();
 
   [[nodiscard]] bool is_root() const { return communicator_.is_root(); }
@@ -72,7 +89,10 @@ private:
     hid_t memory_type;
     const void *first;
   };
-  void write_dataset(const std::string &name, RowRange rows, hsize_t columns, Values values);
+  Table make_table(const std::string &name, std::int64_t rows, hsize_t columns, hid_t file_type,
+                   hid_t memory_type);
+  void write_rows(const Table &table, std::int64_t first, hsize_t count, const void *values);
+  void agree_on_writes();
   void reserve_space(const hdf5::Dataset &dataset);
   void write_attribute(const std::string &object, const std::string &name, hid_t space, Values value);
 
@@ -81,6 +101,7 @@ private:
   const std::filesystem::path path_;
   hdf5::File file_;
   std::int64_t reserved_ = 0; ///< bytes of the file that have their place on the disk
+  std::string failed_write_;  ///< the first one of this rank
   bool published_ = false;
   bool all_writes_collective_ = true;
 };

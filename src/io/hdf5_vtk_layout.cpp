@@ -20,40 +20,33 @@ void write_header(CollectiveFile &file, double time) {
   file.attribute("/VTKHDF", "time", time);
 }
 
-void write_cells(CollectiveFile &file, RowRange cells, RowRange points, CellType type,
-                 const std::vector<std::int32_t> &sizes) {
-  std::vector<std::int64_t> connectivity(static_cast<std::size_t>(points.count));
-  std::iota(connectivity.begin(), connectivity.end(), points.first);
-
-  // Row c + 1 of Offsets is the end of cell c; row 0, a zero, is the root's.
-  std::vector<std::int64_t> offsets;
-  RowRange offset_rows{cells.first + 1, cells.count, cells.total + 1};
-  if (file.is_root()) {
-    offsets.push_back(0);
-    offset_rows.first -= 1;
-    offset_rows.count += 1;
-  }
-  std::int64_t end = points.first;
-  for (const std::int32_t size : sizes) {
-    end += size;
-    offsets.push_back(end);
-  }
-
-  file.number(at("NumberOfPoints"), points.total);
-  file.number(at("NumberOfCells"), cells.total);
-  file.number(at("NumberOfConnectivityIds"), points.total);
-  file.dataset(at("Connectivity"), points, connectivity);
-  file.dataset(at("Offsets"), offset_rows, offsets);
-  file.dataset(at("Types"), cells, std::vector<std::uint8_t>(sizes.size(), static_cast<std::uint8_t>(type)));
+CellTables::CellTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points, CellType type)
+    : file_(file), type_(type) {
+  file.number(at("NumberOfPoints"), num_points);
+  file.number(at("NumberOfCells"), num_cells);
+  file.number(at("NumberOfConnectivityIds"), num_points);
+  connectivity_ = file.table<std::int64_t>(at("Connectivity"), num_points);
+  offsets_ = file.table<std::int64_t>(at("Offsets"), num_cells + 1);
+  types_ = file.table<std::uint8_t>(at("Types"), num_cells);
 }
 
-void write_points(CollectiveFile &file, RowRange points, const std::vector<Vec2> &vertices) {
-  file.dataset(at("Points"), points,
-               three_columns(vertices,
-                             [](Vec2 p) {
-                               return std::array{p.x, p.y, 0.0};
-                             }),
-               3);
+void CellTables::write(std::int64_t first_cell, std::int64_t first_point,
+                       const std::vector<std::int32_t> &sizes) {
+  // Row c + 1 of Offsets is the end of cell c; row 0, a zero, is the root's.
+  const bool with_zero = file_.is_root() && first_cell == 0;
+  numbers_.assign(with_zero ? 1 : 0, 0);
+  std::int64_t end = first_point;
+  for (const std::int32_t size : sizes) {
+    end += size;
+    numbers_.push_back(end);
+  }
+  file_.write(offsets_, with_zero ? 0 : first_cell + 1, std::span<const std::int64_t>(numbers_));
+
+  numbers_.resize(static_cast<std::size_t>(end - first_point));
+  std::iota(numbers_.begin(), numbers_.end(), first_point);
+  file_.write(connectivity_, first_point, std::span<const std::int64_t>(numbers_));
+  same_type_.assign(sizes.size(), static_cast<std::uint8_t>(type_));
+  file_.write(types_, first_cell, std::span<const std::uint8_t>(same_type_));
 }
 
 } // namespace gcpdda::vtk

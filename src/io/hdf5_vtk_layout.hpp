@@ -1,7 +1,5 @@
 #pragma once
 
-#include "gcpdda/geometry/vec2.hpp"
-
 #include "hdf5_collective_file.hpp"
 
 #include <array>
@@ -18,41 +16,30 @@ enum class CellType : std::uint8_t { line = 3, poly_line = 4, polygon = 7 };
 void write_header(CollectiveFile &file, double time);
 
 /// NumberOf*, Connectivity, Offsets, Types of cells that share no points: each owns the next `size` of them.
-/// @param sizes  vertices of each of this rank's cells
-void write_cells(CollectiveFile &file, RowRange cells, RowRange points, CellType type,
-                 const std::vector<std::int32_t> &sizes);
+class CellTables {
+public:
+  CellTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points, CellType type);
+  /// Some of this rank's cells. Collective.
+  /// @param sizes  vertices of each
+  void write(std::int64_t first_cell, std::int64_t first_point, const std::vector<std::int32_t> &sizes);
 
-/// Names of the datasets write_cells makes.
+private:
+  CollectiveFile &file_;
+  CellType type_;
+  CollectiveFile::Table connectivity_;
+  CollectiveFile::Table offsets_;
+  CollectiveFile::Table types_;
+  std::vector<std::int64_t> numbers_;
+  std::vector<std::uint8_t> same_type_;
+};
+
+/// Names of the datasets CellTables makes.
 inline constexpr std::array<const char *, 6> cell_datasets{
     "NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds", "Connectivity", "Offsets", "Types"};
-
-/// Points of the plane z = 0.
-void write_points(CollectiveFile &file, RowRange points, const std::vector<Vec2> &vertices);
 
 /// Dataset "/VTKHDF/<name>".
 std::string at(const std::string &name);
 /// Dataset "/VTKHDF/CellData/<name>".
 std::string cell_data(const std::string &name);
-
-/// get(row) of each row: a column of a table.
-template <class Row, class Get> auto column(const std::vector<Row> &rows, Get get) {
-  std::vector<std::decay_t<decltype(get(rows.front()))>> values;
-  values.reserve(rows.size());
-  for (const Row &row : rows) {
-    values.push_back(get(row));
-  }
-  return values;
-}
-
-/// The same where get(row) is a triple: three columns, flat.
-template <class Row, class Get> std::vector<double> three_columns(const std::vector<Row> &rows, Get get) {
-  std::vector<double> values;
-  values.reserve(3 * rows.size());
-  for (const Row &row : rows) {
-    const std::array<double, 3> triple = get(row);
-    values.insert(values.end(), triple.begin(), triple.end());
-  }
-  return values;
-}
 
 } // namespace gcpdda::vtk

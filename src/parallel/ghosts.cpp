@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace gcpdda {
 
@@ -211,7 +212,7 @@ void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span
       pack_row(system, row, messages[r]);
     }
   }
-  const std::vector<Bytes> received = communicator_.all_to_all(messages);
+  const std::vector<Bytes> received = communicator_.all_to_all(std::move(messages));
   motion_ = MessageRound(); // its buffers go
   neighbours_.clear();
   for (std::size_t r = 0; r < rows.size(); ++r) {

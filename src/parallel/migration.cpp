@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 
 namespace gcpdda {
 
@@ -69,7 +70,7 @@ std::int64_t migrate(const Communicator &communicator, const DomainMap &map, Blo
     }
   }
   BlockSystem arrived;
-  for (const Bytes &message : communicator.all_to_all(leaving)) {
+  for (const Bytes &message : communicator.all_to_all(std::move(leaving))) {
     unpack_rows(message, arrived);
   }
   for (const auto &brought : communicator.all_to_all(records)) {

@@ -3,19 +3,11 @@
 #include "gcpdda/dynamics/deformable.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <unordered_map>
+#include <utility>
 
 namespace gcpdda {
 
 namespace {
-
-/// What one mobile block puts on a fixed one.
-struct Reaction {
-  std::int64_t fixed = 0;
-  std::int64_t mobile = 0;
-  ContactPart part;
-};
 
 FrameRow row_of(const BlockSystem &blocks, std::size_t row) {
   const BlockProperties &block = blocks.properties[row];
@@ -91,14 +83,14 @@ FrameRow mobile_row(const Simulation &simulation, std::size_t index) {
   return row;
 }
 
-/// Of the fixed block whose reactions come next in `reaction`, which moves on behind them.
-FrameRow fixed_row(const BlockSystem &blocks, std::size_t index,
-                   std::vector<Reaction>::const_iterator &reaction,
-                   std::vector<Reaction>::const_iterator end) {
+/// @param reactions  by fixed id, of this block and others
+FrameRow fixed_row(const BlockSystem &blocks, std::size_t index, const std::vector<Reaction> &reactions) {
   const BlockProperties &block = blocks.properties[index];
   Vec2 force;
   Mat2 dyad;
-  for (; reaction != end && reaction->fixed == block.id.value; ++reaction) {
+  auto reaction = std::lower_bound(reactions.begin(), reactions.end(), block.id.value,
+                                   [](const Reaction &r, std::int64_t id) { return r.fixed < id; });
+  for (; reaction != reactions.end() && reaction->fixed == block.id.value; ++reaction) {
     force += reaction->part.force;
     dyad += reaction->part.dyad;
   }
@@ -108,63 +100,89 @@ FrameRow fixed_row(const BlockSystem &blocks, std::size_t index,
   return row;
 }
 
-/// Ascending by BlockId.
-FrameData collect_rows(const Simulation &simulation, const std::function<bool(std::int64_t)> &wanted,
-                       std::size_t expected) {
-  const BlockSystem &blocks = simulation.blocks();
-  FrameData data;
-  data.rows.reserve(expected);
-  data.vertices.reserve(4 * expected);
-  const auto append = [&](const FrameRow &row, std::size_t index) {
-    if (wanted(row.block)) {
-      data.rows.push_back(row);
-      append_current_vertices(blocks, index, data.vertices);
-    }
-  };
-  const std::vector<Reaction> reactions = collect_reactions(simulation);
-  auto reaction = reactions.begin();
-  std::size_t fixed = blocks.first_fixed();
-  const auto append_fixed_below = [&](std::int64_t id) {
-    for (; fixed < blocks.num_rows() && blocks.properties[fixed].id.value < id; ++fixed) {
-      if (slab_owner(simulation.num_blocks(), simulation.communicator().size(),
-                     blocks.properties[fixed].id.value) == simulation.communicator().rank()) {
-        append(fixed_row(blocks, fixed, reaction, reactions.end()), fixed);
-      }
-    }
-  };
-  for (std::size_t index = 0; index < blocks.num_owned; ++index) {
-    const std::int64_t id = blocks.properties[index].id.value;
-    append_fixed_below(id);
-    if (wanted(id)) {
-      append(mobile_row(simulation, index), index);
-    }
-  }
-  append_fixed_below(simulation.num_blocks());
-  return data;
+/// First of rows [begin, end), which are sorted by id, whose id is not below this one.
+std::size_t first_row_from(const BlockSystem &blocks, std::size_t begin, std::size_t end, std::int64_t id) {
+  const auto first = blocks.properties.begin();
+  return static_cast<std::size_t>(
+      std::lower_bound(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
+                       id,
+                       [](const BlockProperties &p, std::int64_t wanted) { return p.id.value < wanted; }) -
+      first);
 }
 
 } // namespace
 
-FrameData collect_frame(const Simulation &simulation) {
-  return collect_rows(
-      simulation, [](std::int64_t) { return true; }, simulation.blocks().num_owned + 1);
+SimulationFrame::SimulationFrame(const Simulation &simulation)
+    : simulation_(simulation), reactions_(collect_reactions(simulation)) {}
+
+std::int64_t SimulationFrame::num_rows() const {
+  const BlockSystem &blocks = simulation_.blocks();
+  const Communicator &world = simulation_.communicator();
+  const std::int64_t num_blocks = simulation_.num_blocks();
+  const std::size_t begin = first_row_from(blocks, blocks.first_fixed(), blocks.num_rows(),
+                                           slab_begin(num_blocks, world.size(), world.rank()));
+  const std::size_t end = first_row_from(blocks, blocks.first_fixed(), blocks.num_rows(),
+                                         slab_begin(num_blocks, world.size(), world.rank() + 1));
+  return static_cast<std::int64_t>(blocks.num_owned + end - begin);
 }
 
-std::vector<ContactRow> collect_contacts(const Simulation &simulation) {
-  const BlockSystem &blocks = simulation.blocks();
-  const ContactForces &contacts = simulation.contacts();
-  const Candidates &candidates = simulation.candidates();
-  std::vector<ContactRow> rows;
-  rows.reserve(contacts.regions().size());
-  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) { // in the order of the file
-    const CandidatePair &pair = candidates.pairs[k];
-    if (!simulation.counts_here(pair)) {
-      continue;
+// Ascending by BlockId.
+void SimulationFrame::append(std::int64_t first, std::int64_t last, std::vector<FrameRow> &rows,
+                             std::vector<Vec2> &vertices) const {
+  const BlockSystem &blocks = simulation_.blocks();
+  const Communicator &world = simulation_.communicator();
+  std::size_t fixed = first_row_from(blocks, blocks.first_fixed(), blocks.num_rows(), first);
+  const auto append_fixed_below = [&](std::int64_t id) {
+    for (; fixed < blocks.num_rows() && blocks.properties[fixed].id.value < id; ++fixed) {
+      if (slab_owner(simulation_.num_blocks(), world.size(), blocks.properties[fixed].id.value) ==
+          world.rank()) {
+        rows.push_back(fixed_row(blocks, fixed, reactions_));
+        append_current_vertices(blocks, fixed, vertices);
+      }
     }
+  };
+  const std::size_t end = first_row_from(blocks, 0, blocks.num_owned, last);
+  for (std::size_t index = first_row_from(blocks, 0, blocks.num_owned, first); index < end; ++index) {
+    append_fixed_below(blocks.properties[index].id.value);
+    rows.push_back(mobile_row(simulation_, index));
+    append_current_vertices(blocks, index, vertices);
+  }
+  append_fixed_below(last);
+}
+
+// Pairs are in the order of the file.
+template <class Act>
+void SimulationContacts::for_each_pair(std::int64_t first, std::int64_t last, Act act) const {
+  const BlockSystem &blocks = simulation_.blocks();
+  const std::vector<CandidatePair> &pairs = simulation_.candidates().pairs;
+  const auto id_of = [&](const CandidatePair &pair) { return blocks.properties[pair.lower.value].id.value; };
+  const auto begin =
+      std::lower_bound(pairs.begin(), pairs.end(), first,
+                       [&](const CandidatePair &pair, std::int64_t id) { return id_of(pair) < id; });
+  for (auto pair = begin; pair != pairs.end() && id_of(*pair) < last; ++pair) {
+    const auto number = static_cast<std::size_t>(pair - pairs.begin());
+    if (!simulation_.contacts().of_pair(number).empty() && simulation_.counts_here(*pair)) {
+      act(number);
+    }
+  }
+}
+
+std::int64_t SimulationContacts::count(std::int64_t first, std::int64_t last) const {
+  std::int64_t count = 0;
+  for_each_pair(first, last,
+                [&](std::size_t pair) { count += std::ssize(simulation_.contacts().of_pair(pair)); });
+  return count;
+}
+
+void SimulationContacts::append(std::int64_t first, std::int64_t last, std::vector<ContactRow> &rows) const {
+  const BlockSystem &blocks = simulation_.blocks();
+  const ContactForces &contacts = simulation_.contacts();
+  for_each_pair(first, last, [&](std::size_t number) {
+    const CandidatePair &pair = simulation_.candidates().pairs[number];
     std::int32_t position = 0;
-    for (const RegionForce &force : contacts.of_pair(k)) {
+    for (const RegionForce &force : contacts.of_pair(number)) {
       const auto region = static_cast<std::size_t>(&force - contacts.regions().data());
-      const RegionMemory &memory = simulation.history().regions[region];
+      const RegionMemory &memory = simulation_.history().regions[region];
       const Vec2 tangent = perp(force.normal);
       ContactRow row;
       row.lower = blocks.properties[pair.lower.value].id.value;
@@ -180,8 +198,7 @@ std::vector<ContactRow> collect_contacts(const Simulation &simulation) {
       row.slip = memory.slip;
       rows.push_back(row);
     }
-  }
-  return rows;
+  });
 }
 
 std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
@@ -194,33 +211,30 @@ std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
   if (monitors.empty()) {
     return rows;
   }
-  std::unordered_multimap<std::int64_t, std::size_t> monitor_of;
-  for (std::size_t m = 0; m < monitors.size(); ++m) {
-    monitor_of.emplace(monitors[m].block, m);
-  }
   std::vector<Found> mine;
-  const FrameData data = collect_rows(
-      simulation, [&](std::int64_t block) { return monitor_of.contains(block); }, monitors.size());
-  for (const FrameRow &row : data.rows) {
-    const auto [first, last] = monitor_of.equal_range(row.block);
-    std::for_each(first, last, [&](const auto &entry) {
-      if (!monitors[entry.second].is_point) {
-        mine.push_back({static_cast<std::int64_t>(entry.second),
-                        {row.centroid, row.rotation, row.velocity, row.stress,
-                         Vec2{row.contact_force[0], row.contact_force[1]}}});
-      }
-    });
-  }
   const BlockSystem &blocks = simulation.blocks();
-  for (std::size_t index = 0; index < blocks.num_rows(); ++index) {
-    const bool mine_to_write = index < blocks.num_owned || blocks.is_fixed(index);
-    const auto [first, last] = monitor_of.equal_range(blocks.properties[index].id.value);
-    std::for_each(first, last, [&](const auto &entry) {
-      if (monitors[entry.second].is_point && mine_to_write) {
-        mine.push_back({static_cast<std::int64_t>(entry.second),
-                        point_row(blocks, index, monitors[entry.second].point)});
+  const SimulationFrame frame(simulation);
+  std::vector<FrameRow> found_rows;
+  std::vector<Vec2> vertices;
+  for (std::size_t m = 0; m < monitors.size(); ++m) {
+    const std::int64_t block = monitors[m].block;
+    if (monitors[m].is_point) {
+      const std::size_t owned = first_row_from(blocks, 0, blocks.num_owned, block);
+      const std::size_t row = owned < blocks.num_owned && blocks.properties[owned].id.value == block
+                                  ? owned
+                                  : first_row_from(blocks, blocks.first_fixed(), blocks.num_rows(), block);
+      if (row < blocks.num_rows() && blocks.properties[row].id.value == block) {
+        mine.push_back({static_cast<std::int64_t>(m), point_row(blocks, row, monitors[m].point)});
       }
-    });
+      continue;
+    }
+    found_rows.clear();
+    frame.append(block, block + 1, found_rows, vertices);
+    for (const FrameRow &row : found_rows) {
+      mine.push_back({static_cast<std::int64_t>(m),
+                      {row.centroid, row.rotation, row.velocity, row.stress,
+                       Vec2{row.contact_force[0], row.contact_force[1]}}});
+    }
   }
   for (const auto &found : simulation.communicator().all_gather(mine)) {
     for (const Found &f : found) {

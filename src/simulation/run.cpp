@@ -277,9 +277,9 @@ private:
     const double cpu_start = cpu_seconds();
     if (output_due) {
       const int index = num_frames_++;
-      frames_->write(index, simulation_.time(), collect_frame(simulation_));
+      frames_->write(index, simulation_.time(), SimulationFrame(simulation_));
       if (simulation_.scene().output.contacts) {
-        frames_->write_contacts(index, simulation_.time(), collect_contacts(simulation_));
+        frames_->write_contacts(index, simulation_.time(), SimulationContacts(simulation_));
       }
       if (!bolts_at_start_.empty()) {
         frames_->write_bolts(index, simulation_.time(), collect_bolt_lines(simulation_));
@@ -303,6 +303,7 @@ private:
     const double cpu_start = cpu_seconds();
     const Clock::time_point start = Clock::now();
     on_root(communicator_, [&] { histories_->sync(); });
+    frames_->sync();
     RunFacts facts = simulation_.facts();
     ledger_->tell(facts);
     facts.frame_times = frames_->times();
@@ -372,6 +373,7 @@ private:
     for (const Diagnostic &warning : simulation_.warnings()) {
       log_->line(to_string(warning));
     }
+    frames_->sync();
     on_root(communicator_, [&] { write_summary(directory_, summary); });
     write_owners_of_blocks();
     log_->line("wall seconds   min      mean       max over ranks");

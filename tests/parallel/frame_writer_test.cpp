@@ -4,6 +4,7 @@
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/io/run_comparison.hpp"
 #include "parallel/shared_folder.hpp"
+#include "support/frame_data.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using testing::FrameData;
+using testing::GivenContacts;
+using testing::GivenFrame;
 using testing::SharedFolder;
 
 struct Block {
@@ -116,13 +120,13 @@ double time_of(int frame) {
 }
 
 void write_run(const Communicator &communicator, const fs::path &directory, std::int64_t num_blocks,
-               Owner owner) {
-  FrameWriter writer(communicator, directory, num_blocks);
+               Owner owner, std::int64_t ids_per_strip = 0) {
+  FrameWriter writer(communicator, directory, num_blocks, ids_per_strip);
   for (int frame = 0; frame < num_frames; ++frame) {
-    writer.write(frame, time_of(frame), my_blocks(communicator, num_blocks, frame, owner));
-    writer.write_contacts(frame, time_of(frame),
-                          frame == 0 ? std::vector<ContactRow>{}
-                                     : my_contacts(communicator, num_blocks, owner));
+    writer.write(frame, time_of(frame), GivenFrame(my_blocks(communicator, num_blocks, frame, owner)));
+    writer.write_contacts(
+        frame, time_of(frame),
+        GivenContacts(frame == 0 ? std::vector<ContactRow>{} : my_contacts(communicator, num_blocks, owner)));
   }
   EXPECT_TRUE(writer.all_writes_collective());
 }
@@ -206,7 +210,7 @@ TEST_P(Frames, HoldWhatTheRanksGaveWhateverTheirNumber) {
   const Communicator world = Communicator::world();
   const SharedFolder folder(world);
   const auto [name, num_blocks, owner] = GetParam();
-  write_run(world, folder.path("all"), num_blocks, owner);
+  write_run(world, folder.path("all"), num_blocks, owner, 8); // several strips
   if (world.is_root()) {
     for (int frame = 0; frame < num_frames; ++frame) {
       expect_frame(folder.path("all"), num_blocks, frame);
@@ -232,14 +236,14 @@ TEST(FrameTrouble, IsAFileErrorOnEveryRank) {
   const Communicator world = Communicator::world();
   const SharedFolder folder(world);
   FrameWriter writer(world, folder.path("run"), 20);
-  writer.write(0, 0.0, my_blocks(world, 20, 0, scattered));
+  writer.write(0, 0.0, GivenFrame(my_blocks(world, 20, 0, scattered)));
   world.barrier();
   if (world.is_root()) {
     fs::remove_all(folder.path("run"));
   }
   world.barrier();
   try {
-    writer.write(1, 0.1, my_blocks(world, 20, 1, scattered));
+    writer.write(1, 0.1, GivenFrame(my_blocks(world, 20, 1, scattered)));
     ADD_FAILURE() << "no folder, no complaint";
   } catch (const FileError &error) {
     EXPECT_NE(std::string(error.what()).find("frame_000001.hdf"), std::string::npos) << error.what();
@@ -259,7 +263,7 @@ TEST(FrameTrouble, BlockTwiceOrMissingIsRefusedOnEveryRank) {
   if (!data.rows.empty()) {
     data.rows[3].block = data.rows[4].block;
   }
-  EXPECT_THROW(writer.write(0, 0.0, data), InternalError);
+  EXPECT_THROW(writer.write(0, 0.0, GivenFrame(data)), InternalError);
 }
 
 TEST(Slabs, CoverTheIdsAndAgreeWithTheirOwners) {

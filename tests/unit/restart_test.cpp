@@ -10,6 +10,7 @@
 #include "gcpdda/model/fingerprint.hpp"
 #include "gcpdda/simulation/time_plan.hpp"
 #include "scene_texts.hpp"
+#include "support/frame_data.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"
 
@@ -25,6 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::file_text;
+using testing::FrameData;
+using testing::GivenContacts;
+using testing::GivenFrame;
 using testing::scene_of;
 
 const std::string scene_text = R"([run]
@@ -272,8 +276,8 @@ TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
     FrameWriter writer(Communicator::self(), folder_ / run, 2);
     HistoryWriter history(folder_ / run, {});
     for (int k = 0; k < 4; ++k) {
-      writer.write(k, 0.1 * k, two_triangles(k));
-      writer.write_contacts(k, 0.1 * k, {});
+      writer.write(k, 0.1 * k, GivenFrame(two_triangles(k)));
+      writer.write_contacts(k, 0.1 * k, GivenContacts({}));
       writer.write_bolts(k, 0.1 * k, one_bolt(k));
     }
     EXPECT_EQ(writer.times(), (std::vector<double>{0.0, 0.1, 0.2, 0.1 * 3}));
@@ -291,8 +295,8 @@ TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
                                       "frame_000002.txt", "topology_000000.h5"}));
   fs::remove(folder_ / "cut/frames/frame_000002.txt");
   for (int k = 2; k < 4; ++k) {
-    writer.write(k, 0.1 * k, two_triangles(k));
-    writer.write_contacts(k, 0.1 * k, {});
+    writer.write(k, 0.1 * k, GivenFrame(two_triangles(k)));
+    writer.write_contacts(k, 0.1 * k, GivenContacts({}));
     writer.write_bolts(k, 0.1 * k, one_bolt(k));
   }
   EXPECT_EQ(compare_runs(folder_ / "whole", folder_ / "cut"), std::vector<std::string>());

@@ -1,6 +1,7 @@
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/io/run_comparison.hpp"
+#include "support/frame_data.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +17,9 @@ namespace {
 const Monitor slider{"slider", 0, false, {}, {}};
 
 namespace fs = std::filesystem;
+using testing::FrameData;
+using testing::GivenContacts;
+using testing::GivenFrame;
 
 std::string read_text(const fs::path &path) {
   std::ifstream stream(path, std::ios::binary);
@@ -162,13 +166,13 @@ void write_small_run(const fs::path &directory, int num_contacts = 2) {
   data.rows[1].num_vertices = 3;
   data.rows[1].block = 1;
   data.rows[1].rotation = rotation_of_1;
-  writer.write(0, 0.0, data);
-  writer.write(1, time_of_1, data);
+  writer.write(0, 0.0, GivenFrame(data));
+  writer.write(1, time_of_1, GivenFrame(data));
   std::vector<ContactRow> contacts;
   for (int i = 0; i < num_contacts; ++i) {
     contacts.push_back({0, 1, i, 0, 1, {}, {}, 0, 0, 0, 0});
   }
-  writer.write_contacts(1, 1.0, contacts);
+  writer.write_contacts(1, 1.0, GivenContacts(contacts));
   HistoryWriter history(directory, {slider});
   history.write_monitor(0, 0.0, {});
   history.flush();

@@ -8,6 +8,7 @@
 #include "gcpdda/base/check.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -22,14 +23,20 @@ public:
 
   /// value must be finite.
   void add(double value) {
-    expect(std::isfinite(value), "summands are finite");
-    int exponent = 0;
-    // value = mantissa * 2^(exponent - 53), an integer of at most 53 bits
-    auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
-    const int shift = exponent - 53 + offset;
+    // |value| = mantissa * 2^(exponent - 1075), an integer of at most 53 bits: the fields of a binary64.
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    constexpr std::uint64_t hidden_bit = std::uint64_t{1} << 52;
+    const auto biased = static_cast<int>((bits >> 52) & 0x7ff);
+    expect(biased != 0x7ff, "summands are finite");
+    const int exponent = biased == 0 ? 1 : biased; // a subnormal has no hidden bit
+    const std::uint64_t mantissa = (bits & (hidden_bit - 1)) | (biased == 0 ? 0 : hidden_bit);
+    if (mantissa == 0) {
+      return;
+    }
+    const int shift = exponent - 1075 + offset;
     const auto limb = static_cast<std::size_t>(shift / 32);
-    const bool negative = mantissa < 0;
-    const auto magnitude = static_cast<Wide>(negative ? -mantissa : mantissa) << (shift % 32);
+    const bool negative = bits >> 63 != 0;
+    const auto magnitude = static_cast<Wide>(mantissa) << (shift % 32);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto digit =
           static_cast<std::int64_t>(static_cast<std::uint64_t>(magnitude >> (32 * k)) & 0xffffffffU);
@@ -64,8 +71,7 @@ public:
   }
 
 private:
-  static constexpr int offset =
-      1152; ///< puts the last bit of the smallest subnormal, 2^-1126 as frexp sees it, at or above bit 0
+  static constexpr int offset = 1152; ///< puts the last bit of the smallest subnormal, 2^-1074, above bit 0
   std::array<std::int64_t, num_limbs> limbs_{};
 };
 

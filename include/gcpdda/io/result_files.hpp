@@ -15,6 +15,8 @@
 
 namespace gcpdda {
 
+class CollectiveFile;
+
 /// One block's row of a frame, in plain data so that it can travel to the rank that writes its slab.
 struct FrameRow {
   std::int64_t block = 0;
@@ -29,11 +31,19 @@ struct FrameRow {
   std::array<double, 3> contact_force{}; ///< N/m, N/m, N
 };
 
-/// Rows of this rank in any order, ascending ids cost least; vertices are current positions, concatenated in
-/// the order of `rows`.
-struct FrameData {
-  std::vector<FrameRow> rows;
-  std::vector<Vec2> vertices;
+/// Where a frame's rows come from: each rank hands over those it has, strip by strip, so that nobody holds a
+/// frame of all blocks.
+class FrameSource {
+public:
+  FrameSource() = default;
+  virtual ~FrameSource() = default;
+  FrameSource(const FrameSource &) = delete;
+  FrameSource &operator=(const FrameSource &) = delete;
+  [[nodiscard]] virtual std::int64_t num_rows() const = 0;
+  /// This rank's rows with first <= block < last behind `rows`, their current vertices behind `vertices`, in
+  /// the same order. Not collective.
+  virtual void append(std::int64_t first, std::int64_t last, std::vector<FrameRow> &rows,
+                      std::vector<Vec2> &vertices) const = 0;
 };
 
 /// One touching region: a line from `begin` to `end` (its extent along the contact).
@@ -70,6 +80,19 @@ struct BoltFrame {
   std::vector<Vec2> points;
 };
 
+/// Where a frame's contacts come from.
+class ContactSource {
+public:
+  ContactSource() = default;
+  virtual ~ContactSource() = default;
+  ContactSource(const ContactSource &) = delete;
+  ContactSource &operator=(const ContactSource &) = delete;
+  /// This rank's regions with first <= lower < last. Not collective.
+  [[nodiscard]] virtual std::int64_t count(std::int64_t first, std::int64_t last) const = 0;
+  /// The same regions behind `rows`, by (lower, higher, position).
+  virtual void append(std::int64_t first, std::int64_t last, std::vector<ContactRow> &rows) const = 0;
+};
+
 /// Ids are cut into one contiguous slab per rank; a slab's owner writes its rows.
 /// First id of rank's slab, of num_blocks ids over num_ranks ranks; slab_begin(n, p, p) == n.
 std::int64_t slab_begin(std::int64_t num_blocks, int num_ranks, int rank);
@@ -80,19 +103,23 @@ int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block);
 class FrameWriter {
 public:
   /// @param num_blocks  all blocks of the scene, fixed ones included
-  FrameWriter(const Communicator &communicator, std::filesystem::path directory, std::int64_t num_blocks);
+  /// @param ids_per_strip  that a rank writes at a time, 0 for the usual number; files do not depend on it
+  FrameWriter(const Communicator &communicator, std::filesystem::path directory, std::int64_t num_blocks,
+              std::int64_t ids_per_strip = 0);
 
   /// Go on behind the first frames of a run: later ones are removed, the indices tell of those that stay.
   /// @param times  of frames 0, 1, ... that stay, s
   void continue_behind(const std::vector<double> &times);
 
-  /// Frame number `index` (0, 1, ...); every block is in exactly one rank's data. From one frame to the next
-  /// blocks may go, none may come.
-  void write(int index, double time, FrameData data);
-  /// The same for frames/contacts_<index>.hdf; every region is on exactly one rank.
-  void write_contacts(int index, double time, std::vector<ContactRow> rows);
+  /// Frame number `index` (0, 1, ...); exactly one rank has each block. From one frame to the next blocks may
+  /// go, none may come.
+  void write(int index, double time, const FrameSource &source);
+  /// The same for frames/contacts_<index>.hdf; exactly one rank has each region.
+  void write_contacts(int index, double time, const ContactSource &source);
   /// The same for frames/bolts_<index>.hdf, behind write(index), and bolts.hdf.series.
   void write_bolts(int index, double time, const BoltFrame &frame);
+  /// The indices are on the disk, too; frames always are. A restart makes them anew.
+  void sync() const;
   /// False once HDF5 has broken a collective write into independent ones: slow, and worth a test.
   [[nodiscard]] bool all_writes_collective() const { return all_writes_collective_; }
   /// Of all frames, s; frame k is the k-th.
@@ -104,16 +131,28 @@ private:
   Communicator communicator_;
   std::filesystem::path directory_;
   std::int64_t num_blocks_;
+  std::int64_t ids_per_strip_;
   /// What stays the same from one frame on, until blocks go.
   struct Topology {
     int first_frame = 0; ///< which its file is named after
     std::int64_t num_cells = 0;
     std::int64_t num_points = 0;
   };
+  /// What a strip of this rank's slab is of the last topology.
+  struct Place {
+    std::int64_t first_cell = 0;
+    std::int64_t num_cells = 0;
+    std::int64_t first_point = 0;
+    std::int64_t num_points = 0;
+  };
+  struct Cells;
   [[nodiscard]] const Topology &topology_of(int frame) const;
-  void write_topology(int index, const FrameData &slab);
+  [[nodiscard]] Cells survey(const FrameSource &source);
+  void write_topology(int index, const Cells &cells);
+  bool write_strips(CollectiveFile &file, const FrameSource &source) const;
 
   std::vector<Topology> topologies_; ///< by first frame
+  std::vector<Place> places_;        ///< empty where nobody has looked yet
   bool all_writes_collective_ = true;
   std::vector<std::pair<int, double>> frames_;
   std::vector<std::pair<int, double>> bolt_frames_; ///< known to the root

@@ -44,29 +44,42 @@ public:
   void broadcast(Bytes &bytes) const;
   void broadcast(std::string &text) const;
 
-  /// One message to each rank (send[r] to rank r); received[r] came from rank r.
-  [[nodiscard]] std::vector<Bytes> all_to_all(const std::vector<Bytes> &send) const;
   /// Everybody's bytes, by rank, on every rank.
   [[nodiscard]] std::vector<Bytes> all_gather(const Bytes &mine) const;
 
-  /// What a rank sends to itself is handed over as it stands.
+  /// One message to each rank (send[r] to rank r); received[r] came from rank r. Into vectors that keep their
+  /// room from call to call; those that were sent are empty then. What a rank sends to itself is handed over
+  /// as it stands.
+  template <class T>
+  void all_to_all(std::vector<std::vector<T>> &send, std::vector<std::vector<T>> &received) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::vector<std::size_t> sizes;
+    for (const std::vector<T> &message : send) {
+      sizes.push_back(message.size() * sizeof(T));
+    }
+    sizes = sizes_from_others(sizes);
+    received.resize(send.size());
+    std::vector<Message> leaving;
+    std::vector<Message> arriving;
+    for (std::size_t r = 0; r < send.size(); ++r) {
+      if (r == static_cast<std::size_t>(rank_)) {
+        received[r].swap(send[r]);
+        continue;
+      }
+      received[r].resize(sizes[r] / sizeof(T));
+      add_message(static_cast<int>(r), send[r], leaving);
+      add_message(static_cast<int>(r), received[r], arriving);
+    }
+    exchange(leaving, arriving);
+    for (std::vector<T> &message : send) {
+      message.clear();
+    }
+  }
   template <class T>
   [[nodiscard]] std::vector<std::vector<T>> all_to_all(std::vector<std::vector<T>> send) const {
-    std::vector<Bytes> raw(send.size());
-    for (std::size_t r = 0; r < send.size(); ++r) {
-      if (r != static_cast<std::size_t>(rank_)) {
-        raw[r] = to_bytes(send[r]);
-        send[r] = {};
-      }
-    }
-    raw = all_to_all(raw);
-    for (std::size_t r = 0; r < send.size(); ++r) {
-      if (r != static_cast<std::size_t>(rank_)) {
-        send[r] = from_bytes<T>(raw[r]);
-        raw[r] = {};
-      }
-    }
-    return send;
+    std::vector<std::vector<T>> received;
+    all_to_all(send, received);
+    return received;
   }
   template <class T> [[nodiscard]] std::vector<std::vector<T>> all_gather(const std::vector<T> &mine) const {
     std::vector<std::vector<T>> received;
@@ -93,6 +106,15 @@ private:
   struct Handle;
   explicit Communicator(std::shared_ptr<Handle> handle);
 
+  /// Bytes that each rank has for this one, of what this one has for each: none for itself.
+  [[nodiscard]] std::vector<std::size_t> sizes_from_others(const std::vector<std::size_t> &send) const;
+  /// Only those that hold something travel.
+  template <class T>
+  static void add_message(int peer, std::vector<T> &values, std::vector<Message> &messages) {
+    if (!values.empty()) {
+      messages.push_back({peer, std::as_writable_bytes(std::span(values))});
+    }
+  }
   template <class T> static Bytes to_bytes(const std::vector<T> &values) {
     static_assert(std::is_trivially_copyable_v<T>);
     Bytes bytes(values.size() * sizeof(T));

@@ -7,13 +7,41 @@
 
 namespace gcpdda {
 
-/// Rows of all blocks this rank writes: its owned ones, and the fixed ones of its id slab, whose reactions
-/// are summed in the order of the other blocks' ids. Collective. Forces and stresses belong to the last
-/// evaluation.
-FrameData collect_frame(const Simulation &simulation);
+/// What one mobile block puts on a fixed one.
+struct Reaction {
+  std::int64_t fixed = 0;
+  std::int64_t mobile = 0;
+  ContactPart part;
+};
 
-/// Touching regions this rank writes.
-std::vector<ContactRow> collect_contacts(const Simulation &simulation);
+/// Rows of all blocks this rank hands over: its owned ones, and the fixed ones of its id slab, whose
+/// reactions are summed in the order of the other blocks' ids. Construction is collective. Forces and
+/// stresses belong to the last evaluation.
+class SimulationFrame : public FrameSource {
+public:
+  explicit SimulationFrame(const Simulation &simulation);
+  [[nodiscard]] std::int64_t num_rows() const override;
+  void append(std::int64_t first, std::int64_t last, std::vector<FrameRow> &rows,
+              std::vector<Vec2> &vertices) const override;
+
+private:
+  const Simulation &simulation_;
+  std::vector<Reaction> reactions_; ///< by fixed id, then by mobile id
+};
+
+/// Touching regions this rank hands over.
+class SimulationContacts : public ContactSource {
+public:
+  explicit SimulationContacts(const Simulation &simulation) : simulation_(simulation) {}
+  [[nodiscard]] std::int64_t count(std::int64_t first, std::int64_t last) const override;
+  void append(std::int64_t first, std::int64_t last, std::vector<ContactRow> &rows) const override;
+
+private:
+  /// act(pair) for this rank's touching pairs with a lower id in the range.
+  template <class Act> void for_each_pair(std::int64_t first, std::int64_t last, Act act) const;
+
+  const Simulation &simulation_;
+};
 
 /// Rows of the bolts that are in place; complete on every rank. Collective.
 std::vector<BoltHistoryRow> collect_bolts(const Simulation &simulation);

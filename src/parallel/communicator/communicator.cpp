@@ -131,40 +131,17 @@ void Communicator::broadcast(std::string &text) const {
   broadcast_resizable(text, handle_->value);
 }
 
-std::vector<Bytes> Communicator::all_to_all(const std::vector<Bytes> &send) const {
+std::vector<std::size_t> Communicator::sizes_from_others(const std::vector<std::size_t> &send) const {
   const auto num_ranks = static_cast<std::size_t>(size_);
   expect(send.size() == num_ranks, "all_to_all: one message for each rank");
   std::vector<int> send_sizes(num_ranks);
   std::vector<int> receive_sizes(num_ranks);
-  const auto own = static_cast<std::size_t>(rank_);
   for (std::size_t r = 0; r < num_ranks; ++r) {
-    send_sizes[r] = r == own ? 0 : count_of(send[r].size());
+    send_sizes[r] = r == static_cast<std::size_t>(rank_) ? 0 : count_of(send[r]);
   }
   check(MPI_Alltoall(send_sizes.data(), 1, MPI_INT, receive_sizes.data(), 1, MPI_INT, handle_->value),
         "MPI_Alltoall");
-
-  // Only non-empty messages travel: migration has few partners, Alltoallv would visit them all.
-  std::vector<Bytes> received(num_ranks);
-  std::vector<MPI_Request> requests;
-  requests.reserve(2 * num_ranks);
-  for (std::size_t r = 0; r < num_ranks; ++r) {
-    if (receive_sizes[r] > 0) {
-      received[r].resize(static_cast<std::size_t>(receive_sizes[r]));
-      check(MPI_Irecv(received[r].data(), receive_sizes[r], MPI_BYTE, static_cast<int>(r), data_tag,
-                      handle_->value, &requests.emplace_back(MPI_REQUEST_NULL)),
-            "MPI_Irecv");
-    }
-  }
-  for (std::size_t r = 0; r < num_ranks; ++r) {
-    if (send_sizes[r] > 0) {
-      check(MPI_Isend(send[r].data(), send_sizes[r], MPI_BYTE, static_cast<int>(r), data_tag, handle_->value,
-                      &requests.emplace_back(MPI_REQUEST_NULL)),
-            "MPI_Isend");
-    }
-  }
-  received[own] = send[own];
-  wait_all(requests);
-  return received;
+  return {receive_sizes.begin(), receive_sizes.end()};
 }
 
 std::vector<Bytes> Communicator::all_gather(const Bytes &mine) const {
