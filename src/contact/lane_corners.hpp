@@ -51,13 +51,13 @@ template <std::size_t lines>
 }
 
 /// The first end of two edges of `own` inside `other`.
-template <std::size_t edges, std::size_t lines>
+template <std::size_t edges>
 [[gnu::always_inline]] inline Mask find_corner(const LaneSide &own, const LaneSide &other,
                                                LaneCorner &corner) {
   Mask found{};
   each<edges - 1>([&](auto before) {
     constexpr std::size_t k = before + 1;
-    const Mask here = is_inside<lines>(own.vertex[k], other) & !found;
+    const Mask here = is_inside<edges>(own.vertex[k], other) & !found;
     if constexpr (k == 1) {
       corner.vertex = own.vertex[1];
       for (std::size_t i = 0; i < 2; ++i) {
@@ -172,11 +172,10 @@ struct BeyondLine {
   Mask clearly{}; ///< by more than rounding
 };
 
-template <std::size_t edges, std::size_t lines>
-BeyondLine find_line_between(const LaneSide &own, const LaneSide &other) {
+template <std::size_t edges> BeyondLine find_line_between(const LaneSide &own, const LaneSide &other) {
   const Lanes rounding = Lanes(1e-9) * (other.high.x - other.low.x + other.high.y - other.low.y);
   BeyondLine beyond;
-  each<lines>([&](auto j) __attribute__((always_inline)) {
+  each<edges>([&](auto j) __attribute__((always_inline)) {
     Lanes deepest = dot(other.slope[j], other.vertex[j] - own.vertex[0]);
     each<edges>([&](auto k) __attribute__((always_inline)) {
       deepest = max(deepest, dot(other.slope[j], other.vertex[j] - own.vertex[k + 1]));
@@ -189,67 +188,64 @@ BeyondLine find_line_between(const LaneSide &own, const LaneSide &other) {
 
 /// Where evaluate() would find no pressure either: no edge of either block has an end below all lines of the
 /// other one, or a line keeps them apart whatever rounding does.
-template <std::size_t lower_edges, std::size_t higher_edges>
-Mask are_apart(const LaneSide &lower, const LaneSide &higher) {
-  const BeyondLine first = find_line_between<lower_edges, higher_edges>(lower, higher);
-  const BeyondLine second = find_line_between<higher_edges, lower_edges>(higher, lower);
+template <std::size_t edges> Mask are_apart(const LaneSide &lower, const LaneSide &higher) {
+  const BeyondLine first = find_line_between<edges>(lower, higher);
+  const BeyondLine second = find_line_between<edges>(higher, lower);
   return (first.all & second.all) | first.clearly | second.clearly;
 }
 
 /// The boundary of an overlap of two corners: two stretches of each.
-template <std::size_t lower_edges, std::size_t higher_edges> struct CornerOverlap {
+template <std::size_t edges> struct CornerOverlap {
   LaneCorner lower;
   LaneCorner higher;
-  std::array<CornerStretch<higher_edges>, 2> on_lower;
-  std::array<CornerStretch<lower_edges>, 2> on_higher;
+  std::array<CornerStretch<edges>, 2> on_lower;
+  std::array<CornerStretch<edges>, 2> on_higher;
 
   /// True where the blocks overlap so; elsewhere nothing of this means anything.
   Mask find(const LaneSide &lower_side, const LaneSide &higher_side);
 
 private:
-  template <std::size_t lines>
   static Mask find_stretches(const LaneCorner &own, const LaneSide &other_side, const LaneCorner &other,
-                             const LaneVec &begin, std::array<CornerStretch<lines>, 2> &stretches);
+                             const LaneVec &begin, std::array<CornerStretch<edges>, 2> &stretches);
 };
 
-template <std::size_t lower_edges, std::size_t higher_edges>
-template <std::size_t lines>
+template <std::size_t edges>
 [[gnu::always_inline]] inline Mask
-CornerOverlap<lower_edges, higher_edges>::find_stretches(const LaneCorner &own, const LaneSide &other_side,
-                                                         const LaneCorner &other, const LaneVec &begin,
-                                                         std::array<CornerStretch<lines>, 2> &stretches) {
+CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneSide &other_side,
+                                     const LaneCorner &other, const LaneVec &begin,
+                                     std::array<CornerStretch<edges>, 2> &stretches) {
   Mask valid = own.vertex.x == own.vertex.x;
-  FallingDepths<lines> lower;
-  each<lines>([&](auto j) __attribute__((always_inline)) {
+  FallingDepths<edges> lower;
+  each<edges>([&](auto j) __attribute__((always_inline)) {
     // A line of the corner is measured from there: both ends are as near as the contact is short.
     const LaneVec anchor =
-        lines == 2 ? other.vertex : select(other.has_line[j], other.vertex, other_side.vertex[j]);
+        edges == 2 ? other.vertex : select(other.has_line[j], other.vertex, other_side.vertex[j]);
     lower.depth[j] = dot(other_side.slope[j], anchor - own.vertex);
     valid = valid & (lower.depth[j] > 0.0);
   });
   each<2>([&](auto i) __attribute__((always_inline)) {
-    CornerStretch<lines> &stretch = stretches[i];
+    CornerStretch<edges> &stretch = stretches[i];
     stretch.begin = begin;
     stretch.direction = own.away(i);
-    each<lines>([&](auto j) __attribute__((always_inline)) {
+    each<edges>([&](auto j) __attribute__((always_inline)) {
       lower.fall[j] = dot(other_side.slope[j], stretch.direction);
     });
-    valid = valid & integrate_stretch<lines>(lower, other, stretch);
+    valid = valid & integrate_stretch<edges>(lower, other, stretch);
     valid = valid & (stretch.length <= own.length[i]);
   });
   return valid;
 }
 
-template <std::size_t lower_edges, std::size_t higher_edges>
-Mask CornerOverlap<lower_edges, higher_edges>::find(const LaneSide &lower_side, const LaneSide &higher_side) {
-  const Mask has_both = find_corner<lower_edges, higher_edges>(lower_side, higher_side, lower) &
-                        find_corner<higher_edges, lower_edges>(higher_side, lower_side, higher);
+template <std::size_t edges>
+Mask CornerOverlap<edges>::find(const LaneSide &lower_side, const LaneSide &higher_side) {
+  const Mask has_both = find_corner<edges>(lower_side, higher_side, lower) &
+                        find_corner<edges>(higher_side, lower_side, higher);
   if (!has_both.any()) {
     return has_both;
   }
-  const Mask on_first = find_stretches<higher_edges>(lower, higher_side, higher, {0.0, 0.0}, on_lower);
+  const Mask on_first = find_stretches(lower, higher_side, higher, {0.0, 0.0}, on_lower);
   return has_both & on_first &
-         find_stretches<lower_edges>(higher, lower_side, lower, higher.vertex - lower.vertex, on_higher);
+         find_stretches(higher, lower_side, lower, higher.vertex - lower.vertex, on_higher);
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

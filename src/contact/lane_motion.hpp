@@ -5,6 +5,7 @@
 #include "lane_stretch.hpp"
 #include "plain_batch.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -45,11 +46,12 @@ struct LaneBlocks {
   return LaneVec::of([&](std::size_t i) { return vertex + blocks.chain[i][k]; });
 }
 
+/// Edge `number` of the chains as edge k of the side.
 [[gnu::always_inline]] inline void load_edge(const BlockSystem &system, const LaneBlocks &blocks,
-                                             std::size_t k, LaneSide &side) {
+                                             std::size_t number, std::size_t k, LaneSide &side) {
   std::array<std::size_t, num_lanes> at;
   for (std::size_t i = 0; i < num_lanes; ++i) {
-    at[i] = blocks.chain[i][k];
+    at[i] = blocks.chain[i][number];
   }
   const Vec2 *vertex = system.vertex.data();
   const Vec2 *normal = system.normal.data();
@@ -61,7 +63,9 @@ struct LaneBlocks {
 }
 
 /// Depths inside a deformable block are those in its reference polygon over J.
-inline void load_deformed_slopes(const PlainScene &scene, const LaneBlocks &blocks, LaneSide &side) {
+/// Edges of the side behind number `last` are copies of it.
+inline void load_deformed_slopes(const PlainScene &scene, const LaneBlocks &blocks, std::size_t last,
+                                 LaneSide &side) {
   static constexpr Mat2 identity = Mat2::identity();
   const BlockSystem &system = scene.system;
   std::array<const Vec2 *, num_lanes> normals;
@@ -73,7 +77,8 @@ inline void load_deformed_slopes(const PlainScene &scene, const LaneBlocks &bloc
   }
   const LaneMat of_normals = LaneMat::of([&](std::size_t i) { return slopes[i]; });
   for (std::size_t k = 0; k < side.edges; ++k) {
-    side.slope[k] = of_normals(LaneVec::of([&](std::size_t i) { return normals[i] + blocks.chain[i][k]; }));
+    side.slope[k] = of_normals(
+        LaneVec::of([&](std::size_t i) { return normals[i] + blocks.chain[i][std::min(k, last)]; }));
   }
 }
 

@@ -34,8 +34,7 @@ private:
   void integrate();
   void measure(const LaneConstants &constants);
   template <class AnyMotion> void add_dashpot(const LaneConstants &constants, const AnyMotion &motion);
-  template <std::size_t lower_edges, std::size_t higher_edges>
-  Corners evaluate_corners(const PlainScene &scene, const Pairs &pairs);
+  template <std::size_t edges> Corners evaluate_corners(const PlainScene &scene, const Pairs &pairs);
   template <class Overlap> void measure(const Overlap &overlap, const LaneConstants &constants);
   template <class Overlap, class AnyMotion>
   void add_dashpot(const Overlap &overlap, const LaneConstants &constants, const AnyMotion &motion);
@@ -202,13 +201,13 @@ inline unsigned LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &l
   const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
     side.edges = edges;
     for (std::size_t k = 0; k < edges; ++k) {
-      load_edge(scene.system, blocks, k, side);
+      load_edge(scene.system, blocks, k, k, side);
     }
     side.vertex[edges] =
         LaneVec::of([&](std::size_t i) { return &scene.system.vertex[blocks.chain[i][edges]]; });
     load_box(blocks, side);
     if (pairs.first.is_deformable) {
-      load_deformed_slopes(scene, blocks, side);
+      load_deformed_slopes(scene, blocks, edges - 1, side);
     }
   };
   load(pairs.lower, pairs.first.lower_edges, lower_);
@@ -278,27 +277,33 @@ void LaneBatch::add_dashpot(const Overlap &overlap, const LaneConstants &constan
   regions_.add_dashpot(dashpot.total, dashpot.moment, motion);
 }
 
-template <std::size_t lower_edges, std::size_t higher_edges>
+// The shorter chain goes on with copies of its last edge: no line is next to itself, and a corner is found
+// where it is first.
+template <std::size_t edges>
 PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const Pairs &pairs) {
   LaneSide lower;
   LaneSide higher;
-  each<lower_edges>([&](auto k) { load_edge(scene.system, pairs.lower, k, lower); });
-  each<higher_edges>([&](auto k) { load_edge(scene.system, pairs.higher, k, higher); });
+  const std::size_t last_lower = pairs.first.lower_edges - std::size_t{1};
+  const std::size_t last_higher = pairs.first.higher_edges - std::size_t{1};
+  each<edges>([&](auto k) {
+    load_edge(scene.system, pairs.lower, std::min<std::size_t>(k, last_lower), k, lower);
+    load_edge(scene.system, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
+  });
   load_box(pairs.lower, lower);
   load_box(pairs.higher, higher);
   if (pairs.first.is_deformable) {
-    lower.edges = lower_edges;
-    higher.edges = higher_edges;
-    load_deformed_slopes(scene, pairs.lower, lower);
-    load_deformed_slopes(scene, pairs.higher, higher);
+    lower.edges = edges;
+    higher.edges = edges;
+    load_deformed_slopes(scene, pairs.lower, last_lower, lower);
+    load_deformed_slopes(scene, pairs.higher, last_higher, higher);
   }
-  CornerOverlap<lower_edges, higher_edges> overlap;
+  CornerOverlap<edges> overlap;
   const Mask valid = overlap.find(lower, higher);
   Corners result;
   if ((!valid).any()) {
-    lower.vertex[lower_edges] = load_vertex(scene.system, pairs.lower, lower_edges);
-    higher.vertex[higher_edges] = load_vertex(scene.system, pairs.higher, higher_edges);
-    const Mask apart = are_apart<lower_edges, higher_edges>(lower, higher);
+    lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.lower_edges);
+    higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.higher_edges);
+    const Mask apart = are_apart<edges>(lower, higher);
     result.apart = (apart & !valid).by_lane();
     if (!valid.any()) {
       return result;
@@ -327,17 +332,15 @@ PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const P
 
 inline PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
-  Corners result;
-  const auto with = [&](auto lower) {
-    constexpr std::size_t more = most_corner_edges - 1;
-    each<more>([&](auto higher) {
-      if (pairs.first.lower_edges == lower && pairs.first.higher_edges == higher + 2) {
-        result = evaluate_corners<lower, higher + 2>(scene, pairs);
-      }
-    });
-  };
-  each<most_corner_edges - 1>([&](auto lower) { with(std::integral_constant<std::size_t, lower + 2>{}); });
-  return result;
+  static_assert(most_corner_edges == 4);
+  switch (std::max(pairs.first.lower_edges, pairs.first.higher_edges)) {
+  case 2:
+    return evaluate_corners<2>(scene, pairs);
+  case 3:
+    return evaluate_corners<3>(scene, pairs);
+  default:
+    return evaluate_corners<4>(scene, pairs);
+  }
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

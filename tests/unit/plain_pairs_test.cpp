@@ -170,7 +170,7 @@ JointLaws laws_by_edge(const JointLaws &one, BlockSystem &system) {
 void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = false,
                       std::size_t most_edges = most_plain_edges) {
   std::mt19937 engine(91);
-  constexpr int count = 300;
+  constexpr int count = 150;
   const double stiffness = 1e6;
   BlockSystem system = couples(engine, count, most_edges, is_deformable);
   deform(engine, system);
@@ -221,7 +221,7 @@ void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = f
   }
   EXPECT_GT(touching, 4 * count / 3);
   EXPECT_GT(sliding, count / 20);
-  EXPECT_EQ(deforming > 100, is_deformable(3));
+  EXPECT_EQ(deforming > count / 3, is_deformable(3));
   EXPECT_EQ(laws.size() > 2, with_families);
 }
 

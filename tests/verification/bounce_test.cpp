@@ -97,10 +97,10 @@ TEST(Bounce, SingleImpact) {
 TEST(Bounce, TenThousandBounces) {
   struct Case {
     double w, limit;
-    int phases; // of many short steps fewer, unless all may take its time
+    int phases; // fewer, unless all may take its time
   };
-  for (const Case c :
-       {Case{0.05, 0.02, full_size() ? num_phases : num_phases / 3}, Case{0.1, 0.2, num_phases}}) {
+  const int some = full_size() ? num_phases : num_phases / 3;
+  for (const Case c : {Case{0.05, 0.02, some}, Case{0.1, 0.2, some}}) {
     double worst = 0.0;
     for (int phase = 0; phase < c.phases; ++phase) {
       worst = std::max(worst, std::abs(std::log(energy_after(c.w, 10.0 + 1.7 * phase / c.phases, 10000))));
