@@ -14,8 +14,7 @@
 //    W likewise,
 //  - each of the four edges leaves the other block before it ends,
 //  - and across an edge of the other corner. Then X on an edge of W is where that edge leaves V's block: a
-//  line
-//    leaves a convex block once.
+//    line leaves a convex block once.
 // Edges left out of a chain lie deeper than another one all over the contact and change none of these
 // answers, and no bit of the integrals: whether a pair is computed so does not depend on the neighbourhood's
 // refreshes, as it must be, since the last bits of both ways differ.
