@@ -3,6 +3,7 @@
 
 #include "support/blocks.hpp"
 #include "support/scenes.hpp"
+#include "support/thinning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -170,7 +171,7 @@ JointLaws laws_by_edge(const JointLaws &one, BlockSystem &system) {
 void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = false,
                       std::size_t most_edges = most_plain_edges) {
   std::mt19937 engine(91);
-  constexpr int count = 150;
+  constexpr int count = thinning > 1 ? 100 : 150;
   const double stiffness = 1e6;
   BlockSystem system = couples(engine, count, most_edges, is_deformable);
   deform(engine, system);
@@ -299,7 +300,7 @@ TEST(PlainPairs, WiderRegistersChangeNoBit) {
 
 void expect_same_bits_without_some_edges(std::size_t most_edges) {
   std::mt19937 engine(92);
-  constexpr int count = 200;
+  constexpr int count = thinning > 1 ? 80 : 200;
   BlockSystem system = couples(engine, count, most_edges, some_deform);
   deform(engine, system);
   ContactBench whole(system, one_law(1e6, 0.3, 10.0), 0.1);
