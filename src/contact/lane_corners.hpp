@@ -101,8 +101,8 @@ template <std::size_t lines> struct CornerStretch {
   }
 };
 
-/// The lines of a block from a corner of the other one on along an edge: depth there, by how much it falls in
-/// a metre, and which lines are those of the block's own corner.
+/// Depths below the lines of a block at a corner of the other one, and by how much they fall in a metre along
+/// an edge away from it.
 template <std::size_t lines> struct FallingDepths {
   PerLine<lines> depth;
   PerLine<lines> fall;
