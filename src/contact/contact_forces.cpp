@@ -17,7 +17,7 @@ namespace gcpdda {
 namespace {
 
 /// Pairs between asking for what a pair alone has and using it; more than a batch, less than fills a cache.
-constexpr std::size_t ahead = 12;
+constexpr std::size_t ahead = 16;
 
 void fetch_pair(const Candidates &candidates, const ContactHistory &history, std::uint32_t pair) {
   prefetch(&candidates.pairs[pair], sizeof(CandidatePair));
@@ -96,7 +96,7 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   static_assert(std::tuple_size_v<decltype(own_)> == most_lanes);
   PlainLanes lanes;
   lanes.count = entries.size();
-  for (std::size_t i = 0; i < most_lanes; ++i) {
+  for (std::size_t i = 0; i < batch_->width(); ++i) {
     const PlainPair &plain = scene.candidates.plain[entries[std::min(i, entries.size() - 1)]];
     const RegionRange &old = scene.history.ranges[plain.pair];
     lanes.pair[i] = &plain;

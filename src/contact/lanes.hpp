@@ -10,25 +10,36 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#if GCPDDA_NUM_LANES == 8
+#include <immintrin.h>
+#endif
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
 constexpr std::size_t num_lanes = GCPDDA_NUM_LANES;
 
 using LaneValues = double __attribute__((vector_size(num_lanes * sizeof(double))));
+#if GCPDDA_NUM_LANES == 8 // registers of masks have a bit a lane
+using LaneMask = __mmask8;
+// Intrinsics without a mask are warned about (g++ bug 105593).
+constexpr LaneMask all_lanes = 0xff;
+#else
 using LaneMask = decltype(LaneValues{} < LaneValues{});
+#endif
 
 /// True in the lanes where a comparison holds.
 struct Mask {
   LaneMask bits;
 
-  [[gnu::always_inline]] friend Mask operator&(const Mask &a, const Mask &b) { return {a.bits & b.bits}; }
-  [[gnu::always_inline]] friend Mask operator|(const Mask &a, const Mask &b) { return {a.bits | b.bits}; }
-  [[gnu::always_inline]] friend Mask operator^(const Mask &a, const Mask &b) { return {a.bits ^ b.bits}; }
-  [[gnu::always_inline]] friend Mask operator!(const Mask &a) { return {~a.bits}; }
+  [[gnu::always_inline]] friend Mask operator&(const Mask &a, const Mask &b) { return of(a.bits & b.bits); }
+  [[gnu::always_inline]] friend Mask operator|(const Mask &a, const Mask &b) { return of(a.bits | b.bits); }
+  [[gnu::always_inline]] friend Mask operator^(const Mask &a, const Mask &b) { return of(a.bits ^ b.bits); }
+  [[gnu::always_inline]] friend Mask operator!(const Mask &a) { return of(~a.bits); }
   /// Bit i is lane i.
   [[nodiscard, gnu::always_inline]] unsigned by_lane() const {
-#if defined(__x86_64__) && GCPDDA_NUM_LANES == 4
+#if GCPDDA_NUM_LANES == 8
+    return bits;
+#elif defined(__x86_64__) && GCPDDA_NUM_LANES == 4
     return static_cast<unsigned>(__builtin_ia32_movmskpd256(reinterpret_cast<LaneValues>(bits)));
 #elif defined(__x86_64__)
     return static_cast<unsigned>(__builtin_ia32_movmskpd(reinterpret_cast<LaneValues>(bits)));
@@ -42,6 +53,11 @@ struct Mask {
   }
   [[nodiscard, gnu::always_inline]] bool any() const {
     return by_lane() != 0;
+  }
+
+private:
+  template <class Bits> [[gnu::always_inline]] static Mask of(const Bits &bits) {
+    return {static_cast<LaneMask>(bits)};
   }
 };
 
@@ -75,22 +91,36 @@ public:
   }
   [[gnu::always_inline]] Lanes &operator+=(const Lanes &b) { return *this = *this + b; }
 
+#if GCPDDA_NUM_LANES == 8
+  [[gnu::always_inline]] friend Mask operator<(const Lanes &a, const Lanes &b) {
+    return {_mm512_cmp_pd_mask(a.values_, b.values_, _CMP_LT_OS)};
+  }
+  [[gnu::always_inline]] friend Mask operator<=(const Lanes &a, const Lanes &b) {
+    return {_mm512_cmp_pd_mask(a.values_, b.values_, _CMP_LE_OS)};
+  }
+  [[gnu::always_inline]] friend Mask operator==(const Lanes &a, const Lanes &b) {
+    return {_mm512_cmp_pd_mask(a.values_, b.values_, _CMP_EQ_OQ)};
+  }
+  /// a where the mask is true, else b.
+  [[gnu::always_inline]] friend Lanes select(const Mask &mask, const Lanes &a, const Lanes &b) {
+    return Lanes(_mm512_mask_blend_pd(mask.bits, b.values_, a.values_));
+  }
+  [[gnu::always_inline]] friend Lanes min(const Lanes &a, const Lanes &b) {
+    return Lanes(_mm512_mask_min_pd(a.values_, all_lanes, a.values_, b.values_));
+  }
+  [[gnu::always_inline]] friend Lanes max(const Lanes &a, const Lanes &b) {
+    return Lanes(_mm512_mask_max_pd(a.values_, all_lanes, a.values_, b.values_));
+  }
+#else
   [[gnu::always_inline]] friend Mask operator<(const Lanes &a, const Lanes &b) {
     return {a.values_ < b.values_};
-  }
-  [[gnu::always_inline]] friend Mask operator>(const Lanes &a, const Lanes &b) {
-    return {a.values_ > b.values_};
   }
   [[gnu::always_inline]] friend Mask operator<=(const Lanes &a, const Lanes &b) {
     return {a.values_ <= b.values_};
   }
-  [[gnu::always_inline]] friend Mask operator>=(const Lanes &a, const Lanes &b) {
-    return {a.values_ >= b.values_};
-  }
   [[gnu::always_inline]] friend Mask operator==(const Lanes &a, const Lanes &b) {
     return {a.values_ == b.values_};
   }
-
   /// a where the mask is true, else b.
   [[gnu::always_inline]] friend Lanes select(const Mask &mask, const Lanes &a, const Lanes &b) {
     return Lanes(mask.bits ? a.values_ : b.values_);
@@ -101,12 +131,23 @@ public:
   [[gnu::always_inline]] friend Lanes max(const Lanes &a, const Lanes &b) {
     return Lanes(a.values_ > b.values_ ? a.values_ : b.values_);
   }
+#endif
+  [[gnu::always_inline]] friend Mask operator>(const Lanes &a, const Lanes &b) {
+    return b < a;
+  }
+  [[gnu::always_inline]] friend Mask operator>=(const Lanes &a, const Lanes &b) {
+    return b <= a;
+  }
   [[gnu::always_inline]] friend Lanes clamp(const Lanes &a, const Lanes &low, const Lanes &high) {
     return min(max(a, low), high);
   }
-  [[gnu::always_inline]] friend Lanes abs(const Lanes &a) { return max(a, -a); }
+  [[gnu::always_inline]] friend Lanes abs(const Lanes &a) {
+    return max(a, -a);
+  }
   [[gnu::always_inline]] friend Lanes sqrt(const Lanes &a) {
-#if defined(__x86_64__) && GCPDDA_NUM_LANES == 4
+#if GCPDDA_NUM_LANES == 8
+    return Lanes(_mm512_mask_sqrt_pd(a.values_, all_lanes, a.values_));
+#elif defined(__x86_64__) && GCPDDA_NUM_LANES == 4
     return Lanes(__builtin_ia32_sqrtpd256(a.values_));
 #elif defined(__x86_64__)
     return Lanes(__builtin_ia32_sqrtpd(a.values_));
@@ -122,6 +163,25 @@ private:
   LaneValues values_;
 };
 
+#if GCPDDA_NUM_LANES == 8
+/// One after the other.
+using TwoValues = double __attribute__((vector_size(2 * sizeof(double))));
+[[gnu::always_inline]] inline __m256d joined(const TwoValues &a, const TwoValues &b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+}
+[[gnu::always_inline]] inline LaneValues joined(const __m256d &a, const __m256d &b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+/// a[0], b[0], a[2], b[2] ...
+[[gnu::always_inline]] inline LaneValues interleaved_even(const LaneValues &a, const LaneValues &b) {
+  return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+}
+/// a[1], b[1], a[3], b[3] ...
+[[gnu::always_inline]] inline LaneValues interleaved_odd(const LaneValues &a, const LaneValues &b) {
+  return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+}
+#endif
+
 /// Points or directions, one in each lane.
 struct LaneVec {
   Lanes x;
@@ -135,7 +195,14 @@ struct LaneVec {
       std::memcpy(&point, get(i), sizeof(point));
       return point;
     };
-#if GCPDDA_NUM_LANES == 4
+#if GCPDDA_NUM_LANES == 8
+    const auto load_four = [&](std::size_t first) __attribute__((always_inline)) {
+      return joined(joined(load(first), load(first + 2)), joined(load(first + 4), load(first + 6)));
+    };
+    const LaneValues even = load_four(0);
+    const LaneValues odd = load_four(1);
+    return {Lanes(interleaved_even(even, odd)), Lanes(interleaved_odd(even, odd))};
+#elif GCPDDA_NUM_LANES == 4
     const LaneValues even = __builtin_shufflevector(load(0), load(2), 0, 1, 2, 3);
     const LaneValues odd = __builtin_shufflevector(load(1), load(3), 0, 1, 2, 3);
     return {Lanes(__builtin_shufflevector(even, odd, 0, 4, 2, 6)),
@@ -182,7 +249,24 @@ using FourLanes = std::array<Lanes, 4>;
 
 /// Lane i holds those from get(i) on.
 template <class Get> [[gnu::always_inline]] inline FourLanes load_by_lane(Get &&get) {
-#if GCPDDA_NUM_LANES == 4
+#if GCPDDA_NUM_LANES == 8
+  const auto load = [&](std::size_t low, std::size_t high) __attribute__((always_inline)) {
+    return joined(_mm256_loadu_pd(get(low)), _mm256_loadu_pd(get(high)));
+  };
+  const LaneValues rows_02 = load(0, 2);
+  const LaneValues rows_13 = load(1, 3);
+  const LaneValues rows_46 = load(4, 6);
+  const LaneValues rows_57 = load(5, 7);
+  // Two lanes at a time: entries 0 and 2, then 1 and 3.
+  const LaneValues even_0123 = interleaved_even(rows_02, rows_13);
+  const LaneValues even_4567 = interleaved_even(rows_46, rows_57);
+  const LaneValues odd_0123 = interleaved_odd(rows_02, rows_13);
+  const LaneValues odd_4567 = interleaved_odd(rows_46, rows_57);
+  return {Lanes(__builtin_shufflevector(even_0123, even_4567, 0, 1, 4, 5, 8, 9, 12, 13)),
+          Lanes(__builtin_shufflevector(odd_0123, odd_4567, 0, 1, 4, 5, 8, 9, 12, 13)),
+          Lanes(__builtin_shufflevector(even_0123, even_4567, 2, 3, 6, 7, 10, 11, 14, 15)),
+          Lanes(__builtin_shufflevector(odd_0123, odd_4567, 2, 3, 6, 7, 10, 11, 14, 15))};
+#elif GCPDDA_NUM_LANES == 4
   using Unaligned [[gnu::may_alias, gnu::aligned(sizeof(double))]] = LaneValues;
   const LaneValues row[] = {
       *reinterpret_cast<const Unaligned *>(get(0)), *reinterpret_cast<const Unaligned *>(get(1)),
@@ -206,6 +290,23 @@ template <class Get> [[gnu::always_inline]] inline FourLanes load_by_lane(Get &&
 [[gnu::always_inline]] inline void store_by_lane(const std::array<std::byte *, num_lanes> &to,
                                                  std::size_t offset, const Lanes &a, const Lanes &b,
                                                  const Lanes &c, const Lanes &d) {
+#if GCPDDA_NUM_LANES == 8
+  const auto put = [&](std::size_t low, std::size_t high, const LaneValues &rows)
+      __attribute__((always_inline)) {
+    _mm256_storeu_pd(reinterpret_cast<double *>(to[low] + offset),
+                     __builtin_shufflevector(rows, rows, 0, 1, 2, 3));
+    _mm256_storeu_pd(reinterpret_cast<double *>(to[high] + offset),
+                     __builtin_shufflevector(rows, rows, 4, 5, 6, 7));
+  };
+  const LaneValues ab_even = interleaved_even(a.values(), b.values());
+  const LaneValues ab_odd = interleaved_odd(a.values(), b.values());
+  const LaneValues cd_even = interleaved_even(c.values(), d.values());
+  const LaneValues cd_odd = interleaved_odd(c.values(), d.values());
+  put(0, 2, __builtin_shufflevector(ab_even, cd_even, 0, 1, 8, 9, 2, 3, 10, 11));
+  put(1, 3, __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 8, 9, 2, 3, 10, 11));
+  put(4, 6, __builtin_shufflevector(ab_even, cd_even, 4, 5, 12, 13, 6, 7, 14, 15));
+  put(5, 7, __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
+#else
   using Unaligned [[gnu::may_alias, gnu::aligned(sizeof(double))]] = LaneValues;
   const auto put = [&](std::size_t lane, const LaneValues &row, std::size_t behind = 0)
       __attribute__((always_inline)) {
@@ -225,6 +326,7 @@ template <class Get> [[gnu::always_inline]] inline FourLanes load_by_lane(Get &&
   put(0, __builtin_shufflevector(c.values(), d.values(), 0, 2), sizeof(LaneValues));
   put(1, __builtin_shufflevector(a.values(), b.values(), 1, 3), 0);
   put(1, __builtin_shufflevector(c.values(), d.values(), 1, 3), sizeof(LaneValues));
+#endif
 #endif
 }
 

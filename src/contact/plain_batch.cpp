@@ -1,4 +1,7 @@
-#if defined(__AVX__)
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define GCPDDA_INSTRUCTIONS widest
+#define GCPDDA_NUM_LANES 8
+#elif defined(__AVX__)
 #define GCPDDA_INSTRUCTIONS wide
 #define GCPDDA_NUM_LANES 4
 #else
@@ -7,17 +10,21 @@
 #endif
 #include "plain_kernel.hpp"
 
+#include <utility>
+
 namespace gcpdda {
 
 const RegionMemory PlainLanes::no_memory{.slip = -1.0, .position = {}, .dilation = {}};
 
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions) {
+  std::unique_ptr<PlainBatch> batch;
   if (instructions == Instructions::widest) {
-    if (std::unique_ptr<PlainBatch> wide = make_avx2_batch()) {
-      return wide;
-    }
+    batch = make_avx512_batch();
   }
-  return std::make_unique<GCPDDA_INSTRUCTIONS::LaneBatch>();
+  if (!batch && instructions != Instructions::portable) {
+    batch = make_avx2_batch();
+  }
+  return batch ? std::move(batch) : std::make_unique<GCPDDA_INSTRUCTIONS::LaneBatch>();
 }
 
 } // namespace gcpdda

@@ -25,7 +25,7 @@ struct PlainScene {
 };
 
 /// Most pairs at a time.
-constexpr std::size_t most_lanes = 4;
+constexpr std::size_t most_lanes = 8;
 
 /// Up to as many pairs as there are lanes, with like numbers of edges, all rigid or none; lanes beyond repeat
 /// the last one.
@@ -76,7 +76,8 @@ public:
 };
 
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions);
-/// Null where the compiler or the machine lacks AVX2, or where the whole build uses it.
+// Null where the compiler or the machine lacks these instructions, or where the whole build uses AVX.
 std::unique_ptr<PlainBatch> make_avx2_batch();
+std::unique_ptr<PlainBatch> make_avx512_batch();
 
 } // namespace gcpdda

@@ -113,6 +113,7 @@ void steps(benchmark::State &state) {
 }
 
 BENCHMARK_CAPTURE(forces, widest, Instructions::widest, "rigid")->Arg(20)->Arg(100);
+BENCHMARK_CAPTURE(forces, avx2, Instructions::avx2, "rigid")->Arg(20)->Arg(100);
 BENCHMARK_CAPTURE(forces, portable, Instructions::portable, "rigid")->Arg(20)->Arg(100);
 BENCHMARK_CAPTURE(forces, deformable, Instructions::widest, "deformable")->Arg(20)->Arg(100);
 BENCHMARK(general_pairs)->Arg(20)->Arg(100);

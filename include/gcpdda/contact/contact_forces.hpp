@@ -133,8 +133,8 @@ struct PlainScene;
 struct PlainLanes;
 
 /// What plain pairs are computed with: the widest registers this machine has, or those every machine has. The
-/// results are the same.
-enum class Instructions { widest, portable };
+/// results are the same. Without these instructions of its own avx2 means the next narrower ones.
+enum class Instructions { widest, avx2, portable };
 
 /// When the details of a RegionForce are found: with its sums, or if find_details() asks for them.
 enum class Details { now, on_demand };
@@ -280,7 +280,7 @@ private:
   std::vector<std::uint32_t> meeting_; ///< entries of Candidates::plain whose boxes meet
   std::vector<std::uint32_t> others_;  ///< those of them that are not one corner in another
   std::vector<std::uint32_t> births_;  ///< plain pairs whose new regions must choose among laws
-  std::array<CandidatePair, 4> own_;   ///< constants of mixed pairs at hand, by lane
+  std::array<CandidatePair, 8> own_;   ///< constants of mixed pairs at hand, by lane
   /// The first num_forces_ of them; the others are of evaluations before and spare making new ones.
   std::vector<RegionForce> forces_;
   std::size_t num_forces_ = 0;
