@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -21,7 +22,13 @@ constexpr std::size_t ahead = 16;
 
 void fetch_pair(const Candidates &candidates, const ContactHistory &history, std::uint32_t pair) {
   prefetch(&candidates.pairs[pair], sizeof(CandidatePair));
-  prefetch(history.regions.data() + history.ranges[pair].begin, sizeof(RegionMemory));
+  prefetch(history.regions.data() + history.ranges[pair].begin, offsetof(RegionMemory, position));
+}
+
+template <class T> void grow(std::vector<T> &list, std::size_t size) {
+  if (list.size() < size) {
+    list.resize(size);
+  }
 }
 
 /// How a trial configuration moved since the one before, in a form without cancellation.
@@ -67,6 +74,7 @@ void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, 
   force.shear_force = -shear * tangent;
   force.shear_torque = {};
   add_torques(force.shear_torque, force.shear_force);
+  sums_[region] = force;
 }
 
 void ContactForces::find_motions(const BlockSystem &system, std::size_t first, std::size_t last) {
@@ -86,7 +94,7 @@ void ContactForces::find_motions(const BlockSystem &system, std::size_t first, s
 }
 
 RegionForce &ContactForces::append_force(const RegionForce &force) {
-  make_room_for(1);
+  grow(forces_, num_forces_ + 1);
   return forces_[num_forces_++] = force;
 }
 
@@ -118,54 +126,76 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   } else {
     found.touching = batch_->evaluate(scene, lanes);
   }
-  if (found.touching != 0 && is_again_) {
-    store_again(lanes, found.touching);
-  } else if (found.touching != 0) {
-    store_alike(scene, lanes, found.touching);
+  const unsigned touching =
+      found.touching & ((1U << entries.size()) - 1U); // lanes beyond repeat the last one
+  if (touching != 0 && is_again_) {
+    store_again(lanes, touching);
+  } else if (touching != 0) {
+    store_alike(scene, lanes, touching);
   }
 }
 
 void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching) {
+  const bool is_deformable = lanes.pair[0]->is_deformable;
+  const Details details = is_deformable ? Details::now : details_;
   PlainBatch::Results results;
-  make_room_for(lanes.count);
-  for (std::size_t i = 0; i < lanes.count; ++i) {
-    const PlainPair &plain = *lanes.pair[i];
-    if ((touching >> i & 1U) == 0) {
-      continue;
+  grow(sums_, num_forces_ + lanes.count);
+  grow(next_.regions, num_forces_ + lanes.count);
+  if (details == Details::now) {
+    grow(forces_, num_forces_ + lanes.count);
+  }
+  const auto for_wanted = [&](auto &&visit) {
+    for (unsigned left = results.wanted; left != 0; left &= left - 1) {
+      visit(static_cast<std::size_t>(std::countr_zero(left)));
     }
+  };
+  for (unsigned left = touching; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    const PlainPair &plain = *lanes.pair[i];
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
     if (is_born && plain.is_mixed) {
       births_.push_back(plain.pair);
       continue;
     }
+    results.wanted |= 1U << i;
     ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
-    RegionForce &force = forces_[num_forces_];
-    force.pair = plain.pair;
-    force.born = is_born;
-    force.bonded = false;
-    RegionMemory &memory = next_.regions[num_forces_];
-    memory.law = plain.is_mixed ? lanes.constants[i]->law : memory.law;
-    results.force[i] = &force;
-    results.memory[i] = &memory;
+    RegionSums &sums = sums_[num_forces_];
+    sums.pair = plain.pair;
+    sums.lower = plain.lower;
+    sums.higher = plain.higher;
+    sums.born = is_born;
+    sums.bonded = false;
+    results.sums[i] = &sums;
+    results.memory[i] = &next_.regions[num_forces_];
+    if (details == Details::now) {
+      results.details[i] = &forces_[num_forces_];
+    }
     ++num_forces_;
   }
-  const bool is_deformable = lanes.pair[0]->is_deformable;
-  const unsigned too_deep = batch_->store(results, is_deformable ? Details::now : details_);
-  if (too_deep == 0 && !is_deformable) {
-    return;
+  const unsigned too_deep = batch_->store(results, details);
+  for_wanted([&](std::size_t i) {
+    RegionMemory &memory = *results.memory[i];
+    memory.law = lanes.pair[i]->is_mixed ? lanes.constants[i]->law : -1;
+    memory.position = {};
+    memory.dilation = {};
+    memory.lower_stretch = 0;
+    memory.higher_stretch = 0;
+  });
+  if (details == Details::now) {
+    for_wanted([&](std::size_t i) {
+      const auto region = static_cast<std::size_t>(results.sums[i] - sums_.data());
+      static_cast<RegionSums &>(forces_[region]) = sums_[region];
+      if (is_deformable) {
+        damping_dyads_.resize(region + 1);
+        damping_dyads_.back() = batch_->damping_dyad(i);
+      }
+    });
   }
-  for (std::size_t i = 0; i < lanes.count; ++i) {
-    if (results.force[i] == nullptr) {
-      continue;
-    }
-    if (is_deformable) {
-      damping_dyads_.resize(static_cast<std::size_t>(results.force[i] - forces_.data()) + 1);
-      damping_dyads_.back() = batch_->damping_dyad(i);
-    }
+  for_wanted([&](std::size_t i) {
     if ((too_deep >> i & 1U) != 0) {
-      note_depth(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], *results.force[i]);
+      note_depth(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], batch_->overlap(i));
     }
-  }
+  });
 }
 
 void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
@@ -175,8 +205,12 @@ void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
     const PlainPair &plain = *lanes.pair[i];
     // The general way, which mixed pairs are born by, finds details at once.
     if ((touching >> i & 1U) != 0 && !(plain.is_mixed && lanes.memory[i] == &PlainLanes::no_memory)) {
-      results.force[i] = &forces_[ranges_[plain.pair].begin];
+      const std::uint32_t region = ranges_[plain.pair].begin;
+      static_cast<RegionSums &>(forces_[region]) = sums_[region];
+      results.wanted |= 1U << i;
+      results.sums[i] = &forces_[region];
       results.memory[i] = &known[i];
+      results.details[i] = &forces_[region];
     }
   }
   batch_->store(results, Details::now);
@@ -220,6 +254,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
     return;
   }
   has_details_ = true;
+  grow(forces_, num_forces_);
   meeting_.clear();
   for (std::size_t k = 0; k < candidates.plain.size(); ++k) {
     const PlainPair &plain = candidates.plain[k];
@@ -247,7 +282,6 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
   meeting_.resize(num_meeting);
   report_.evaluations += static_cast<std::int64_t>(num_meeting);
   births_.clear();
-  next_.regions.resize(num_forces_ + num_meeting);
   evaluate_corners_first({system, candidates, history, motions_, deforming_, parameters_.damping_ratio,
                           parameters_.stiffness_damping},
                          meeting_);
@@ -257,9 +291,20 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
   report_.max_overlap = std::max(report_.max_overlap, seen.max_overlap);
   report_.max_overlap_share = std::max(report_.max_overlap_share, seen.max_overlap_share);
   for (const std::uint32_t number : births_) {
-    const auto begin = static_cast<std::uint32_t>(num_forces_);
-    evaluate_pair(system, candidates, number, {});
-    ranges_[number] = {begin, static_cast<std::uint32_t>(num_forces_) - begin};
+    evaluate_any_pair(system, candidates, number, {});
+  }
+}
+
+void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidates &candidates,
+                                      std::uint32_t number, std::span<RegionMemory> old) {
+  const std::size_t begin = num_forces_;
+  find_regions(system, candidates, number, old);
+  ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(num_forces_ - begin)};
+  grow(sums_, num_forces_);
+  for (std::size_t region = begin; region < num_forces_; ++region) {
+    forces_[region].lower = candidates.pairs[number].lower;
+    forces_[region].higher = candidates.pairs[number].higher;
+    sums_[region] = forces_[region];
   }
 }
 
@@ -270,10 +315,8 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
     if (system.box[pair.lower.value].meets(system.box[pair.higher.value]) || history.has_bonds(k) ||
         history.is_dilated(k)) {
       ++report_.evaluations;
-      const auto begin = static_cast<std::uint32_t>(num_forces_);
-      evaluate_pair(system, candidates, k,
-                    std::span(history.regions).subspan(history.ranges[k].begin, history.ranges[k].count));
-      ranges_[k] = {begin, static_cast<std::uint32_t>(num_forces_) - begin};
+      evaluate_any_pair(system, candidates, k,
+                        std::span(history.regions).subspan(history.ranges[k].begin, history.ranges[k].count));
     }
   }
 }
@@ -290,10 +333,9 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   damping_dyads_.clear();
   bond_dyads_.clear();
   dilation_works_.clear();
-  next_.regions.clear();
   ranges_.assign(candidates.pairs.size(), {});
   // Most candidates touch: to grow by doubling would take more memory than to have room for all.
-  forces_.reserve(candidates.pairs.size());
+  sums_.reserve(candidates.pairs.size());
   next_.regions.reserve(candidates.pairs.size());
   report_ = {};
   evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);
@@ -316,14 +358,13 @@ void ContactForces::note(const BlockSystem &system, const CandidatePair &pair, c
   report_.normals_undefined += force.normal_undefined ? 1 : 0;
   report_.max_overlap = std::max(report_.max_overlap, force.overlap);
   report_.max_overlap_share = std::max(report_.max_overlap_share, 0.5 * force.overlap / pair.allowed_overlap);
-  note_depth(system, pair, force);
+  note_depth(system, pair, force.overlap);
 }
 
-void ContactForces::note_depth(const BlockSystem &system, const CandidatePair &pair,
-                               const RegionForce &force) {
-  if (force.overlap > pair.allowed_overlap) {
+void ContactForces::note_depth(const BlockSystem &system, const CandidatePair &pair, double overlap) {
+  if (overlap > pair.allowed_overlap) {
     keep_first(report_.fault, {Fault::Cause::too_deep, system.properties[pair.lower.value].id,
-                               system.properties[pair.higher.value].id, force.overlap, pair.allowed_overlap});
+                               system.properties[pair.higher.value].id, overlap, pair.allowed_overlap});
   }
 }
 

@@ -37,42 +37,42 @@ BlockContactSum sum_contacts(const Candidates &candidates, const ContactForces &
   return sum;
 }
 
-bool counts_here(const BlockSystem &system, const CandidatePair &pair) {
-  return pair.lower.value < system.num_owned || system.is_fixed(pair.lower.value);
+bool counts_here(const BlockSystem &system, BlockIndex lower) {
+  return lower.value < system.num_owned || system.is_fixed(lower.value);
 }
 
 // Pairs ascend by (lower, higher): a block meets its partners in the order of their ids here too.
-ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts, BlockSystem &system,
-                          std::span<RigidDof> forces) {
+ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts,
+                          const BlockSystem &system, std::span<BlockContactSum> sums) {
   ContactCount count;
   constexpr std::size_t ahead = 8; // regions stand in the order of their evaluation
-  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
-    if (k + ahead < candidates.pairs.size()) {
-      contacts.fetch(k + ahead);
+  const std::size_t num_pairs = candidates.pairs.size();
+  for (std::size_t k = 0; k < num_pairs; ++k) {
+    if (k + ahead < num_pairs) {
+      contacts.fetch_sums(k + ahead);
     }
-    const std::span<const RegionForce> regions = contacts.of_pair(k);
+    const std::span<const RegionSums> regions = contacts.sums_of_pair(k);
     if (regions.empty()) {
       continue;
     }
-    const CandidatePair &pair = candidates.pairs[k];
-    const std::size_t lower = pair.lower.value;
-    const std::size_t higher = pair.higher.value;
-    if (counts_here(system, pair)) {
+    const std::size_t lower = regions.front().lower.value;
+    const std::size_t higher = regions.front().higher.value;
+    if (counts_here(system, regions.front().lower)) {
       const bool crosses = higher >= system.num_owned && !system.is_fixed(higher);
       ++count.touching;
       count.crossing += crosses ? 1 : 0;
       count.crossing_formed += crosses && regions.front().born ? 1 : 0;
     }
-    for (const RegionForce &f : regions) {
+    for (const RegionSums &f : regions) {
       if (lower < system.num_owned) {
-        forces[lower] += {f.force, f.torque[0]};
-        system.ledger[lower].shear_force += {f.shear_force, f.shear_torque[0]};
-        system.ledger[lower].damping_force += {f.damping_force, f.damping_torque[0]};
+        sums[lower].force += {f.force, f.torque[0]};
+        sums[lower].shear += {f.shear_force, f.shear_torque[0]};
+        sums[lower].damping += {f.damping_force, f.damping_torque[0]};
       }
       if (higher < system.num_owned) {
-        forces[higher] += {-f.force, f.torque[1]};
-        system.ledger[higher].shear_force += {-f.shear_force, f.shear_torque[1]};
-        system.ledger[higher].damping_force += {-f.damping_force, f.damping_torque[1]};
+        sums[higher].force += {-f.force, f.torque[1]};
+        sums[higher].shear += {-f.shear_force, f.shear_torque[1]};
+        sums[higher].damping += {-f.damping_force, f.damping_torque[1]};
       }
     }
   }

@@ -9,6 +9,8 @@
 #include "plain_batch.hpp"
 
 #include <array>
+#include <bit>
+#include <cstddef>
 #include <span>
 #include <type_traits>
 
@@ -128,6 +130,7 @@ public:
   [[nodiscard]] const LaneVec &point() const { return point_; }
   [[nodiscard]] const LaneVec &normal() const { return normal_; }
   [[nodiscard]] const Lanes &normal_force() const { return normal_force_; }
+  [[nodiscard]] double overlap(std::size_t lane) const { return overlap_[lane]; }
   [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const {
     return {damping_dyad_[0][lane], damping_dyad_[1][lane], damping_dyad_[2][lane], damping_dyad_[3][lane]};
   }
@@ -158,7 +161,10 @@ private:
   Lanes max_overlap_; ///< so far
   Lanes max_overlap_share_;
   std::int64_t normals_undefined_ = 0;
-  RegionForce unwanted_; ///< takes what lanes write that no one asks
+  // Take what lanes write that no one asks.
+  RegionSums unwanted_sums_;
+  RegionMemory unwanted_memory_;
+  RegionDetails unwanted_details_;
 };
 
 inline void LaneRegions::find_resultant() {
@@ -251,47 +257,46 @@ template <class AnyMotion> void LaneRegions::find_torques(const AnyMotion &motio
 }
 
 inline unsigned LaneRegions::store(const PlainBatch::Results &results, Details details) {
-  std::array<std::byte *, num_lanes> to;
-  std::array<double, num_lanes> is_wanted;
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    to[i] = reinterpret_cast<std::byte *>(results.force[i] != nullptr ? results.force[i] : &unwanted_);
-    is_wanted[i] = results.force[i] != nullptr ? 1.0 : 0.0;
-  }
-  const auto put = [&](std::size_t offset, const Lanes &a, const Lanes &b, const Lanes &c, const Lanes &d)
-      __attribute__((always_inline)) {
-    store_by_lane(to, offset, a, b, c, d);
+  using Places = std::array<std::byte *, num_lanes>;
+  const auto wants = [&](std::size_t i) { return (results.wanted >> i & 1U) != 0; };
+  const auto places = [&](const auto &of_results, auto &unwanted) {
+    Places to;
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      to[i] = reinterpret_cast<std::byte *>(wants(i) ? of_results[i] : &unwanted);
+    }
+    return to;
   };
+  const Places sums = places(results.sums, unwanted_sums_);
   const LaneVec shear_force = -elastic_ * perp(normal_);
-  put(offsetof(RegionForce, force), force_.x, force_.y, torque_[0], torque_[1]);
-  put(offsetof(RegionForce, shear_force), shear_force.x, shear_force.y, shear_torque_[0], shear_torque_[1]);
-  put(offsetof(RegionForce, damping_force), damping_force_.x, damping_force_.y, damping_torque_[0],
-      damping_torque_[1]);
-  const Mask wanted = Lanes::of([&](std::size_t i) { return is_wanted[i]; }) > 0.0;
+  store_by_lane(sums, offsetof(RegionSums, force), force_.x, force_.y, torque_[0], torque_[1]);
+  store_by_lane(sums, offsetof(RegionSums, shear_force), shear_force.x, shear_force.y, shear_torque_[0],
+                shear_torque_[1]);
+  store_by_lane(sums, offsetof(RegionSums, damping_force), damping_force_.x, damping_force_.y,
+                damping_torque_[0], damping_torque_[1]);
+  static_assert(offsetof(RegionMemory, law) == offsetof(RegionMemory, shear) + 3 * sizeof(double));
+  const Places memory = places(results.memory, unwanted_memory_);
+  store_by_lane(memory, offsetof(RegionMemory, shear), elastic_, longest_, slip_, slip_);
+  const Mask wanted = Mask::from(results.wanted);
   max_overlap_ = select(wanted, max(max_overlap_, overlap_), max_overlap_);
   max_overlap_share_ = select(wanted, max(max_overlap_share_, overlap_share_), max_overlap_share_);
-  const unsigned too_deep = (wanted & (overlap_share_ > 0.5)).by_lane();
-  if (details == Details::now || too_deep != 0) {
-    put(offsetof(RegionForce, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
-    put(offsetof(RegionForce, origin), origin.x, origin.y, point_.x, point_.y);
-    put(offsetof(RegionForce, normal), normal_.x, normal_.y, normal_force_, shear_);
-    put(offsetof(RegionForce, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
-        select(undefined, 0.0, extent_end_));
+  if (details == Details::now) {
+    const Places known = places(results.details, unwanted_details_);
+    store_by_lane(known, offsetof(RegionDetails, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
+    store_by_lane(known, offsetof(RegionDetails, origin), origin.x, origin.y, point_.x, point_.y);
+    store_by_lane(known, offsetof(RegionDetails, normal), normal_.x, normal_.y, normal_force_, shear_);
+    store_by_lane(known, offsetof(RegionDetails, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
+                  select(undefined, 0.0, extent_end_));
   }
-  const unsigned cancels = undefined.by_lane();
+  const unsigned cancels = undefined.by_lane() & results.wanted;
   const unsigned slips = slips_.by_lane();
+  normals_undefined_ += std::popcount(cancels);
   for (std::size_t i = 0; i < num_lanes; ++i) {
-    if (results.force[i] == nullptr) {
-      continue;
+    if (wants(i)) {
+      results.sums[i]->normal_undefined = (cancels >> i & 1U) != 0;
+      results.memory[i]->state = (slips >> i & 1U) != 0 ? ContactState::slip : ContactState::stick;
     }
-    results.force[i]->normal_undefined = (cancels >> i & 1U) != 0;
-    normals_undefined_ += cancels >> i & 1U;
-    RegionMemory &memory = *results.memory[i];
-    memory.shear = elastic_[i];
-    memory.longest = longest_[i];
-    memory.slip = slip_[i];
-    memory.state = (slips >> i & 1U) != 0 ? ContactState::slip : ContactState::stick;
   }
-  return too_deep;
+  return (wanted & (overlap_share_ > 0.5)).by_lane();
 }
 
 inline PlainBatch::Extremes LaneRegions::take_extremes() {

@@ -55,6 +55,19 @@ struct Mask {
     return by_lane() != 0;
   }
 
+  /// True where bit i is set.
+  [[gnu::always_inline]] static Mask from(unsigned bits) {
+#if GCPDDA_NUM_LANES == 8
+    return {static_cast<LaneMask>(bits)};
+#else
+    Mask result;
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      result.bits[i] = (bits >> i & 1U) != 0 ? -1 : 0;
+    }
+    return result;
+#endif
+  }
+
 private:
   template <class Bits> [[gnu::always_inline]] static Mask of(const Bits &bits) {
     return {static_cast<LaneMask>(bits)};

@@ -229,8 +229,8 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
   }
 }
 
-void ContactForces::evaluate_pair(const BlockSystem &system, const Candidates &candidates,
-                                  std::uint32_t number, std::span<RegionMemory> old) {
+void ContactForces::find_regions(const BlockSystem &system, const Candidates &candidates,
+                                 std::uint32_t number, std::span<RegionMemory> old) {
   const CandidatePair &pair = candidates.pairs[number];
   dilated_.clear();
   std::copy_if(old.begin(), old.end(), std::back_inserter(dilated_),

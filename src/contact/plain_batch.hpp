@@ -55,15 +55,19 @@ public:
   /// is far less work (lane_corners.hpp). Of the others some are seen not to touch, the rest is left to
   /// evaluate().
   virtual Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) = 0;
-  /// Where results go, by lane; null where no one asks.
+  /// Where results go, by lane.
   struct Results {
-    std::array<RegionForce *, most_lanes> force{};
-    std::array<RegionMemory *, most_lanes> memory{};
+    unsigned wanted = 0; ///< bits of the lanes someone asks for, which touch; other places are not looked at
+    std::array<RegionSums *, most_lanes> sums;
+    std::array<RegionMemory *, most_lanes> memory;
+    std::array<RegionDetails *, most_lanes> details; ///< with Details::now
   };
-  /// Write the results of lanes that touch: all of a force but its pair, birth and bond, and what of the
-  /// memory two convex blocks have.
+  /// Write all of the sums but pair, rows, birth and bond, and shear, extent, slip and state of the memory,
+  /// whose law is lost.
   /// @return bit i is set where the overlap of lane i exceeds what is allowed
   virtual unsigned store(const Results &results, Details details) = 0;
+  /// Thickness of the overlap in a lane that touches, m.
+  [[nodiscard]] virtual double overlap(std::size_t lane) const = 0;
   /// Of a lane that touches where a block is deformable.
   [[nodiscard]] virtual Mat2 damping_dyad(std::size_t lane) const = 0;
   /// Of all that has been stored since these were taken last.

@@ -25,6 +25,7 @@ public:
   unsigned store(const Results &results, Details details) override {
     return regions_.store(results, details);
   }
+  [[nodiscard]] double overlap(std::size_t lane) const override { return regions_.overlap(lane); }
   [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const override { return regions_.damping_dyad(lane); }
   Extremes take_extremes() override { return regions_.take_extremes(); }
 

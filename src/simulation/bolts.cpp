@@ -1,6 +1,7 @@
 #include "gcpdda/simulation/bolts.hpp"
 
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/contact/contact_forces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -246,11 +247,11 @@ void Bolts::evaluate(const BlockSystem &system) {
   }
 }
 
-void Bolts::add_forces(const BlockSystem &system, std::span<RigidDof> forces) const {
+void Bolts::add_forces(const BlockSystem &system, std::span<BlockContactSum> sums) const {
   for (std::size_t k = 0; k < here_.size(); ++k) {
     for (std::size_t side = 0; side < 2; ++side) {
       if (const std::size_t row = here_[k].rows[side]; row < system.num_owned) {
-        forces[row] += forces_[k].rigid[side];
+        sums[row].force += forces_[k].rigid[side];
       }
     }
   }

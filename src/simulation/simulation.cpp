@@ -51,7 +51,7 @@ void Simulation::step() {
 }
 
 bool Simulation::counts_here(const CandidatePair &pair) const {
-  return gcpdda::counts_here(blocks_, pair);
+  return gcpdda::counts_here(blocks_, pair.lower);
 }
 
 Vec2 Simulation::gravity() const {
@@ -213,24 +213,23 @@ void Simulation::take(const ForceReport &report) {
 // increments of x*: half with the forces of the last evaluation, half with those of this one.
 void Simulation::gather_forces() {
   const auto scope = phases_.measure(Phase::forces);
+  contact_sums_.assign(blocks_.num_owned, {});
   forces_.rigid.resize(blocks_.num_owned);
   forces_.gradient.resize(blocks_.deformation.size());
   forces_.wave = incoming_wave();
   forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
+  contact_count_ = add_contacts(candidates_, contacts_, blocks_, contact_sums_);
+  contacts_.add_dilation_works(candidates_, blocks_);
+  bolts_.add_forces(blocks_, contact_sums_);
   const Vec2 gravity_now = gravity();
   const Vec2 shaking = ground_acceleration();
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     add_half_works(row);
     BlockLedger &ledger = blocks_.ledger[row];
     ledger.load_work += anchor_half_work(blocks_, row);
-    ledger.shear_force = {};
-    ledger.damping_force = {};
-    forces_.rigid[row] = {};
-  }
-  contact_count_ = add_contacts(candidates_, contacts_, blocks_, forces_.rigid);
-  contacts_.add_dilation_works(candidates_, blocks_);
-  bolts_.add_forces(blocks_, forces_.rigid);
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    ledger.shear_force = contact_sums_[row].shear;
+    ledger.damping_force = contact_sums_[row].damping;
+    forces_.rigid[row] = contact_sums_[row].force;
     const WaterLoad water =
         scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -gravity_now.y);
     gather_block(row, gravity_now, shaking, water);

@@ -115,7 +115,7 @@ void Simulation::look_at_stage() {
     mark.look = now;
     kinetic.add(kinetic_energy_of(blocks_, row));
   }
-  for (const RegionForce &force : contacts_.regions()) {
+  for (const RegionSums &force : contacts_.sums()) {
     acting = std::max(acting, norm(force.force));
   }
   overlap = force_report_.max_overlap;

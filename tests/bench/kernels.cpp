@@ -65,9 +65,9 @@ void general_pairs(benchmark::State &state) {
 
 void sums(benchmark::State &state) {
   Pile pile(state.range(0));
-  std::vector<RigidDof> forces(pile.blocks.num_owned);
+  std::vector<BlockContactSum> sums(pile.blocks.num_owned);
   for ([[maybe_unused]] const auto _ : state) {
-    benchmark::DoNotOptimize(add_contacts(pile.candidates, pile.simulation.contacts(), pile.blocks, forces));
+    benchmark::DoNotOptimize(add_contacts(pile.candidates, pile.simulation.contacts(), pile.blocks, sums));
   }
   per(state, pile.candidates.pairs.size());
 }

@@ -46,10 +46,12 @@ namespace gcpdda {
 /// Torques of a region on the lower and the higher block of its pair, about their trial centroids, N.
 using PairTorques = std::array<double, 2>;
 
-/// One touching region: force on the lower block of its pair and what is known about it; the higher block
-/// gets the opposite at the same points.
-struct RegionForce {
-  std::uint32_t pair = 0;        ///< number of the candidate
+/// One touching region: force on the lower block of its pair; the higher block gets the opposite at the same
+/// points. All that a step needs of two rigid blocks, together.
+struct RegionSums {
+  std::uint32_t pair = 0; ///< number of the candidate
+  BlockIndex lower;       ///< its rows
+  BlockIndex higher;
   bool born = false;             ///< not there at the evaluation before
   bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
   bool bonded = false; ///< a bond (bonds.hpp): normal_force is minus its tension, which joins shear_force
@@ -60,7 +62,10 @@ struct RegionForce {
   PairTorques shear_torque{};
   Vec2 damping_force; ///< dashpots in `force`
   PairTorques damping_torque{};
-  // Details, which a step does not need where both blocks are rigid, see Details.
+};
+
+/// What else is known about it, see Details.
+struct RegionDetails {
   Mat2 dyad;                 ///< int (x - origin) df^T, N
   Vec2 origin;               ///< what dyads are about
   Vec2 point;                ///< x_r
@@ -72,6 +77,8 @@ struct RegionForce {
   double extent_begin = 0.0; ///< of the pieces along t_r, from x_r, m
   double extent_end = 0.0;
 };
+
+struct RegionForce : RegionSums, RegionDetails {};
 
 /// How a trial configuration moved since the last evaluation: the material point now at x_c + r by
 /// u + turn(r).
@@ -136,7 +143,7 @@ struct PlainLanes;
 /// results are the same. Without these instructions of its own avx2 means the next narrower ones.
 enum class Instructions { widest, avx2, portable };
 
-/// When the details of a RegionForce are found: with its sums, or if find_details() asks for them.
+/// When RegionDetails are found: with the sums, or if find_details() asks for them.
 enum class Details { now, on_demand };
 
 /// Evaluates pairs; buffers live as long as it does.
@@ -169,15 +176,22 @@ public:
   /// configuration and candidates are those of it.
   void find_details(const BlockSystem &system, const Candidates &candidates);
 
-  /// All touching regions, those of a pair together; region i is that of history.regions[i].
+  /// The sums of all touching regions, those of a pair together; region i is that of history.regions[i].
+  [[nodiscard]] std::span<const RegionSums> sums() const { return {sums_.data(), num_forces_}; }
+  /// Those of one pair.
+  [[nodiscard]] std::span<const RegionSums> sums_of_pair(std::size_t pair) const {
+    return {sums_.data() + ranges_[pair].begin, ranges_[pair].count};
+  }
+  /// Say that they will be asked for soon.
+  void fetch_sums(std::size_t pair) const {
+    prefetch(sums_.data() + ranges_[pair].begin, sizeof(RegionSums));
+  }
+
+  /// The same regions with their details, which must have been found.
   [[nodiscard]] std::span<const RegionForce> regions() const { return {forces_.data(), num_forces_}; }
   /// Those of one pair.
   [[nodiscard]] std::span<const RegionForce> of_pair(std::size_t pair) const {
     return {forces_.data() + ranges_[pair].begin, ranges_[pair].count};
-  }
-  /// Say that its sums will be asked for soon.
-  void fetch(std::size_t pair) const {
-    prefetch(forces_.data() + ranges_[pair].begin, offsetof(RegionForce, dyad));
   }
 
   /// Dyad of `damping_force`; only pairs with a deformable block have one that is not 0.
@@ -211,8 +225,11 @@ private:
     double shear = 0.0;    ///< ... and leaves this, N/m
   };
 
-  void evaluate_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
-                     std::span<RegionMemory> old);
+  /// The regions of one pair, whatever its shapes and laws.
+  void evaluate_any_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
+                         std::span<RegionMemory> old);
+  void find_regions(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
+                    std::span<RegionMemory> old);
   void find_motions(const BlockSystem &system, std::size_t first, std::size_t last);
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
@@ -232,11 +249,6 @@ private:
   /// References to other regions hold until the next one is appended.
   RegionForce &append_force(const RegionForce &force = {});
   void drop_last_force() { --num_forces_; }
-  void make_room_for(std::size_t more) {
-    if (forces_.size() < num_forces_ + more) {
-      forces_.resize(num_forces_ + more);
-    }
-  }
   void recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
               std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const;
   /// Normal force for k_n/2 = 1, direction and size of a region; false if it carries nothing.
@@ -270,7 +282,7 @@ private:
   void add_shear(RegionForce &force, double elastic, double viscous);
   void add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction);
   void note(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force);
-  void note_depth(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force);
+  void note_depth(const BlockSystem &system, const CandidatePair &pair, double overlap);
   /// Torques of the region at hand, from its dyads, which are whole.
   void finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force);
 
@@ -281,8 +293,9 @@ private:
   std::vector<std::uint32_t> others_;  ///< those of them that are not one corner in another
   std::vector<std::uint32_t> births_;  ///< plain pairs whose new regions must choose among laws
   std::array<CandidatePair, 8> own_;   ///< constants of mixed pairs at hand, by lane
-  /// The first num_forces_ of them; the others are of evaluations before and spare making new ones.
-  std::vector<RegionForce> forces_;
+  // The first num_forces_ of both; the others are of evaluations before and spare making new ones.
+  std::vector<RegionSums> sums_;
+  std::vector<RegionForce> forces_; ///< no longer than regions with details need
   std::size_t num_forces_ = 0;
   Details details_ = Details::now; ///< asked for with the evaluation
   bool has_details_ = true;
@@ -316,7 +329,7 @@ struct BlockContactSum {
 BlockContactSum sum_contacts(const Candidates &candidates, const ContactForces &contacts, std::size_t row);
 
 /// One rank counts what is known of a pair.
-bool counts_here(const BlockSystem &system, const CandidatePair &pair);
+bool counts_here(const BlockSystem &system, BlockIndex lower);
 
 /// Pairs that touch and count on this rank.
 struct ContactCount {
@@ -325,10 +338,9 @@ struct ContactCount {
   std::int64_t crossing_formed = 0; ///< and they did not touch at the evaluation before
 };
 
-/// The same sums of all owned rows, bit by bit, added to `forces` by row and to shear and damping in the
-/// ledger of each block.
-ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts, BlockSystem &system,
-                          std::span<RigidDof> forces);
+/// The same sums of all owned rows, bit by bit, added to those by row.
+ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts,
+                          const BlockSystem &system, std::span<BlockContactSum> sums);
 
 /// What the same contacts do to F of a deformable row: int t X^T, N.
 struct BlockGradientSum {

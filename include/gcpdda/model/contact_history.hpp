@@ -19,12 +19,13 @@ struct RegionMemory {
   double shear = 0.0;   ///< F_t: along -t_r on the lower block, along t_r on the higher one, N/m
   double longest = 0.0; ///< largest extent along t_r so far, m: the tangential stiffness never falls
   double slip = 0.0;    ///< accumulated sliding distance, m
-  Vec2 position;        ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
-  Vec2 dilation;        ///< what slip has opened, in axes that turn with the mean of both blocks, m
+  std::int32_t law = -1; ///< that the region was born with; -1: the only one its pair can have
+  ContactState state = ContactState::stick;
+  // All that a step needs of two convex blocks stands above.
+  Vec2 position; ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
+  Vec2 dilation; ///< what slip has opened, in axes that turn with the mean of both blocks, m
   std::int32_t lower_stretch = 0;  ///< stretches of the outlines between re-entrant vertices that face each
   std::int32_t higher_stretch = 0; ///< other; 0 for a convex block; of a bond -1 - number of its edge
-  std::int32_t law = -1;           ///< that the region was born with; -1: the only one its pair can have
-  ContactState state = ContactState::stick;
 
   [[nodiscard]] bool is_bond() const { return lower_stretch < 0; }
   [[nodiscard]] bool is_dilated() const { return dilation != Vec2{}; }

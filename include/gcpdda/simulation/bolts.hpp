@@ -22,6 +22,8 @@
 
 namespace gcpdda {
 
+struct BlockContactSum;
+
 /// A stretch of a bolt within one block, as shares of its way from head to tip.
 struct BoltPiece {
   std::int64_t bolt = 0; ///< index into Scene::bolts
@@ -104,7 +106,7 @@ public:
   /// Forces at the posed trial configuration; the memory moves on to it.
   void evaluate(const BlockSystem &system);
   /// Add them to owned rows.
-  void add_forces(const BlockSystem &system, std::span<RigidDof> forces) const;
+  void add_forces(const BlockSystem &system, std::span<BlockContactSum> sums) const;
   /// What they do to F, by entry of BlockSystem::deformation of owned rows.
   [[nodiscard]] Mat2 gradient_force(std::size_t deformation) const { return gradient_[deformation]; }
 

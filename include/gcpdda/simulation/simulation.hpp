@@ -300,6 +300,7 @@ private:
   SceneIdentity identity_;
   std::optional<Restored> restored_;
   ForceReport force_report_;
+  std::vector<BlockContactSum> contact_sums_;
   ContactCount contact_count_; ///< at the last evaluation
   std::optional<Fault> local_fault_;
   std::optional<Fault> fault_;
