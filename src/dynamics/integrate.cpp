@@ -52,20 +52,24 @@ RigidDof PrescribedMotion::displacement(double time) const {
 }
 
 void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
+  constexpr std::size_t rows_at_once = 256; // they are posed from the cache
   const double by_velocity = scheme.trial_velocity * time_step;
   const double by_acceleration = scheme.trial_acceleration * time_step * time_step;
-  for (std::size_t i = 0; i < system.num_owned; ++i) {
-    system.trial_previous[i] = system.trial[i];
-    system.trial[i] = system.displacement[i] +
-                      (by_velocity * system.velocity[i] + by_acceleration * system.acceleration[i]);
-    if (system.is_deformable(i)) {
-      Deformation &d = system.deformation_of(i);
-      d.trial_previous = d.trial;
-      d.trial = d.gradient + (by_velocity * d.rate + by_acceleration * d.acceleration);
-      system.trial[i].r = system.displacement[i].r + angle_between(d.gradient, d.trial);
+  for (std::size_t first = 0; first < system.num_owned; first += rows_at_once) {
+    const std::size_t last = std::min(system.num_owned, first + rows_at_once);
+    for (std::size_t i = first; i < last; ++i) {
+      system.trial_previous[i] = system.trial[i];
+      system.trial[i] = system.displacement[i] +
+                        (by_velocity * system.velocity[i] + by_acceleration * system.acceleration[i]);
+      if (system.is_deformable(i)) {
+        Deformation &d = system.deformation_of(i);
+        d.trial_previous = d.trial;
+        d.trial = d.gradient + (by_velocity * d.rate + by_acceleration * d.acceleration);
+        system.trial[i].r = system.displacement[i].r + angle_between(d.gradient, d.trial);
+      }
     }
+    pose(system, first, last);
   }
-  pose(system, 0, system.num_owned);
 }
 
 void accelerate(BlockSystem &system, const BlockForces &forces) {
@@ -112,9 +116,10 @@ double moved_since_refresh(const BlockSystem &system, std::size_t row) {
 }
 
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
-                                            const Scheme &scheme, double time_step, Elasticity elasticity) {
+                                            const Scheme &scheme, double time_step, Elasticity elasticity,
+                                            std::size_t first, std::size_t last) {
   std::optional<std::size_t> broken;
-  for (std::size_t i = 0; i < system.num_owned; ++i) {
+  for (std::size_t i = first; i < last; ++i) {
     if (system.has_matrix(i)) {
       if (!step_by_own_matrix(system, i, forces, scheme, time_step, elasticity)) {
         broken = broken.value_or(i);

@@ -106,7 +106,8 @@ void Simulation::check_bonds() {
 }
 
 void Simulation::accelerate_owned() {
-  gather_forces();
+  sum_contacts_of_blocks();
+  gather_forces(0, blocks_.num_owned, {gravity(), ground_acceleration()});
   accelerate(blocks_, forces_);
   prescribe_motion();
 }
@@ -123,7 +124,6 @@ void Simulation::find_initial_state() {
   } else if (scene_.run.initial_friction == InitialFriction::consistent) {
     find_initial_friction();
   }
-  gather_forces();
   accelerate_owned();
   report();
   counters_.evaluations = 0; // these are of steps

@@ -37,14 +37,8 @@ void Simulation::step() {
   load_time_ = time() + scheme_.load_time * plan_.time_step;
   predict_own();
   evaluate_contacts();
-  gather_forces();
-  {
-    const auto scope = phases_.measure(Phase::update);
-    if (const auto row =
-            solve_and_update(blocks_, forces_, scheme_, plan_.time_step, scene_.run.elasticity)) {
-      keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0});
-    }
-  }
+  sum_contacts_of_blocks();
+  move_blocks();
   ++step_count_;
   prescribe_motion();
   report();
@@ -209,40 +203,58 @@ void Simulation::take(const ForceReport &report) {
   }
 }
 
-// Sum on each block in the order of its partners' ids. The works of the ledger go by the trapezoid over
-// increments of x*: half with the forces of the last evaluation, half with those of this one.
-void Simulation::gather_forces() {
+// On each block in the order of its partners' ids.
+void Simulation::sum_contacts_of_blocks() {
   const auto scope = phases_.measure(Phase::forces);
   contact_sums_.assign(blocks_.num_owned, {});
+  contact_count_ = add_contacts(candidates_, contacts_, blocks_, contact_sums_);
+  contacts_.add_dilation_works(candidates_, blocks_);
+  bolts_.add_forces(blocks_, contact_sums_);
   forces_.rigid.resize(blocks_.num_owned);
   forces_.gradient.resize(blocks_.deformation.size());
   forces_.wave = incoming_wave();
   forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
-  contact_count_ = add_contacts(candidates_, contacts_, blocks_, contact_sums_);
-  contacts_.add_dilation_works(candidates_, blocks_);
-  bolts_.add_forces(blocks_, contact_sums_);
-  const Vec2 gravity_now = gravity();
-  const Vec2 shaking = ground_acceleration();
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    add_half_works(row);
+}
+
+// Some blocks at a time: what one pass reads is in the cache for the next.
+void Simulation::move_blocks() {
+  constexpr std::size_t rows_at_once = 256;
+  const BodyForces body{gravity(), ground_acceleration()};
+  for (std::size_t first = 0; first < blocks_.num_owned; first += rows_at_once) {
+    const std::size_t last = std::min(blocks_.num_owned, first + rows_at_once);
+    gather_forces(first, last, body);
+    const auto scope = phases_.measure(Phase::update);
+    if (const auto row = solve_and_update(blocks_, forces_, scheme_, plan_.time_step, scene_.run.elasticity,
+                                          first, last)) {
+      keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0});
+    }
+  }
+}
+
+// The works of the ledger go by the trapezoid over increments of x*: half with the forces of the last
+// evaluation, half with those of this one.
+void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
+  const auto scope = phases_.measure(Phase::forces);
+  for (std::size_t row = first; row < last; ++row) {
+    add_half_works(blocks_, row);
     BlockLedger &ledger = blocks_.ledger[row];
     ledger.load_work += anchor_half_work(blocks_, row);
     ledger.shear_force = contact_sums_[row].shear;
     ledger.damping_force = contact_sums_[row].damping;
     forces_.rigid[row] = contact_sums_[row].force;
     const WaterLoad water =
-        scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -gravity_now.y);
-    gather_block(row, gravity_now, shaking, water);
+        scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -body.gravity.y);
+    gather_block(row, body, water);
     if (blocks_.is_deformable(row)) {
       gather_gradient(row, water);
     }
     apply_mass_damping(blocks_, row, forces_, scene_.run.rayleigh.mass_damping);
     apply_local_damping(blocks_, row, forces_, local_damping_);
-    add_half_works(row);
+    add_half_works(blocks_, row);
   }
 }
 
-void Simulation::gather_block(std::size_t row, Vec2 gravity_now, Vec2 shaking, const WaterLoad &water) {
+void Simulation::gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water) {
   const BlockProperties &block = blocks_.properties[row];
   BlockLedger &ledger = blocks_.ledger[row];
   if (block.keeps_its_velocity()) {
@@ -250,13 +262,13 @@ void Simulation::gather_block(std::size_t row, Vec2 gravity_now, Vec2 shaking, c
     forces_.rigid[row] = {};
     return;
   }
-  ledger.gravity_force = block.heavy_mass() * gravity_now;
-  ledger.load_force = unloading_of(block.id).rigid;
+  ledger.gravity_force = block.heavy_mass() * body.gravity;
+  ledger.load_force = stage_.unloading.empty() ? RigidDof{} : unloading_of(block.id).rigid;
   for (const MaterialLoad &load : blocks_.loads_of(row)) {
     const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
     ledger.load_force += {load.force, cross(arm, load.force)};
   }
-  ledger.load_force += {water.force - block.mass * shaking, water.torque()};
+  ledger.load_force += {water.force - block.mass * body.shaking, water.torque()};
   forces_.rigid[row] += ledger.load_force;
   forces_.rigid[row].u += ledger.gravity_force;
 }
@@ -280,15 +292,6 @@ void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   for (RigidDof *force : {&ledger.shear_force, &ledger.damping_force, &ledger.load_force}) {
     force->r = 0.0;
   }
-}
-
-void Simulation::add_half_works(std::size_t row) {
-  BlockLedger &ledger = blocks_.ledger[row];
-  const HalfWorks half = half_works(blocks_, row);
-  ledger.shear_work += half.shear;
-  ledger.damping_work += half.damping;
-  ledger.load_work += half.load;
-  ledger.gravity_work += half.gravity;
 }
 
 // One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop. It runs while

@@ -289,10 +289,11 @@ private:
   ContactParameters parameters_;
   Overlap overlap_;
   std::unique_ptr<PlainBatch> batch_;
-  std::vector<std::uint32_t> meeting_; ///< entries of Candidates::plain whose boxes meet
-  std::vector<std::uint32_t> others_;  ///< those of them that are not one corner in another
-  std::vector<std::uint32_t> births_;  ///< plain pairs whose new regions must choose among laws
-  std::array<CandidatePair, 8> own_;   ///< constants of mixed pairs at hand, by lane
+  std::vector<std::uint32_t> meeting_;   ///< entries of Candidates::plain whose boxes meet, with a region ...
+  std::vector<std::uint32_t> strangers_; ///< ... and without one
+  std::vector<std::uint32_t> others_;    ///< those of them that are not one corner in another
+  std::vector<std::uint32_t> births_;    ///< plain pairs whose new regions must choose among laws
+  std::array<CandidatePair, 8> own_;     ///< constants of mixed pairs at hand, by lane
   // The first num_forces_ of both; the others are of evaluations before and spare making new ones.
   std::vector<RegionSums> sums_;
   std::vector<RegionForce> forces_; ///< no longer than regions with details need

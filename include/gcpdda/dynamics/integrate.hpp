@@ -69,9 +69,10 @@ void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forc
 /// @param mass_damping  alpha, 1/s
 void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double mass_damping);
 
-/// Advance rows [0, num_owned) from t_n to t_{n+1} under their total forces: one system each, diagonal for a
-/// rigid block without fixed points, else by its own factorised matrix. A block whose new state is not finite
-/// keeps its old one; so does one that has been turned inside out (det F <= 0). Needs make_block_matrices().
+/// Advance owned rows [first, last) from t_n to t_{n+1} under their total forces: one system each, diagonal
+/// for a rigid block without fixed points, else by its own factorised matrix. A block whose new state is not
+/// finite keeps its old one; so does one that has been turned inside out (det F <= 0). Needs
+/// make_block_matrices().
 ///
 /// Of deformable rows velocity.r and acceleration.r become the mean spin and its rate, for output. The
 /// elastic and anchor forces that were applied are noted; of the anchors' work the half over the increment of
@@ -79,6 +80,13 @@ void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &force
 ///
 /// @return first row whose new state is broken
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
-                                            const Scheme &scheme, double time_step, Elasticity elasticity);
+                                            const Scheme &scheme, double time_step, Elasticity elasticity,
+                                            std::size_t first, std::size_t last);
+/// All owned rows.
+inline std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
+                                                   const Scheme &scheme, double time_step,
+                                                   Elasticity elasticity) {
+  return solve_and_update(system, forces, scheme, time_step, elasticity, 0, system.num_owned);
+}
 
 } // namespace gcpdda

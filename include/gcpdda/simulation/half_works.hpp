@@ -28,6 +28,16 @@ inline HalfWorks half_works(const BlockSystem &system, std::size_t row) {
   return half;
 }
 
+/// Onto the works of the ledger.
+inline void add_half_works(BlockSystem &system, std::size_t row) {
+  BlockLedger &ledger = system.ledger[row];
+  const HalfWorks half = half_works(system, row);
+  ledger.shear_work += half.shear;
+  ledger.damping_work += half.damping;
+  ledger.load_work += half.load;
+  ledger.gravity_work += half.gravity;
+}
+
 /// The same for fixed points and viscous sides, whose force is known only after the step it acts in.
 inline double anchor_half_work(const BlockSystem &system, std::size_t row) {
   if (system.anchors_of(row).empty() && system.dashpot_of(row) == nullptr) {

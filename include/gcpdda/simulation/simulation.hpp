@@ -256,10 +256,16 @@ private:
   void evaluate_contacts();
   void evaluate_bolts();
   void take(const ForceReport &report);
-  void gather_forces();
-  void gather_block(std::size_t row, Vec2 gravity_now, Vec2 shaking, const WaterLoad &water);
+  void sum_contacts_of_blocks();
+  void move_blocks();
+  /// On every block alike, m/s2.
+  struct BodyForces {
+    Vec2 gravity;
+    Vec2 shaking; ///< acceleration of the ground
+  };
+  void gather_forces(std::size_t first, std::size_t last, const BodyForces &body);
+  void gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);
-  void add_half_works(std::size_t row);
   void report();
   [[nodiscard]] double own_status();
   void count();
