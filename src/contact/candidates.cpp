@@ -246,7 +246,7 @@ void order_evaluation(const BlockSystem &system, Candidates &candidates) {
     return is_ghost(pair.lower) || is_ghost(pair.higher);
   };
   const auto order = [&](const PlainPair &plain) {
-    return std::tuple(has_ghost(plain.pair), plain.is_deformable, plain.lower_edges, plain.higher_edges,
+    return std::tuple(has_ghost(plain.pair), plain.group(), plain.is_deformable, plain.lower_edges, plain.higher_edges,
                       plain.may_be_corners);
   };
   std::stable_sort(candidates.plain.begin(), candidates.plain.end(),

@@ -270,24 +270,28 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
   batch_->take_extremes(); // they have been told
 }
 
-void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
-                                         ContactHistory &history, std::size_t first, std::size_t last) {
-  const std::vector<PlainPair> &plain = candidates.plain;
-  // Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
+// Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
+void ContactForces::find_meeting(const Candidates &candidates, const ContactHistory &history,
+                                 std::size_t first, std::size_t last) {
   meeting_.resize(last - first);
   strangers_.resize(last - first);
   std::size_t num_known = 0;
   std::size_t num_strangers = 0;
   for (std::size_t k = first; k < last; ++k) {
+    const PlainPair &plain = candidates.plain[k];
     meeting_[num_known] = strangers_[num_strangers] = static_cast<std::uint32_t>(k);
-    const bool meets = motions_[plain[k].lower.value].box.meets(motions_[plain[k].higher.value].box);
-    const bool is_known = history.ranges[plain[k].pair].count > 0;
+    const bool meets = motions_[plain.lower.value].box.meets(motions_[plain.higher.value].box);
+    const bool is_known = history.ranges[plain.pair].count > 0;
     num_known += meets && is_known ? 1 : 0;
     num_strangers += meets && !is_known ? 1 : 0;
   }
   meeting_.resize(num_known);
   strangers_.resize(num_strangers);
   report_.evaluations += static_cast<std::int64_t>(num_known + num_strangers);
+}
+
+void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
+                                         ContactHistory &history, std::size_t first, std::size_t last) {
   births_.clear();
   const PlainScene scene{system,
                          candidates,
@@ -296,8 +300,14 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
                          deforming_,
                          parameters_.damping_ratio,
                          parameters_.stiffness_damping};
-  evaluate_corners_first(scene, meeting_);
-  evaluate_corners_first(scene, strangers_);
+  for (std::size_t begin = first, end = first; begin < last; begin = end) {
+    while (end < last && candidates.plain[end].group() == candidates.plain[begin].group()) {
+      ++end;
+    }
+    find_meeting(candidates, history, begin, end);
+    evaluate_corners_first(scene, meeting_);
+    evaluate_corners_first(scene, strangers_);
+  }
   next_.regions.resize(num_forces_);
   const PlainBatch::Extremes seen = batch_->take_extremes();
   report_.normals_undefined += seen.normals_undefined;

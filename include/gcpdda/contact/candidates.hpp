@@ -44,6 +44,11 @@ struct PlainPair {
   /// Neither block has more than most_corner_edges edges, and each a corner in its chain.
   bool may_be_corners = false;
 
+  /// Pairs of neighbouring numbers are evaluated together, while their blocks are in the cache.
+  [[nodiscard]] std::uint32_t group() const {
+    constexpr std::uint32_t pairs_in_cache = 1024;
+    return pair / pairs_in_cache;
+  }
   /// May share an evaluation.
   [[nodiscard]] bool is_like(const PlainPair &other) const {
     return lower_edges == other.lower_edges && higher_edges == other.higher_edges &&
@@ -65,7 +70,7 @@ struct Candidates {
   std::vector<std::uint32_t> contact_begin;
   std::vector<BlockContact> block_contacts;
   // In the order in which they are evaluated: first those without a ghost, whose number stands beside.
-  std::vector<PlainPair> plain; ///< those of like numbers of edges stand together
+  std::vector<PlainPair> plain; ///< by groups, in each those of like numbers of edges together
   std::size_t num_interior_plain = 0;
   std::vector<std::uint32_t> general; ///< numbers of all other pairs
   std::size_t num_interior_general = 0;

@@ -237,6 +237,9 @@ private:
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                             std::size_t first, std::size_t last);
   void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, bool by_corners);
+  /// Entries [first, last) whose boxes meet.
+  void find_meeting(const Candidates &candidates, const ContactHistory &history, std::size_t first,
+                    std::size_t last);
   void evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching);
