@@ -246,8 +246,8 @@ void order_evaluation(const BlockSystem &system, Candidates &candidates) {
     return is_ghost(pair.lower) || is_ghost(pair.higher);
   };
   const auto order = [&](const PlainPair &plain) {
-    return std::tuple(has_ghost(plain.pair), plain.group(), plain.is_deformable, plain.lower_edges, plain.higher_edges,
-                      plain.may_be_corners);
+    return std::tuple(has_ghost(plain.pair), plain.group(), plain.is_deformable, plain.lower_edges,
+                      plain.higher_edges, plain.may_be_corners);
   };
   std::stable_sort(candidates.plain.begin(), candidates.plain.end(),
                    [&](const PlainPair &a, const PlainPair &b) { return order(a) < order(b); });
@@ -396,6 +396,9 @@ Candidates make_candidates(const BlockSystem &system,
                        [&](const RegionMemory &m) { return m.is_same_region(record->memory); })) {
         history.regions.push_back(record->memory);
       }
+    }
+    if (candidate.is_mixed && history.regions.size() > begin && history.regions[begin].law >= 0) {
+      take_law(system, parameters, history.regions[begin].law, candidates.pairs.back());
     }
     history.ranges.push_back({begin, static_cast<std::uint32_t>(history.regions.size()) - begin});
   }

@@ -110,7 +110,7 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
     lanes.pair[i] = &plain;
     lanes.constants[i] = &scene.candidates.pairs[plain.pair];
     lanes.memory[i] = old.count == 0 ? &PlainLanes::no_memory : scene.history.regions.data() + old.begin;
-    if (plain.is_mixed && old.count > 0) {
+    if (plain.is_mixed && old.count > 0 && lanes.memory[i]->law != lanes.constants[i]->law) {
       own_[i] = constants_of(scene.system, parameters_, *lanes.constants[i], lanes.memory[i]->law);
       lanes.constants[i] = &own_[i];
     }

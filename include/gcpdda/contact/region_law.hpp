@@ -54,7 +54,7 @@ void take_law(const BlockSystem &system, const ContactParameters &parameters, st
 inline CandidatePair constants_of(const BlockSystem &system, const ContactParameters &parameters,
                                   const CandidatePair &pair, std::int32_t law) {
   CandidatePair own = pair;
-  if (law >= 0) {
+  if (law >= 0 && law != pair.law) {
     take_law(system, parameters, law, own);
   }
   return own;
