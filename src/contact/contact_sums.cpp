@@ -2,6 +2,8 @@
 
 #include "gcpdda/contact/contact_forces.hpp"
 
+#include <algorithm>
+
 namespace gcpdda {
 
 ContactPart contact_part(const RegionForce &force, bool is_lower, Vec2 centroid) {
@@ -79,21 +81,47 @@ ContactCount add_contacts(const Candidates &candidates, const ContactForces &con
   return count;
 }
 
-BlockGradientSum sum_gradient_forces(const BlockSystem &system, const Candidates &candidates,
-                                     const ContactForces &contacts, std::size_t row) {
-  BlockGradientSum dyads;
-  const Vec2 centroid = system.trial_centroid[row];
-  for_regions(candidates, contacts, row, [&](const RegionForce &f, bool is_lower) {
-    const double sign = is_lower ? 1.0 : -1.0;
+// Of pairs in their order too; those of two rigid blocks need not have details.
+void find_gradient_sums(const BlockSystem &system, const Candidates &candidates,
+                        const ContactForces &contacts, std::span<BlockGradientSum> sums) {
+  std::fill(sums.begin(), sums.end(), BlockGradientSum{});
+  const auto add = [&](std::size_t row, double sign, const RegionForce &f) {
+    BlockGradientSum &sum = sums[system.deformation_begin[row]];
+    const Vec2 centroid = system.trial_centroid[row];
     const Vec2 arm = f.origin - centroid;
-    dyads.force += sign * (f.dyad + outer(arm, f.force));
-    dyads.shear += sign * (outer(f.point - centroid, f.shear_force) + contacts.bond_dyad(f));
-    dyads.damping += sign * (contacts.damping_dyad(f) + outer(arm, f.damping_force));
-  });
-  // int t X^T with X = F^-1 (x - x_c).
-  const Mat2 &to_reference = system.trial_inverse[system.deformation_begin[row]];
-  const auto work_on_gradient = [&](const Mat2 &dyad) { return transposed(to_reference * dyad); };
-  return {work_on_gradient(dyads.force), work_on_gradient(dyads.shear), work_on_gradient(dyads.damping)};
+    sum.force += sign * (f.dyad + outer(arm, f.force));
+    sum.shear += sign * (outer(f.point - centroid, f.shear_force) + contacts.bond_dyad(f));
+    sum.damping += sign * (contacts.damping_dyad(f) + outer(arm, f.damping_force));
+  };
+  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
+    const CandidatePair &pair = candidates.pairs[k];
+    const auto takes = [&](BlockIndex row) {
+      return row.value < system.num_owned && system.is_deformable(row.value);
+    };
+    const bool lower = takes(pair.lower);
+    const bool higher = takes(pair.higher);
+    if (!lower && !higher) {
+      continue;
+    }
+    for (const RegionForce &f : contacts.of_pair(k)) {
+      if (lower) {
+        add(pair.lower.value, 1.0, f);
+      }
+      if (higher) {
+        add(pair.higher.value, -1.0, f);
+      }
+    }
+  }
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (!system.is_deformable(row)) {
+      continue;
+    }
+    // int t X^T with X = F^-1 (x - x_c).
+    BlockGradientSum &sum = sums[system.deformation_begin[row]];
+    const Mat2 &to_reference = system.trial_inverse[system.deformation_begin[row]];
+    const auto work_on_gradient = [&](const Mat2 &dyad) { return transposed(to_reference * dyad); };
+    sum = {work_on_gradient(sum.force), work_on_gradient(sum.shear), work_on_gradient(sum.damping)};
+  }
 }
 
 std::array<double, 3> mean_stress(const BlockSystem &system, const Candidates &candidates,

@@ -100,7 +100,12 @@ BlockMatrix own_matrix(BlockSystem &system, std::size_t row, const Scheme &schem
       matrix[k] += time.rate_coming * dashpot->damping[k];
     }
   }
-  return system.is_deformable(row) ? factorise<6>(matrix) : factorise<3>(matrix);
+  if (!system.is_deformable(row)) {
+    return factorise<3>(matrix);
+  }
+  BlockMatrix factors = factorise<6>(matrix);
+  factors.by_torque = solve<6>(factors, {0.0, 0.0, 1.0, 0.0, 0.0, 0.0});
+  return factors;
 }
 
 } // namespace

@@ -125,7 +125,7 @@ double moment(const Mat2 &stress, const Mat2 &stretch) {
 /// a. One linear equation: a J works on r alone, as the force -2 a against it.
 double remove_torque(const BlockMatrix &matrix, const Deformation &d, double coming, const Mat2 &stretch,
                      const Mat2 &stress_at_base, Dofs &x) {
-  const Dofs unit = solve<6>(matrix, {0.0, 0.0, 1.0, 0.0, 0.0, 0.0});
+  const Dofs &unit = matrix.by_torque;
   const Mat2 stress = stress_at_base + coming * elastic_stress(d, gradient_of(x));
   const double a =
       moment(stress, stretch) /

@@ -209,6 +209,10 @@ void Simulation::sum_contacts_of_blocks() {
   contact_sums_.assign(blocks_.num_owned, {});
   contact_count_ = add_contacts(candidates_, contacts_, blocks_, contact_sums_);
   contacts_.add_dilation_works(candidates_, blocks_);
+  if (!blocks_.deformation.empty()) {
+    gradient_sums_.resize(blocks_.deformation.size());
+    find_gradient_sums(blocks_, candidates_, contacts_, gradient_sums_);
+  }
   bolts_.add_forces(blocks_, contact_sums_);
   forces_.rigid.resize(blocks_.num_owned);
   forces_.gradient.resize(blocks_.deformation.size());
@@ -277,7 +281,7 @@ void Simulation::gather_block(std::size_t row, const BodyForces &body, const Wat
 void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   Deformation &d = blocks_.deformation_of(row);
   BlockLedger &ledger = blocks_.ledger[row];
-  const BlockGradientSum sum = sum_gradient_forces(blocks_, candidates_, contacts_, row);
+  const BlockGradientSum &sum = gradient_sums_[blocks_.deformation_begin[row]];
   d.shear_force = sum.shear;
   d.damping_force = sum.damping;
   const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];

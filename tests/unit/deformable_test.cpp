@@ -323,4 +323,15 @@ TEST(LocalDamping, TakesAShareOfEachComponent) {
 }
 
 } // namespace
+// By a series where it is small, to the rounding of the products it comes from.
+TEST(Deformable, AngleBetweenTurnsIsTheirs) {
+  const auto turned = [](double angle) {
+    const Rotation r = Rotation::of(angle);
+    return Mat2{r.c, -r.s, r.s, r.c} * Mat2{1.1, 0.02, 0.02, 0.9};
+  };
+  for (const double angle : {0.0, 1e-12, -3e-7, 1e-3, 0.0156, -0.0157, 0.3, -2.0, 3.0}) {
+    EXPECT_NEAR(angle_between(turned(0.7), turned(0.7 + angle)), angle, 8.0 * epsilon) << angle;
+  }
+}
+
 } // namespace gcpdda::deformable_test

@@ -352,8 +352,9 @@ struct BlockGradientSum {
   Mat2 shear;
   Mat2 damping;
 };
-BlockGradientSum sum_gradient_forces(const BlockSystem &system, const Candidates &candidates,
-                                     const ContactForces &contacts, std::size_t row);
+/// Of all owned deformable rows, by entry of BlockSystem::deformation.
+void find_gradient_sums(const BlockSystem &system, const Candidates &candidates,
+                        const ContactForces &contacts, std::span<BlockGradientSum> sums);
 
 /// (1/area) int sym(x f) of a block's contacts about its trial centroid: xx, yy, xy in Pa, tension positive.
 std::array<double, 3> mean_stress(const BlockSystem &system, const Candidates &candidates,

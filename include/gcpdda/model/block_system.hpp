@@ -114,6 +114,7 @@ struct Dashpot {
 /// L, D on it.
 struct BlockMatrix {
   std::array<double, 21> factor{};
+  std::array<double, 6> by_torque{}; ///< the solution under a unit torque, of a deformable block
 };
 
 /// What the energy ledger carries for one block: forces of the last evaluation and their work so far over

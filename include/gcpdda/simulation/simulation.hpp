@@ -307,6 +307,7 @@ private:
   std::optional<Restored> restored_;
   ForceReport force_report_;
   std::vector<BlockContactSum> contact_sums_;
+  std::vector<BlockGradientSum> gradient_sums_; ///< by entry of BlockSystem::deformation
   ContactCount contact_count_; ///< at the last evaluation
   std::optional<Fault> local_fault_;
   std::optional<Fault> fault_;
