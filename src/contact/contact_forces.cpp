@@ -25,6 +25,13 @@ void fetch_pair(const Candidates &candidates, const ContactHistory &history, std
   prefetch(history.regions.data() + history.ranges[pair].begin, offsetof(RegionMemory, position));
 }
 
+/// Visit the numbers of the bits that are set, the least first.
+template <class Visit> void for_bits(unsigned bits, Visit &&visit) {
+  for (; bits != 0; bits &= bits - 1) {
+    visit(static_cast<std::size_t>(std::countr_zero(bits)));
+  }
+}
+
 template <class T> void grow(std::vector<T> &list, std::size_t size) {
   if (list.size() < size) {
     list.resize(size);
@@ -135,27 +142,19 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   }
 }
 
-void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching) {
-  const bool is_deformable = lanes.pair[0]->is_deformable;
-  const Details details = is_deformable ? Details::now : details_;
-  PlainBatch::Results results;
+PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching, Details details) {
+  PlainResults results;
   grow(sums_, num_forces_ + lanes.count);
   grow(next_.regions, num_forces_ + lanes.count);
   if (details == Details::now) {
     grow(forces_, num_forces_ + lanes.count);
   }
-  const auto for_wanted = [&](auto &&visit) {
-    for (unsigned left = results.wanted; left != 0; left &= left - 1) {
-      visit(static_cast<std::size_t>(std::countr_zero(left)));
-    }
-  };
-  for (unsigned left = touching; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+  for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
     if (is_born && plain.is_mixed) {
       births_.push_back(plain.pair);
-      continue;
+      return;
     }
     results.wanted |= 1U << i;
     ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
@@ -171,35 +170,38 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
       results.details[i] = &forces_[num_forces_];
     }
     ++num_forces_;
-  }
+  });
+  return results;
+}
+
+void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching) {
+  const bool is_deformable = lanes.pair[0]->is_deformable;
+  const Details details = is_deformable ? Details::now : details_;
+  const PlainResults results = open_regions(lanes, touching, details);
   const unsigned too_deep = batch_->store(results, details);
-  for_wanted([&](std::size_t i) {
+  for_bits(results.wanted, [&](std::size_t i) {
     RegionMemory &memory = *results.memory[i];
     memory.law = lanes.pair[i]->is_mixed ? lanes.constants[i]->law : -1;
     memory.position = {};
     memory.dilation = {};
     memory.lower_stretch = 0;
     memory.higher_stretch = 0;
-  });
-  if (details == Details::now) {
-    for_wanted([&](std::size_t i) {
+    if (details == Details::now) {
       const auto region = static_cast<std::size_t>(results.sums[i] - sums_.data());
       static_cast<RegionSums &>(forces_[region]) = sums_[region];
       if (is_deformable) {
         damping_dyads_.resize(region + 1);
         damping_dyads_.back() = batch_->damping_dyad(i);
       }
-    });
-  }
-  for_wanted([&](std::size_t i) {
-    if ((too_deep >> i & 1U) != 0) {
-      note_depth(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], batch_->overlap(i));
     }
+  });
+  for_bits(too_deep, [&](std::size_t i) {
+    note_depth(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], batch_->overlap(i));
   });
 }
 
 void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
-  PlainBatch::Results results;
+  PlainResults results;
   std::array<RegionMemory, most_lanes> known;
   for (std::size_t i = 0; i < lanes.count; ++i) {
     const PlainPair &plain = *lanes.pair[i];

@@ -124,7 +124,7 @@ public:
   void add_dashpot(const Lanes &total, const LaneVec &moment, const AnyMotion &motion);
   /// With all forces in place.
   template <class AnyMotion> void find_torques(const AnyMotion &motion);
-  unsigned store(const PlainBatch::Results &results, Details details);
+  unsigned store(const PlainResults &results, Details details);
   PlainBatch::Extremes take_extremes();
 
   [[nodiscard]] const LaneVec &point() const { return point_; }
@@ -256,7 +256,7 @@ template <class AnyMotion> void LaneRegions::find_torques(const AnyMotion &motio
   torque_[1] = -about_origin - cross(origin - motion.higher_centroid, force_);
 }
 
-inline unsigned LaneRegions::store(const PlainBatch::Results &results, Details details) {
+inline unsigned LaneRegions::store(const PlainResults &results, Details details) {
   using Places = std::array<std::byte *, num_lanes>;
   const auto wants = [&](std::size_t i) { return (results.wanted >> i & 1U) != 0; };
   const auto places = [&](const auto &of_results, auto &unwanted) {

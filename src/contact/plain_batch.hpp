@@ -38,6 +38,14 @@ struct PlainLanes {
   static const RegionMemory no_memory; ///< has a slip below 0
 };
 
+/// Where results go, by lane.
+struct PlainResults {
+  unsigned wanted = 0; ///< bits of the lanes someone asks for, which touch; other places are not looked at
+  std::array<RegionSums *, most_lanes> sums;
+  std::array<RegionMemory *, most_lanes> memory;
+  std::array<RegionDetails *, most_lanes> details; ///< with Details::now
+};
+
 /// Evaluates as many pairs at once as the registers of its instructions hold. All instructions give the same
 /// bits: each operation is rounded by itself.
 class PlainBatch {
@@ -55,17 +63,10 @@ public:
   /// is far less work (lane_corners.hpp). Of the others some are seen not to touch, the rest is left to
   /// evaluate().
   virtual Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) = 0;
-  /// Where results go, by lane.
-  struct Results {
-    unsigned wanted = 0; ///< bits of the lanes someone asks for, which touch; other places are not looked at
-    std::array<RegionSums *, most_lanes> sums;
-    std::array<RegionMemory *, most_lanes> memory;
-    std::array<RegionDetails *, most_lanes> details; ///< with Details::now
-  };
   /// Write all of the sums but pair, rows, birth and bond, and shear, extent, slip and state of the memory,
   /// whose law is lost.
   /// @return bit i is set where the overlap of lane i exceeds what is allowed
-  virtual unsigned store(const Results &results, Details details) = 0;
+  virtual unsigned store(const PlainResults &results, Details details) = 0;
   /// Thickness of the overlap in a lane that touches, m.
   [[nodiscard]] virtual double overlap(std::size_t lane) const = 0;
   /// Of a lane that touches where a block is deformable.

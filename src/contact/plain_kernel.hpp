@@ -22,7 +22,7 @@ public:
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
   unsigned evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
-  unsigned store(const Results &results, Details details) override {
+  unsigned store(const PlainResults &results, Details details) override {
     return regions_.store(results, details);
   }
   [[nodiscard]] double overlap(std::size_t lane) const override { return regions_.overlap(lane); }

@@ -91,30 +91,6 @@ void accelerate(BlockSystem &system, const BlockForces &forces) {
   }
 }
 
-double motion_bound(const BlockSystem &system, std::size_t row, double time_step) {
-  const double radius = system.properties[row].radius;
-  const RigidDof &v = system.velocity[row];
-  const RigidDof &a = system.acceleration[row];
-  double turning = std::abs(v.r);
-  double turning_rate = std::abs(a.r);
-  if (system.is_deformable(row)) {
-    turning = norm(system.deformation_of(row).rate);
-    turning_rate = norm(system.deformation_of(row).acceleration);
-  }
-  return time_step * (norm(v.u) + radius * turning) +
-         time_step * time_step * (norm(a.u) + radius * turning_rate);
-}
-
-double moved_since_refresh(const BlockSystem &system, std::size_t row) {
-  const RigidDof moved = system.displacement[row] - system.refreshed[row];
-  double turned = std::abs(moved.r);
-  if (system.is_deformable(row)) {
-    const Deformation &d = system.deformation_of(row);
-    turned = norm(d.gradient - d.refreshed);
-  }
-  return norm(moved.u) + system.properties[row].radius * turned;
-}
-
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                             const Scheme &scheme, double time_step, Elasticity elasticity,
                                             std::size_t first, std::size_t last) {

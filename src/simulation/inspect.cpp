@@ -51,8 +51,12 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(blocks.box);
   add(simulation.candidates().pairs);
   add(simulation.candidates().block_contacts);
+  add(simulation.candidates().plain);
+  add(simulation.candidates().chain_vertices);
   add(simulation.history().regions);
-  bytes += simulation.contacts().regions().size() * sizeof(RegionForce);
+  bytes += blocks.num_rows() * sizeof(BlockMotion);
+  bytes += simulation.contacts().regions().size() *
+           (sizeof(RegionForce) + sizeof(RegionSums) + sizeof(RegionMemory));
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -8,9 +9,9 @@ namespace gcpdda {
 /// Ask for the cache lines of something that is used soon; nothing may be there.
 inline void prefetch(const void *first, std::size_t bytes) {
   constexpr std::size_t cache_line = 64;
-  const auto address = reinterpret_cast<std::uintptr_t>(first);
+  const auto address = std::bit_cast<std::uintptr_t>(first);
   for (std::size_t offset = 0; offset < bytes; offset += cache_line) {
-    __builtin_prefetch(reinterpret_cast<const void *>(address + offset));
+    __builtin_prefetch(std::bit_cast<const void *>(address + offset));
   }
 }
 

@@ -138,6 +138,7 @@ struct ForceReport {
 class PlainBatch;
 struct PlainScene;
 struct PlainLanes;
+struct PlainResults;
 
 /// What plain pairs are computed with: the widest registers this machine has, or those every machine has. The
 /// results are the same. Without these instructions of its own avx2 means the next narrower ones.
@@ -241,6 +242,8 @@ private:
   void find_meeting(const Candidates &candidates, const ContactHistory &history, std::size_t first,
                     std::size_t last);
   void evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries);
+  /// Places for the lanes that touch, and what of them is known already.
+  PlainResults open_regions(const PlainLanes &lanes, unsigned touching, Details details);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching);
   /// Once more, with details.

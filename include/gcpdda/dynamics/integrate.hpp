@@ -3,6 +3,8 @@
 #include "gcpdda/dynamics/scheme.hpp"
 #include "gcpdda/model/block_system.hpp"
 
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -53,10 +55,30 @@ void accelerate(BlockSystem &system, const BlockForces &forces);
 
 /// Largest distance (m) a point of the block may move before the next trial configuration has been left
 /// behind.
-double motion_bound(const BlockSystem &system, std::size_t row, double time_step);
+inline double motion_bound(const BlockSystem &system, std::size_t row, double time_step) {
+  const double radius = system.properties[row].radius;
+  const RigidDof &v = system.velocity[row];
+  const RigidDof &a = system.acceleration[row];
+  double turning = std::abs(v.r);
+  double turning_rate = std::abs(a.r);
+  if (system.is_deformable(row)) {
+    turning = norm(system.deformation_of(row).rate);
+    turning_rate = norm(system.deformation_of(row).acceleration);
+  }
+  return time_step * (norm(v.u) + radius * turning) +
+         time_step * time_step * (norm(a.u) + radius * turning_rate);
+}
 
 /// Largest distance (m) a point of the block has moved since the last refresh of the neighbourhood.
-double moved_since_refresh(const BlockSystem &system, std::size_t row);
+inline double moved_since_refresh(const BlockSystem &system, std::size_t row) {
+  const RigidDof moved = system.displacement[row] - system.refreshed[row];
+  double turned = std::abs(moved.r);
+  if (system.is_deformable(row)) {
+    const Deformation &d = system.deformation_of(row);
+    turned = norm(d.gradient - d.refreshed);
+  }
+  return norm(moved.u) + system.properties[row].radius * turned;
+}
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its
 /// size against the velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force
