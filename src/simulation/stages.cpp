@@ -22,13 +22,15 @@ double undamped(double force, double velocity, double share) {
   return force / (1.0 - share * sign);
 }
 
-double kinetic_energy_of(const BlockSystem &blocks, std::size_t row) {
+double kinetic_energy_of(const BlockSystem &blocks, std::size_t row, const RigidDof &v, const Mat2 &rate) {
   const BlockProperties &block = blocks.properties[row];
-  const RigidDof &v = blocks.velocity[row];
-  const double turning = blocks.is_deformable(row)
-                             ? kinetic_energy(blocks.deformation_of(row), blocks.deformation_of(row).rate)
-                             : 0.5 * block.inertia * v.r * v.r;
+  const double turning = blocks.is_deformable(row) ? kinetic_energy(blocks.deformation_of(row), rate)
+                                                   : 0.5 * block.inertia * v.r * v.r;
   return 0.5 * block.mass * dot(v.u, v.u) + turning;
+}
+double kinetic_energy_of(const BlockSystem &blocks, std::size_t row) {
+  return kinetic_energy_of(blocks, row, blocks.velocity[row],
+                           blocks.is_deformable(row) ? blocks.deformation_of(row).rate : Mat2{});
 }
 
 /// Largest distance a point of the block has moved.
@@ -149,7 +151,41 @@ void Simulation::stop_at_energy_peak() {
   const bool passed = now < stage_.memory.kinetic_before;
   stage_.memory.kinetic_before = passed ? 0.0 : now;
   if (passed) {
+    book_stop();
     set_to_rest();
+  }
+}
+
+// What stopping takes from the energies of the ledger, which are those of the leapfrog of x*. It would have
+// gone on to x*' = x + c1 dt v + c2 dt^2 a with the kinetic energy of (x*' - x*)/dt; it goes on from x
+// instead, and the trapezoid of this evaluation and about that of the next, which begins from rest, take f
+// along x - x*' and x - x*.
+void Simulation::book_stop() {
+  const double dt = plan_.time_step;
+  const double by_velocity = scheme_.trial_velocity * dt;
+  const double by_acceleration = scheme_.trial_acceleration * dt * dt;
+  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
+    if (blocks_.properties[row].keeps_its_velocity()) {
+      continue;
+    }
+    BlockLedger &ledger = blocks_.ledger[row];
+    const RigidDof ahead = by_velocity * blocks_.velocity[row] + by_acceleration * blocks_.acceleration[row];
+    const RigidDof behind = blocks_.displacement[row] - blocks_.trial[row];
+    RigidDof force = forces_.rigid[row] + ledger.anchor_force;
+    Mat2 stretch;
+    double work_on_gradient = 0.0;
+    if (blocks_.is_deformable(row)) {
+      const Deformation &d = blocks_.deformation_of(row);
+      const Mat2 gradient_ahead = by_velocity * d.rate + by_acceleration * d.acceleration;
+      const Mat2 gradient_behind = d.gradient - d.trial;
+      force.r = 0.0;
+      stretch = (1.0 / dt) * (gradient_behind + gradient_ahead);
+      work_on_gradient =
+          contract(forces_.gradient[blocks_.deformation_begin[row]] - d.internal + d.anchor_force,
+                   gradient_ahead - gradient_behind);
+    }
+    ledger.damping_work += 0.5 * (work(force, ahead - behind) + work_on_gradient) -
+                           kinetic_energy_of(blocks_, row, (1.0 / dt) * (behind + ahead), stretch);
   }
 }
 

@@ -1,5 +1,6 @@
 // Stages: verdicts on scenes whose answer is known, what stages change at once, what they make of the rest.
 
+#include "gcpdda/simulation/energy_ledger.hpp"
 #include "gcpdda/simulation/stages.hpp"
 
 #include "support/incline.hpp"
@@ -154,6 +155,28 @@ TEST(Stages, KineticDampingLeavesAWallWhereLocalDampingDoes) {
   }
   EXPECT_LE(apart, 1e-3 * largest);
   EXPECT_LE(2 * kinetic.step_count(), local.step_count());
+}
+
+// What each stop takes is booked as damping, but for how the force changes in the step that begins from rest.
+TEST(Stages, KineticDampingKeepsTheLedger) {
+  std::string deformable = stack_head;
+  deformable.replace(deformable.find("rigid"), 5, "deformable");
+  deformable.insert(deformable.find("[joint"), "youngs_modulus = 1e10\npoissons_ratio = 0.25\n");
+  for (const std::string &head : {stack_head, deformable}) {
+    Simulation simulation(
+        Communicator::self(),
+        scene_of(head + block_toml("floor", rectangle({-1.0, -1.0}, {9.0, 0.0}), "fixed = true") +
+                 "[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 16\ncolumns = 8\n"
+                 "block_size = [1.0, 0.5]\n" +
+                 settle_kinetically));
+    const EnergyLedger ledger(simulation);
+    while (!simulation.stage_is_over()) {
+      simulation.step();
+    }
+    const EnergyRow row = ledger.row(simulation);
+    EXPECT_LT(std::abs(row.residual), 2e-3 * row.damping_loss) << row.residual;
+    EXPECT_GT(row.damping_loss, 0.3 * -row.gravity);
+  }
 }
 
 TEST(Stages, AFallingBlockFails) {

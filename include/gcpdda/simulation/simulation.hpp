@@ -197,6 +197,7 @@ private:
   void set_to_rest();
   void look_at_stage();
   void stop_at_energy_peak();
+  void book_stop();
   void mark_stage();
   void evaluate_still();
   void adopt(const Scene &after);
