@@ -24,8 +24,8 @@ struct CandidatePair {
   double mass = 0.0;            ///< m_A m_B/(m_A + m_B), kg per metre
   double allowed_overlap = 0.0; ///< half the narrowest width: deeper than this the force reverses, m
   bool is_convex = true;        ///< both blocks are: one region at most
-  bool is_mixed =
-      false; ///< its regions may take different laws, see region_law.hpp; above that of one of them
+  /// Its regions may take different laws, see region_law.hpp; the constants are those of one of them.
+  bool is_mixed = false;
   bool is_plain = false; ///< listed in Candidates::plain
 };
 
