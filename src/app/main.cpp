@@ -21,6 +21,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <span>
+#include <sstream>
 
 namespace {
 
@@ -38,6 +39,7 @@ struct Arguments {
   std::string tolerance; ///< and the next two: values of [fos]
   std::string from;
   std::string to;
+  std::string settled;
   std::string count; ///< of [ensemble]
   int ranks = 0;
   bool overwrite = false;
@@ -118,6 +120,28 @@ int restart(const Communicator &world, Arguments arguments) {
   });
 }
 
+/// Throws FileError where the blocks of a `settled` folder have settled with another scene.
+/// @return what strengths were divided by then
+double factor_of_settled(const Communicator &world, const std::string &folder, const Scene &scene) {
+  const std::string path = (std::filesystem::path(folder) / "scene.toml").string();
+  const std::string text = read_on_root(world, path, "the scene of the settled state");
+  std::istringstream before(settling_part(text));
+  std::istringstream now(settling_part(scene.resolved));
+  std::string was;
+  std::string is;
+  do {
+    was = std::getline(before, was) ? was : "the end";
+    is = std::getline(now, is) ? is : "the end";
+    if (was != is) {
+      throw FileError(path + ": error: the blocks have settled with another scene, it says '" + was +
+                      "' where this one says '" + is +
+                      "', leave --settled out or give the state of this scene");
+    }
+  } while (before || now);
+  const std::size_t end = text.find('\n');
+  return text.starts_with(settled_weaker) ? std::stod(text.substr(settled_weaker.size(), end)) : 1.0;
+}
+
 /// What the command line says of the search goes the way of --set.
 int fos(const Communicator &world, Arguments arguments) {
   catch_stop_signal();
@@ -135,8 +159,14 @@ int fos(const Communicator &world, Arguments arguments) {
     }
   }
   return with_scene(world, arguments, [&](const Scene &scene) {
-    return find_safety_factor(world, scene,
-                              {result_folder(arguments, scene.stem + "_fos"), arguments.overwrite});
+    SafetyOptions options;
+    options.directory = result_folder(arguments, scene.stem + "_fos");
+    options.overwrite = arguments.overwrite;
+    if (!arguments.settled.empty()) {
+      options.settled = arguments.settled;
+      options.settled_factor = factor_of_settled(world, arguments.settled, scene);
+    }
+    return find_safety_factor(world, scene, options);
   });
 }
 
@@ -211,6 +241,9 @@ const CLI::App *add_fos(CLI::App &app, Arguments &arguments) {
   command->add_option("--tolerance", arguments.tolerance, "width of the bracket at the end; default 0.01");
   command->add_option("--from", arguments.from, "factor that is expected to hold; default 0.5");
   command->add_option("--to", arguments.to, "factor that is expected to fail; default 4");
+  command->add_option("--settled", arguments.settled,
+                      "begin with the state in this folder, 'settled' of an earlier search with the same "
+                      "scene; default: settle now");
   return command;
 }
 

@@ -86,7 +86,7 @@ public:
 
 private:
   int search() {
-    if (const int code = settle_as_it_can(); code != 0) {
+    if (const int code = options_.settled.empty() ? settle_as_it_can() : take_settled(); code != 0) {
       return code;
     }
     const std::size_t at_once = choose_groups();
@@ -132,6 +132,25 @@ private:
       say(message_ + "\n");
     }
     return code;
+  }
+
+  /// The state an earlier search has settled; of no cost to this one.
+  int take_settled() {
+    const Simulation found(world_, settling_scene(scene_, options_.settled_factor), options_.settled);
+    num_blocks_ = found.num_blocks();
+    start_time_ = found.time();
+    report_.settled.factor = options_.settled_factor;
+    report_.settled.verdict = found.finished() ? found.stage().verdict : Verdict::undecided;
+    report_.settled.time = found.time();
+    report_.settled.steps = found.step_count();
+    if (has_settled()) {
+      return 0;
+    }
+    message_ = fmt::format("the run in {} has not settled, let it go on (gcpdda restart) or leave --settled "
+                           "out",
+                           options_.settled.string());
+    say(message_ + "\n");
+    return 7;
   }
 
   [[nodiscard]] bool has_settled() const { return report_.settled.verdict == Verdict::settled; }
@@ -240,7 +259,9 @@ private:
     return trial == trials_.end() ? std::nullopt : std::optional(trial->second.verdict);
   }
 
-  [[nodiscard]] fs::path settled_directory() const { return options_.directory / "settled"; }
+  [[nodiscard]] fs::path settled_directory() const {
+    return options_.settled.empty() ? options_.directory / "settled" : options_.settled;
+  }
   [[nodiscard]] fs::path trial_directory(double factor) const {
     return options_.directory / "trials" / fmt::format("F{:.9g}", factor);
   }

@@ -179,8 +179,7 @@ Scene settling_scene(const Scene &scene, double factor) {
       stage.after = std::move(after);
     }
   }
-  start.resolved = fmt::format("# settled by gcpdda fos: strengths as below divided by {:.17g}\n", factor) +
-                   scene.resolved;
+  start.resolved = fmt::format("{}{:.17g}\n", settled_weaker, factor) + scene.resolved;
   return start;
 }
 

@@ -51,6 +51,41 @@ TEST(Fos, WritesWhatItFinds) {
   EXPECT_EQ(json_value(results / "fos.json", "holds"), "null");
 }
 
+TEST(Fos, BeginsWithTheStateOfAnEarlierSearch) {
+  const WorkFolder folder;
+  folder.write("plane.toml", testing::plane_failure_toml(0.0));
+  const std::vector<std::string> call{"fos",  "plane.toml", "--tolerance", "0.3",
+                                      "--to", "2.5",        "--from",      "0.8"};
+  const auto with = [&](const std::vector<std::string> &more) {
+    std::vector<std::string> longer = call;
+    longer.insert(longer.end(), more.begin(), more.end());
+    return longer;
+  };
+  ASSERT_EQ(run_gcpdda(0, call, folder).exit_code, 0);
+  const std::string state = "results/plane_fos/settled";
+  const Outcome again = run_gcpdda(2, with({"--settled", state, "--out", "again"}), folder);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_FALSE(fs::exists(folder / "again/settled"));
+  for (const char *key : {"holds", "fails", "moving"}) {
+    EXPECT_EQ(json_value(folder / "again/fos.json", key),
+              json_value(folder / "results/plane_fos/fos.json", key))
+        << key;
+  }
+  EXPECT_EQ(run_gcpdda(0, with({"--settled", state, "--overwrite"}), folder).exit_code, 0)
+      << "in the folder of the earlier search, which keeps its state";
+
+  const Outcome other = run_gcpdda(
+      0, with({"--settled", state, "--out", "other", "--set", "joint.default.friction_angle_deg=44"}),
+      folder);
+  EXPECT_EQ(other.exit_code, 4);
+  EXPECT_NE(other.err.find("settled with another scene"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("'friction_angle_deg = 44'"), std::string::npos) << other.err;
+  EXPECT_FALSE(fs::exists(folder / "other"));
+  const Outcome nothing = run_gcpdda(0, with({"--settled", "results", "--out", "other"}), folder);
+  EXPECT_EQ(nothing.exit_code, 4);
+  EXPECT_FALSE(fs::exists(folder / "other"));
+}
+
 TEST(Fos, RefusesWhatItCannotSearch) {
   const WorkFolder folder;
   folder.write("plane.toml", testing::plane_failure_toml(0.0));

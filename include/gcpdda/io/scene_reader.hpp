@@ -23,6 +23,10 @@ struct SceneReading {
 /// An error in a scene with the median of what its ensemble varies is an error of the scene.
 SceneReading read_scene(std::string_view text, const std::string &file, const std::vector<std::string> &sets);
 
+/// Of the text of a resolved scene what decides its settled state: without comments, [fos], [output],
+/// [ensemble] and monitors.
+std::string settling_part(std::string_view resolved);
+
 /// The --set argument that gives a value of the scene that varies.
 std::string assignment(const Variation &variation, double value);
 

@@ -20,6 +20,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace gcpdda {
@@ -49,6 +50,9 @@ Scene with_settle_stage(Scene scene);
 /// @throws SceneError where no stage is of kind settle
 Scene settling_scene(const Scene &scene, double factor);
 
+/// How Scene::resolved begins after a settling_scene() with another factor than 1; the factor follows.
+inline constexpr std::string_view settled_weaker = "# settled by gcpdda fos: strengths as below divided by ";
+
 /// Whether the strengths of a law are divided.
 bool is_weakened(const StrengthReduction &reduction, std::size_t law);
 
@@ -60,6 +64,10 @@ struct SafetyOptions {
   bool overwrite = false;
   bool quiet = false;                        ///< nothing but the runs is written, nothing is said
   std::int64_t fewest_blocks_per_rank = 500; ///< of a trial; below it another rank costs more than it saves
+  /// The `settled` folder of an earlier search with the same scene but for [fos], [output], [ensemble] and
+  /// monitors (scene_reader.hpp); empty to settle now.
+  std::filesystem::path settled = {};
+  double settled_factor = 1.0; ///< what strengths were divided by then
 };
 
 struct SafetyOutcome {
