@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+
 namespace gcpdda {
 
 namespace {
@@ -77,7 +79,11 @@ double amplification(const Scheme &s, double w, double xi) {
   return spectral_radius(std::span(step.data(), 9));
 }
 
-double stability_limit(const Scheme &scheme, double damping_ratio) {
+double stability_limit(const Scheme &scheme, double damping_ratio, double local_damping) {
+  if (local_damping > 0.0) {
+    const double faster = std::sqrt(1.0 + local_damping);
+    return stability_limit(scheme, faster * damping_ratio) / faster;
+  }
   // Two eigenvalues meet on the unit circle at W = 0 and at the limit, where they are sensitive to rounding
   // as its square root: hence the step away from 0 and the bound on growth.
   constexpr double first = 0.01;

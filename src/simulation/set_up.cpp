@@ -413,9 +413,16 @@ void Simulation::find_bound() {
   const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
   const bool settles = stage.kind == StageKind::settle && !stage.mass_scaling;
   bound_.safety = settles ? std::max(scene_.run.safety, safety_to_settle) : scene_.run.safety;
+  const double locally_damped =
+      stability_limit(scheme_, bound_.damping_ratio, stage.local_damping_or(scene_.run.local_damping));
+  const double undamped_share = undamped_limit / bound_.limit;
+  if (locally_damped > 0.0 && bound_.safety * bound_.limit > safety_to_settle * locally_damped) {
+    bound_.safety = safety_to_settle;
+    bound_.limit = locally_damped;
+  }
   bound_.time_step = bound_.omega_max > 0.0 ? bound_.safety * bound_.limit / bound_.omega_max
                                             : std::numeric_limits<double>::infinity();
-  bound_.undamped_step = bound_.time_step * undamped_limit / bound_.limit;
+  bound_.undamped_step = bound_.time_step * undamped_share;
 }
 
 } // namespace gcpdda

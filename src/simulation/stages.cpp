@@ -67,7 +67,7 @@ void Simulation::plan_stage() {
     plan_.duration = 0.0;
     plan_.num_steps = 0;
   }
-  local_damping_ = stage.local_damping >= 0.0 ? stage.local_damping : scene_.run.local_damping;
+  local_damping_ = stage.local_damping_or(scene_.run.local_damping);
 }
 
 bool Simulation::finished() const {

@@ -211,6 +211,50 @@ TEST(Amplification, IsTheGrowthOfAnOscillator) {
   }
 }
 
+/// Whether an oscillator with a dashpot and local damping ends with less than it began with, from many
+/// phases.
+bool calms_down(const Scheme &s, double w, double xi, double local_damping) {
+  for (int phase = 0; phase < 12; ++phase) {
+    const double start = w * std::cos(phase * 0.5);
+    double d = std::sin(phase * 0.5);
+    double v = start;
+    double a = 0.0;
+    for (int k = 0; k < 3000; ++k) {
+      const double trial = d + s.trial_velocity * v + s.trial_acceleration * a;
+      double force = -w * w * trial - 2.0 * xi * w * v;
+      force -= local_damping * std::copysign(force, v);
+      const double a_new = (force - s.alpha_m * a) / (1.0 - s.alpha_m);
+      d += v + (0.5 - s.beta) * a + s.beta * a_new;
+      v += (1.0 - s.gamma) * a + s.gamma * a_new;
+      a = a_new;
+      if (std::abs(d) > 1e6) {
+        return false;
+      }
+    }
+    if (std::hypot(d, v / w) > 0.1) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// What swings fastest starts to grow where the formula says, to a few percent: the smaller the excess, the
+// rarer are the phases that lead there.
+TEST(StabilityLimit, OfLocalDampingIsThatOfAnOscillator) {
+  for (const double r : {0.0, 0.5, 0.8}) {
+    const Scheme scheme = alpha(r, ContactTime::leapfrog);
+    for (const double xi : {0.0, 0.1, 0.3}) {
+      for (const double share : {0.1, 0.3, 0.8}) {
+        const double limit = stability_limit(scheme, xi, share);
+        EXPECT_LT(limit, stability_limit(scheme, xi));
+        EXPECT_TRUE(calms_down(scheme, 0.95 * limit, xi, share)) << r << ' ' << xi << ' ' << share;
+        EXPECT_FALSE(calms_down(scheme, 1.05 * limit, xi, share)) << r << ' ' << xi << ' ' << share;
+      }
+    }
+    EXPECT_NEAR(stability_limit(scheme, 0.0, 0.8), 2.0 / std::sqrt(1.8), closed_form);
+  }
+}
+
 // The central claim: x*_{n+1} - 2 x*_n + x*_{n-1} = dt^2 f(x*_n)/m, exactly, for a force with a kink and a
 // jump in stiffness and for any r.
 TEST(Leapfrog, TrialConfigurationsObeyItForANonLinearForce) {

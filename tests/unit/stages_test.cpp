@@ -113,6 +113,21 @@ TEST(Stages, AWallSettlesWhereSlowDynamicsLeavesIt) {
   EXPECT_LE(2 * settled.step_count(), slow.step_count()); // it pays more the higher the wall
 }
 
+// Where every side of a block is in contact the bound of the step is nearly sharp: a step that local damping
+// cannot take keeps the pile awake for ever.
+TEST(Stages, APyramidSettlesAtTheStepTheProgramTakes) {
+  const std::string pyramid =
+      "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600.0\n[joint.default]\n"
+      "allowed_overlap = 1e-3\nfriction_angle_deg = 31.0\n[output]\ninterval = 1.0\n" +
+      block_toml("floor", rectangle({-2.0, -2.0}, {16.0, 0.0}), "fixed = true") +
+      "[[pyramid]]\nname = \"p\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 14\nblock_size = [1.0, 1.0]\n";
+  for (const char *damping : {"", "local_damping = 0.3\n", "kinetic_damping = true\n"}) {
+    Simulation simulation(Communicator::self(), scene_of(pyramid + settle + damping));
+    run_stages(simulation);
+    EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled) << damping;
+  }
+}
+
 const std::string settle_kinetically = settle + "kinetic_damping = true\n";
 
 // Sudden gravity on a touching block: half a swing about the overlap that bears it, fastest in its middle.

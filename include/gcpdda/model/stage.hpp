@@ -60,6 +60,9 @@ struct Stage {
   SourcePosition where;
 
   [[nodiscard]] bool takes_steps() const { return kind == StageKind::run || kind == StageKind::settle; }
+  [[nodiscard]] double local_damping_or(double of_run) const {
+    return local_damping >= 0.0 ? local_damping : of_run;
+  }
 };
 
 /// What is written of a stage that has ended.
