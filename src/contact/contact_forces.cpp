@@ -256,6 +256,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
     return;
   }
   has_details_ = true;
+  forces_.reserve(num_forces_);
   grow(forces_, num_forces_);
   meeting_.clear();
   for (std::size_t k = 0; k < candidates.plain.size(); ++k) {
@@ -361,6 +362,7 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   ranges_.assign(candidates.pairs.size(), {});
   // Most candidates touch: to grow by doubling would take more memory than to have room for all.
   sums_.reserve(candidates.pairs.size());
+  forces_.reserve(details == Details::now ? candidates.pairs.size() : 0);
   next_.regions.reserve(candidates.pairs.size());
   report_ = {};
   evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace gcpdda {
@@ -33,7 +34,10 @@ public:
 
 private:
   template <class Iterator> void assign(Iterator first, Iterator last) {
-    size_ = static_cast<std::size_t>(std::copy(first, last, vertices_.begin()) - vertices_.begin());
+    size_ = 0; // not std::copy: a call of memmove takes longer than the few vertices
+    for (; first != last; ++first) {
+      vertices_[size_++] = *first;
+    }
   }
 
   union {
@@ -63,6 +67,22 @@ Outline keep_positive(const Outline &polygon, const Distance &distance) {
     }
   }
   return kept;
+}
+
+/// Least and largest value of a function at the vertices.
+struct Extremes {
+  double least = 0.0;
+  double largest = 0.0;
+};
+template <class Outline, class Distance>
+Extremes extremes_of(const Outline &polygon, const Distance &distance) {
+  Extremes extremes{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Vec2 x : polygon) {
+    const double d = distance(x);
+    extremes.least = std::min(extremes.least, d);
+    extremes.largest = std::max(extremes.largest, d);
+  }
+  return extremes;
 }
 
 /// int d dA of a linear function over a convex polygon: each triangle of the fan by the mean of its corners.

@@ -42,6 +42,7 @@ Vec2 acceleration_at(const BlockSystem &system, std::size_t row, Vec2 arm) {
 InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
                            ContactHistory &history)
     : forces_(forces), history_(history), contact_counts_(system.num_rows(), 0.0) {
+  regions_.reserve(forces.regions().size());
   for (std::size_t k = 0; k < forces.regions().size(); ++k) {
     const RegionForce &force = forces.regions()[k];
     // A region without extent along its tangent (faces that coincide up to rounding) has no spring yet.

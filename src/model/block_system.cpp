@@ -110,6 +110,15 @@ void append_edge_joints(BlockSystem &system, std::span<const std::int32_t> joint
   system.edge_joint.insert(system.edge_joint.end(), joints.begin(), joints.end());
 }
 
+void reserve_rows(BlockSystem &system, std::size_t rows, std::size_t vertices) {
+  std::apply([&](auto... field) { ((system.*field).reserve(rows), ...); }, BlockSystem::row_fields());
+  std::apply([&](auto... list) { ((system.*std::get<0>(list)).reserve(rows + 1), ...); },
+             BlockSystem::lists());
+  system.reference_vertex.reserve(vertices);
+  system.reference_normal.reserve(vertices);
+  system.edge_length.reserve(vertices);
+}
+
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
   std::apply([&](auto... field) { ((to.*field).push_back((from.*field)[row]), ...); },
              BlockSystem::row_fields());

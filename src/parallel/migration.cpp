@@ -31,6 +31,8 @@ void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, c
     }
     std::sort(order.begin(), order.end());
     BlockSystem sorted;
+    reserve_rows(sorted, order.size() + fixed.num_rows(),
+                 system.reference_vertex.size() + arrived.reference_vertex.size());
     for (const auto &[id, row] : order) {
       const bool is_new = row >= system.num_rows();
       append_row(sorted, is_new ? arrived : system, is_new ? row - system.num_rows() : row);

@@ -24,7 +24,9 @@
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 namespace gcpdda {
 
@@ -304,6 +306,9 @@ void Simulation::warn_of_rounding(double size, double farthest) {
 // Mobile blocks of the slab become owned rows, to be migrated; everybody gets all fixed ones.
 void Simulation::take_blocks(std::vector<SceneBlock> slab) {
   const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+  reserve_rows(blocks_, slab.size(),
+               std::transform_reduce(slab.begin(), slab.end(), std::size_t{0}, std::plus<>(),
+                                     [](const SceneBlock &block) { return block.vertices.size(); }));
   BlockSystem fixed;
   for (std::size_t k = 0; k < slab.size(); ++k) {
     const SceneBlock &block = slab[k];

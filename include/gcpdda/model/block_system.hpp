@@ -266,6 +266,9 @@ void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, cons
 /// The laws of the last row's edges, once its vertices stand in the system; none where it has none.
 void append_edge_joints(BlockSystem &system, std::span<const std::int32_t> joints);
 
+/// Make room for so many rows with so many vertices in all: to grow by doubling would take twice the memory.
+void reserve_rows(BlockSystem &system, std::size_t rows, std::size_t vertices);
+
 /// Append a copy of another system's row. The ranges' counts are the caller's.
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row);
 
