@@ -240,8 +240,10 @@ void Simulation::move_blocks() {
 void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
   const auto scope = phases_.measure(Phase::forces);
   for (std::size_t row = first; row < last; ++row) {
-    add_half_works(blocks_, row);
     BlockLedger &ledger = blocks_.ledger[row];
+    const BlockLedger before = ledger;
+    const HalfWorks stretched =
+        blocks_.is_deformable(row) ? half_works_on_gradient(blocks_.deformation_of(row)) : HalfWorks{};
     ledger.load_work += anchor_half_work(blocks_, row);
     ledger.shear_force = contact_sums_[row].shear;
     ledger.damping_force = contact_sums_[row].damping;
@@ -254,7 +256,7 @@ void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyFo
     }
     apply_mass_damping(blocks_, row, forces_, scene_.run.rayleigh.mass_damping);
     apply_local_damping(blocks_, row, forces_, local_damping_);
-    add_half_works(blocks_, row);
+    add_works(blocks_, row, before, stretched);
   }
 }
 
@@ -322,9 +324,13 @@ void Simulation::report() {
 double Simulation::own_status() {
   const double most =
       0.25 * thinnest_; // two blocks that close by half their width in a step skip the force that parts them
+  const double calm = std::min(0.5 * skin_, most);
   double status = 0.0;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const BlockProperties &block = blocks_.properties[row];
+    if (most_motion(blocks_, row, plan_.time_step) <= calm) { // as of nearly all, and without a root
+      continue;
+    }
     const double ahead = motion_bound(blocks_, row, plan_.time_step);
     if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
       status = needs_refresh;

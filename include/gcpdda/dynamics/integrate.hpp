@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -78,6 +79,19 @@ inline double moved_since_refresh(const BlockSystem &system, std::size_t row) {
     turned = norm(d.gradient - d.refreshed);
   }
   return norm(moved.u) + system.properties[row].radius * turned;
+}
+
+/// No less than the sum of these two of a rigid row; infinite of a deformable one.
+inline double most_motion(const BlockSystem &system, std::size_t row, double time_step) {
+  if (system.is_deformable(row)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const auto most = [radius = system.properties[row].radius](const RigidDof &a) {
+    return std::abs(a.u.x) + std::abs(a.u.y) + radius * std::abs(a.r);
+  };
+  constexpr double rounding = 1.0 + 1e-12;
+  return rounding * (most(system.displacement[row] - system.refreshed[row]) +
+                     time_step * (most(system.velocity[row]) + time_step * most(system.acceleration[row])));
 }
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its

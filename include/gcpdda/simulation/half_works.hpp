@@ -13,29 +13,45 @@ struct HalfWorks {
   double gravity = 0.0;
 };
 
+/// Of forces on F alone.
+inline HalfWorks half_works_on_gradient(const Deformation &d) {
+  const Mat2 stretch = d.trial - d.trial_previous;
+  return {0.5 * contract(d.shear_force, stretch), 0.5 * contract(d.damping_force, stretch),
+          0.5 * contract(d.load_force, stretch), 0.0};
+}
+
 inline HalfWorks half_works(const BlockSystem &system, std::size_t row) {
   const BlockLedger &ledger = system.ledger[row];
   const RigidDof increment = system.trial[row] - system.trial_previous[row];
   HalfWorks half{0.5 * work(ledger.shear_force, increment), 0.5 * work(ledger.damping_force, increment),
                  0.5 * work(ledger.load_force, increment), 0.5 * dot(ledger.gravity_force, increment.u)};
   if (system.is_deformable(row)) {
-    const Deformation &d = system.deformation_of(row);
-    const Mat2 stretch = d.trial - d.trial_previous;
-    half.shear += 0.5 * contract(d.shear_force, stretch);
-    half.damping += 0.5 * contract(d.damping_force, stretch);
-    half.load += 0.5 * contract(d.load_force, stretch);
+    const HalfWorks stretched = half_works_on_gradient(system.deformation_of(row));
+    half.shear += stretched.shear;
+    half.damping += stretched.damping;
+    half.load += stretched.load;
   }
   return half;
 }
 
-/// Onto the works of the ledger.
-inline void add_half_works(BlockSystem &system, std::size_t row) {
+/// Onto the works of the ledger: what goes by the trapezoid, half with forces before and half with those the
+/// ledger holds now.
+/// @param before  the row's ledger then
+/// @param stretched  half the works of the forces then on F; nothing of a rigid row
+inline void add_works(BlockSystem &system, std::size_t row, const BlockLedger &before,
+                      const HalfWorks &stretched) {
   BlockLedger &ledger = system.ledger[row];
-  const HalfWorks half = half_works(system, row);
-  ledger.shear_work += half.shear;
-  ledger.damping_work += half.damping;
-  ledger.load_work += half.load;
-  ledger.gravity_work += half.gravity;
+  const RigidDof half_increment = 0.5 * (system.trial[row] - system.trial_previous[row]);
+  ledger.shear_work += work(before.shear_force + ledger.shear_force, half_increment);
+  ledger.damping_work += work(before.damping_force + ledger.damping_force, half_increment);
+  ledger.load_work += work(before.load_force + ledger.load_force, half_increment);
+  ledger.gravity_work += dot(before.gravity_force + ledger.gravity_force, half_increment.u);
+  if (system.is_deformable(row)) {
+    const HalfWorks now = half_works_on_gradient(system.deformation_of(row));
+    ledger.shear_work += stretched.shear + now.shear;
+    ledger.damping_work += stretched.damping + now.damping;
+    ledger.load_work += stretched.load + now.load;
+  }
 }
 
 /// The same for fixed points and viscous sides, whose force is known only after the step it acts in.
