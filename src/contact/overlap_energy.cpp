@@ -21,16 +21,20 @@ double depth_below(std::span<const Vec2> vertex, std::span<const Vec2> normal, s
 
 /// The edge lines that can be the nearest somewhere in a region, ascending, at the begin of `lines`. One that
 /// nowhere comes as near as another one always is has no cell and cuts none off.
+/// @param nearest  the one that is never far: the best guess at the nearest nearly everywhere
 /// @param least  scratch, as long as `lines`
 template <class Outline>
-std::span<std::size_t> nearest_lines(const Outline &region, std::span<const Vec2> vertex,
-                                     std::span<const Vec2> normal, double same_line,
-                                     std::span<std::size_t> lines, std::span<double> least) {
+std::span<const std::size_t>
+nearest_lines(const Outline &region, std::span<const Vec2> vertex, std::span<const Vec2> normal,
+              double same_line, std::span<std::size_t> lines, std::span<double> least, std::size_t &nearest) {
   double enough = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < vertex.size(); ++i) {
     const Extremes depth = extremes_of(region, [&](Vec2 x) { return depth_below(vertex, normal, i, x); });
     least[i] = depth.least;
-    enough = std::min(enough, depth.largest);
+    if (depth.largest < enough) {
+      enough = depth.largest;
+      nearest = i;
+    }
   }
   std::size_t count = 0;
   for (std::size_t i = 0; i < vertex.size(); ++i) {
@@ -41,94 +45,32 @@ std::span<std::size_t> nearest_lines(const Outline &region, std::span<const Vec2
   return lines.first(count);
 }
 
-/// Mean along a segment of the least of up to three linear functions, by their values at its ends.
-double mean_of_least(std::span<const double> begin, std::span<const double> end) {
-  std::size_t active = 0;
-  for (std::size_t k = 1; k < begin.size(); ++k) {
-    if (begin[k] < begin[active] || (begin[k] == begin[active] && end[k] < end[active])) {
-      active = k;
-    }
-  }
-  double sum = 0.0;
-  double at = 0.0;
-  double value = begin[active];
-  while (true) { // each turn takes a function that falls faster, so there are fewer than there are functions
-    double next = 1.0;
-    double reached = end[active];
-    std::size_t other = active;
-    for (std::size_t k = 0; k < begin.size(); ++k) {
-      const double ahead = begin[k] - begin[active];
-      const double closing = ahead - (end[k] - end[active]);
-      if (end[k] < end[active] && closing > 0.0 && ahead < next * closing) {
-        next = std::max(at, ahead / closing);
-        reached = begin[active] + next * (end[active] - begin[active]);
-        other = k;
-      }
-    }
-    sum += (next - at) * (value + reached);
-    if (other == active) {
-      return 0.5 * sum;
-    }
-    at = next;
-    value = reached;
-    active = other;
-  }
-}
-
-/// A vertex where two of the lines meet, which come first then.
-std::optional<Vec2> common_vertex(std::span<std::size_t> lines, std::span<const Vec2> vertex) {
-  const std::size_t n = vertex.size();
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    for (std::size_t j = 0; j < lines.size(); ++j) {
-      if (lines[j] == (lines[i] + 1 == n ? 0 : lines[i] + 1)) {
-        const Vec2 common = vertex[lines[j]];
-        if (lines.size() == 3) {
-          std::swap(lines[3 - i - j], lines[2]);
-        }
-        return common;
-      }
-    }
-  }
-  return lines.size() == 1 ? std::optional(vertex[lines[0]]) : std::nullopt;
-}
-
-/// int d dA, d the least depth below at most three lines of which all but the last go through w. In the cell
-/// of line i, with d_i(w) its depth at w, div(d (x - w)) = 3 d - d_i(w): the integral is a third of that of
-/// d (x - w) over the boundary, and of d_i(w) times the cell for the line that passes w by.
+/// int over the region of the least of the depths below these lines, where one line is the nearest but near
+/// some corners, each with a line of its own: int d_i less what every other line takes off, int (d_i - d_j)
+/// over where it is positive. Nothing where two of these parts meet.
 template <class Outline>
-double integrate_by_boundary(const Outline &region, std::span<const Vec2> vertex,
-                             std::span<const Vec2> normal, std::span<const std::size_t> lines, Vec2 w) {
-  const auto depths_at = [&](Vec2 x) {
-    std::array<double, 3> depths{};
-    for (std::size_t k = 0; k < lines.size(); ++k) {
-      depths[k] = depth_below(vertex, normal, lines[k], x);
-    }
-    return depths;
+std::optional<double> integrate_by_corners(const Outline &region, std::span<const Vec2> vertex,
+                                           std::span<const Vec2> normal, std::span<const std::size_t> lines,
+                                           std::size_t nearest) {
+  const auto nearer = [&](std::size_t j) {
+    return [&vertex, &normal, nearest, j](Vec2 x) {
+      return depth_below(vertex, normal, nearest, x) - depth_below(vertex, normal, j, x);
+    };
   };
-  const std::array<double, 3> first = depths_at(region[0]);
-  std::array<double, 3> before = first;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < region.size(); ++i) {
-    const bool is_last = i + 1 == region.size();
-    const Vec2 a = region[i];
-    const Vec2 b = region[is_last ? 0 : i + 1];
-    const std::array<double, 3> here = is_last ? first : depths_at(b);
-    sum += cross(a - w, b - w) *
-           mean_of_least(std::span(before).first(lines.size()), std::span(here).first(lines.size()));
-    before = here;
-  }
-  if (lines.size() == 3) {
-    Outline cell = region;
-    for (const std::size_t j : lines.first(2)) {
-      cell = keep_positive(cell, [&](Vec2 x) {
-        return depth_below(vertex, normal, j, x) - depth_below(vertex, normal, lines[2], x);
-      });
+  double sum = integrate_linear(region, [&](Vec2 x) { return depth_below(vertex, normal, nearest, x); });
+  for (const std::size_t j : lines) {
+    if (j == nearest) {
+      continue;
     }
-    if (cell.size() >= 3) {
-      sum += depth_below(vertex, normal, lines[2], w) * integrate_linear(cell, [](Vec2) { return 1.0; });
+    const Outline corner = keep_positive(region, nearer(j));
+    for (const std::size_t k : lines) {
+      if (k != nearest && k != j && extremes_of(corner, nearer(k)).largest > 0.0) {
+        return std::nullopt;
+      }
     }
+    sum -= integrate_linear(corner, nearer(j));
   }
-  return sum / 3.0;
+  return sum;
 }
 
 /// int over the region of the distance to the boundary of a convex polygon: cut the region into the cells in
@@ -146,14 +88,14 @@ double integrate_distance(const Outline &region, std::span<const Vec2> vertex, s
   std::array<double, SmallPolygon::capacity> least;
   std::vector<std::size_t> many(vertex.size() > few.size() ? vertex.size() : 0);
   std::vector<double> many_least(many.size());
+  std::size_t nearest = 0;
   const auto lines =
-      many.empty() ? nearest_lines(region, vertex, normal, same_line, few, std::span<double>(least))
-                   : nearest_lines(region, vertex, normal, same_line, many, std::span<double>(many_least));
+      many.empty()
+          ? nearest_lines(region, vertex, normal, same_line, few, std::span<double>(least), nearest)
+          : nearest_lines(region, vertex, normal, same_line, many, std::span<double>(many_least), nearest);
   const auto depth = [&](std::size_t line, Vec2 x) { return depth_below(vertex, normal, line, x); };
-  if (lines.size() <= 3) {
-    if (const auto w = common_vertex(lines, vertex)) {
-      return integrate_by_boundary(region, vertex, normal, lines, *w);
-    }
+  if (const auto sum = integrate_by_corners(region, vertex, normal, lines, nearest)) {
+    return *sum;
   }
   double sum = 0.0;
   for (const std::size_t i : lines) {

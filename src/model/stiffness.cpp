@@ -17,6 +17,7 @@ SizeSurvey survey_sizes(const Scene &scene, std::span<const SceneBlock> blocks, 
     survey.densest =
         std::max(survey.densest, scene.materials[static_cast<std::size_t>(block.material)].density);
     survey.sizes.push_back(std::sqrt(signed_area(block.vertices)));
+    survey.widths.push_back(narrowest_width(block.vertices));
     for (const Vec2 p : block.vertices) {
       const double head = dot(p, scene.run.gravity) / gravity;
       survey.low = std::min(survey.low, head);
@@ -39,6 +40,23 @@ void resolve_stiffness(Scene &scene, const SizeSurvey &survey, double median_siz
       law.normal_stiffness = pressure / (law.allowed_overlap * median_size);
     }
   }
+}
+
+double largest_sag(const Scene &scene, const SizeSurvey &survey, double median_width) {
+  const double height = survey.high - survey.low;
+  if (!(height > 0.0)) {
+    return 0.0;
+  }
+  double compliance = 0.0;
+  for (const JointLaw &law : scene.joints.laws) {
+    compliance =
+        std::max(compliance, law.normal_stiffness > 0.0 ? 1.0 / (law.normal_stiffness * median_width) : 0.0);
+  }
+  double of_rock = 0.0;
+  for (const Material &material : scene.materials) {
+    of_rock = std::max(of_rock, material.youngs_modulus > 0.0 ? 1.0 / material.youngs_modulus : 0.0);
+  }
+  return survey.densest * norm(scene.run.gravity) * height * height * (compliance + of_rock);
 }
 
 } // namespace gcpdda

@@ -122,7 +122,7 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
   std::vector<SceneBlock> slab = load_slab(cut_region());
   load_sides(slab);
   note_groups(slab);
-  resolve_stiffness(slab);
+  size_up(slab);
   place_monitors(slab);
   survey(slab);
   std::vector<Vec2> centroids;
@@ -175,9 +175,11 @@ std::vector<SceneBlock> Simulation::load_slab(std::vector<SceneBlock> cut) {
   return slab;
 }
 
-void Simulation::resolve_stiffness(std::span<const SceneBlock> slab) {
+// What only the blocks together say: the stiffness of an allowed overlap, and how far a pile may sag.
+void Simulation::size_up(std::span<const SceneBlock> slab) {
   const auto by_overlap = [](const JointLaw &law) { return law.allowed_overlap > 0.0; };
-  if (std::none_of(scene_.joints.laws.begin(), scene_.joints.laws.end(), by_overlap)) {
+  const bool any_by_overlap = std::any_of(scene_.joints.laws.begin(), scene_.joints.laws.end(), by_overlap);
+  if (!any_by_overlap && !is_staged_) {
     return;
   }
   const auto is_mobile = [](const SceneBlock &block) { return !block.fixed; };
@@ -186,8 +188,11 @@ void Simulation::resolve_stiffness(std::span<const SceneBlock> slab) {
   survey.densest = agreed_max(communicator_, survey.densest);
   survey.high = agreed_max(communicator_, survey.high);
   survey.low = -agreed_max(communicator_, -survey.low);
-  gcpdda::resolve_stiffness(scene_, survey, agreed_median(communicator_, survey.sizes));
-  contacts_ = ContactForces(contact_parameters(scene_));
+  if (any_by_overlap) {
+    resolve_stiffness(scene_, survey, agreed_median(communicator_, survey.sizes));
+    contacts_ = ContactForces(contact_parameters(scene_));
+  }
+  sag_ = largest_sag(scene_, survey, agreed_median(communicator_, survey.widths));
 }
 
 // A point belongs to the block with the smallest id that holds it.

@@ -91,8 +91,8 @@ void Simulation::mark_stage() {
 // Two reductions, now and then; both are exact.
 void Simulation::look_at_stage() {
   ExactSum kinetic;
-  std::array<double, 5> largest{};
-  auto &[unbalanced, acting, motion, moved, overlap] = largest;
+  std::array<double, 6> largest{};
+  auto &[unbalanced, acting, motion, moved, astray, overlap] = largest;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const BlockProperties &block = blocks_.properties[row];
     if (block.keeps_its_velocity()) {
@@ -113,7 +113,10 @@ void Simulation::look_at_stage() {
     BlockMark &mark = blocks_.mark[row];
     const RigidDof &now = blocks_.displacement[row];
     motion = std::max(motion, motion_between(block, mark.look, now));
-    moved = std::max(moved, motion_between(block, mark.stage, now) / std::sqrt(block.area));
+    const double way = motion_between(block, mark.stage, now);
+    const double share = way / std::sqrt(block.area);
+    moved = std::max(moved, share);
+    astray = std::max(astray, way > sag_ ? share : 0.0);
     mark.look = now;
     kinetic.add(kinetic_energy_of(blocks_, row));
   }
@@ -124,7 +127,7 @@ void Simulation::look_at_stage() {
   communicator_.max(largest);
   communicator_.sum(kinetic.limbs());
   const StageLook look{
-      acting > 0.0 ? unbalanced / acting : 0.0, motion, overlap, acting, kinetic.value(), moved};
+      acting > 0.0 ? unbalanced / acting : 0.0, motion, overlap, acting, kinetic.value(), moved, astray};
   const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
   stage_.verdict = judge(stage, look, stage_.memory);
   const bool unloads = std::any_of(stage_.unloading.begin(), stage_.unloading.end(), [&](const Unloading &u) {

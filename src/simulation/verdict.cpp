@@ -20,7 +20,7 @@ Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory) {
     return Verdict::settled;
   }
   const bool goes_on = look.motion >= 0.5 * last.motion && look.kinetic >= 0.25 * memory.most_kinetic;
-  return look.moved >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
+  return look.astray >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
 }
 
 // Long enough to see a pile sway, whose slowest period of about 12 steps for each block of its height grows

@@ -203,6 +203,29 @@ TEST(Stages, AFallingBlockFails) {
   }
 }
 
+// Forty layers whose joints close by up to a twentieth of their height: the top comes down by more than a
+// block that has failed may move, which is no failure. One that falls beside them is one.
+TEST(Stages, ATallPileMaySag) {
+  std::string pile = stack_head;
+  pile.replace(pile.find("1e9"), 3, "2e7");
+  pile += block_toml("floor", rectangle({-10.0, -1.0}, {40.0, 0.0}), "fixed = true");
+  for (int k = 0; k < 40; ++k) {
+    pile += block_toml(fmt::format("s{}", k), rectangle({0.0, 1.0 * k}, {20.0, k + 1.0}));
+  }
+  const std::string settle_soon = settle + "failure_motion = 0.2\n";
+  for (const char *damping : {"local_damping = 0.3\n", "kinetic_damping = true\n"}) {
+    Simulation simulation(Communicator::self(), scene_of(pile + settle_soon + damping));
+    run_stages(simulation);
+    const StageResult result = simulation.stage_results().back();
+    EXPECT_EQ(result.verdict, Verdict::settled) << damping;
+    EXPECT_GT(result.moved, 0.2);
+  }
+  const std::string falling = block_toml("falling", rectangle({25.0, 38.0}, {29.0, 40.0}));
+  Simulation simulation(Communicator::self(), scene_of(pile + falling + settle_soon));
+  run_stages(simulation);
+  EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::failed);
+}
+
 // A pile of 4: what is cut off below carries no more, what is above follows; ids stay.
 TEST(Stages, AnExcavatedBlockIsGone) {
   const std::string toml =

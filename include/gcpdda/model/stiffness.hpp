@@ -14,7 +14,8 @@ struct SizeSurvey {
   double densest = 0.0;                                 ///< kg/m3
   double low = std::numeric_limits<double>::infinity(); ///< extent along gravity, m
   double high = -std::numeric_limits<double>::infinity();
-  std::vector<double> sizes; ///< sqrt(area) of each block, m
+  std::vector<double> sizes;  ///< sqrt(area) of each block, m
+  std::vector<double> widths; ///< narrowest, m
 };
 
 /// Over the blocks that are fixed, or over those that are not.
@@ -31,5 +32,15 @@ SizeSurvey survey_sizes(const Scene &scene, std::span<const SceneBlock> blocks, 
 ///
 /// @param median_size  of the surveyed blocks, the (n/2)-th in ascending order from 0, m
 void resolve_stiffness(Scene &scene, const SizeSurvey &survey, double median_size);
+
+/// How far the top of a pile of the surveyed blocks may come down when it takes up its weight, m: a column that
+/// carries rho g h everywhere, twice what a real one does, in layers of height b with the softest joints and
+/// the softest rock between them,
+///
+///     rho g h^2 (1/(k_n b) + 1/E).
+///
+/// 0 without gravity. Every joint has its stiffness by now.
+/// @param median_width  b, of the surveyed blocks, m
+double largest_sag(const Scene &scene, const SizeSurvey &survey, double median_width);
 
 } // namespace gcpdda

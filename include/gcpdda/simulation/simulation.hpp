@@ -216,7 +216,7 @@ private:
   [[nodiscard]] std::vector<SceneBlock> cut_region();
   [[nodiscard]] std::vector<SceneBlock> load_slab(std::vector<SceneBlock> cut);
   void note_groups(std::span<const SceneBlock> slab);
-  void resolve_stiffness(std::span<const SceneBlock> slab);
+  void size_up(std::span<const SceneBlock> slab);
   void survey(std::span<const SceneBlock> slab);
   void find_laws_on_edges(std::span<const SceneBlock> slab);
   void warn_of_rounding(double size, double farthest);
@@ -298,6 +298,7 @@ private:
   double local_damping_ = 0.0; ///< of this stage
   double load_time_ = 0.0;     ///< when loads were last evaluated, s
   double thinnest_ = 0.0;      ///< narrowest width of any block, m
+  double sag_ = 0.0;           ///< largest_sag() of the scene, m
   double base_skin_ = 0.0;
   double pressed_ = 0.0; ///< largest overlap of the in-situ stress, m
   double skin_ = 0.0;
@@ -309,7 +310,7 @@ private:
   ForceReport force_report_;
   std::vector<BlockContactSum> contact_sums_;
   std::vector<BlockGradientSum> gradient_sums_; ///< by entry of BlockSystem::deformation
-  ContactCount contact_count_; ///< at the last evaluation
+  ContactCount contact_count_;                  ///< at the last evaluation
   std::optional<Fault> local_fault_;
   std::optional<Fault> fault_;
   Counters counters_;

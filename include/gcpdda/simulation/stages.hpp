@@ -8,7 +8,8 @@
 //     D   largest distance a point of a block has moved since the look before,
 //     d   largest overlap of a contact, the length by which contacts carry what they carry,
 //     T   kinetic energy,
-//     M   largest motion of a block since the stage began, in sizes of that block.
+//     M   largest motion of a block since the stage began, in sizes of that block; for failure of those only
+//         that have moved farther than the pile may sag (largest_sag()): no failure, however small they are.
 // settled: at two looks in a row r <= tolerance, D <= 1e-3 d, and T does not grow. (A block that creeps
 // because its friction misses the slope by less than the tolerance still gains speed: that it is told from
 // rest is what T is for. Below 1e-12 of f d, the energy in the largest contact, motion is rounding.)
@@ -31,7 +32,8 @@ struct StageLook {
   double overlap = 0.0;          ///< d, m
   double force = 0.0;            ///< largest force anywhere, N/m
   double kinetic = 0.0;          ///< T, J/m
-  double moved = 0.0;            ///< M
+  double moved = 0.0;            ///< M of all blocks
+  double astray = 0.0;           ///< M of those that have moved farther than a pile sags
 };
 
 /// What is remembered from one look to the next.
