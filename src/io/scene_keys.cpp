@@ -265,7 +265,7 @@ constexpr Key all_keys[] = {
   {"stage[].duration", Kind::number, optional, above_to(0, 1e12), "", "<run: exactly one of this and limit>", "2.0", "[s] How long a run lasts."},
   {"stage[].limit", Kind::number, optional, above_to(0, 1e12), "", "<required for settle>", "10.0", "[s] Longest time until a verdict; a stage that reaches it undecided ends the run with exit code 7, one that has failed ends it with 0."},
   {"stage[].tolerance", Kind::number, optional, above_to(0, 0.1), "", "1e-5", "1e-5", "Largest unbalanced force over the largest force in the model at which blocks count as settled."},
-  {"stage[].failure_motion", Kind::number, optional, above_to(0, 1e6), "", "0.5", "0.5", "A block that has moved by this share of its size (the root of its area) in the stage and is not slowing down has failed."},
+  {"stage[].failure_motion", Kind::number, optional, above_to(0, 1e6), "", "0.5", "0.5", "A block that has moved by this share of its size (the root of its area) in the stage, farther than the pile may sag as its joints close, and is not slowing down has failed."},
   {"stage[].local_damping", Kind::number, optional, from_below(0, 1), "", "<settle: 0.8; run: run.local_damping>", "0.8", "Share of the net force that is taken away against the motion in this stage."},
   {"stage[].kinetic_damping", Kind::boolean, optional, any, "", "false", "true", "Whether a settle stage sets all velocities to zero whenever the kinetic energy has passed a peak; local_damping is then 0 unless given."},
   {"stage[].mass_scaling", Kind::boolean, optional, any, "", "false", "true", "Whether a settle stage makes blocks heavier against acceleration (not against gravity) until all swing as slowly as the slowest one: the step is as long as for that block, for models with a few small blocks. Where joints slip on the way to rest they end elsewhere, because blocks fall at different rates: let gravity rise slowly (run.gravity_ramp)."},
@@ -281,7 +281,7 @@ constexpr Key all_keys[] = {
   {"fos.to", Kind::number, optional, above_to(0, 1e6), "", "4.0", "2.5", "Factor at which they are expected to fail; above it is not searched."},
   {"fos.tolerance", Kind::number, optional, above_to(0, 1), "", "0.01", "0.005", "Width of the bracket at which the search ends, as a share of its lower end."},
   {"fos.limit", Kind::number, optional, above_to(0, 1e12), "", "<that of the last settle stage>", "5.0", "[s] Longest simulated time of a trial; one that reaches it without a verdict is undecided."},
-  {"fos.failure_motion", Kind::number, optional, above_to(0, 1e6), "", "0.1", "0.1", "A block that has moved by this share of its size (the root of its area) in a trial and is not slowing down has failed."},
+  {"fos.failure_motion", Kind::number, optional, above_to(0, 1e6), "", "0.1", "0.1", "A block that has moved by this share of its size (the root of its area) in a trial, farther than the pile may sag as its joints close, and is not slowing down has failed."},
   {"fos.local_damping", Kind::number, optional, from_below(0, 1), "", "0.3", "0.8", "Share of the net force that is taken away against the motion in a trial. With 0 blocks that are weakened at once swing beyond their new balance, and the factor comes out lower."},
 
   {"ensemble", Kind::table, optional, any, "", "", "[ensemble]", "What the members of gcpdda ensemble differ in and what is found out of each; the other commands do not care. A member draws the same whatever the number of members, ranks and calls."},
