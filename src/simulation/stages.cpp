@@ -247,6 +247,21 @@ void Simulation::evaluate_still() {
   evaluate_bolts();
 }
 
+namespace {
+
+/// Of a stage that is over as soon as it has begun.
+StageResult result_without_steps(const StageState &stage) {
+  StageResult result;
+  result.verdict = stage.verdict;
+  result.time = stage.end_time;
+  result.removed =
+      std::accumulate(stage.results.begin(), stage.results.end(), std::ssize(stage.removed),
+                      [](std::int64_t left, const StageResult &earlier) { return left - earlier.removed; });
+  return result;
+}
+
+} // namespace
+
 void Simulation::begin_next_stage() {
   expect(stage_is_over() && !finished(), "a stage begins when the one before is over");
   stage_.start_time = time();
@@ -296,15 +311,8 @@ void Simulation::begin_next_stage() {
   mark_stage();
   if (!stage.takes_steps()) {
     stage_.verdict = Verdict::done;
-    StageResult result;
-    result.verdict = Verdict::done;
-    result.time = time();
-    const std::int64_t before =
-        std::accumulate(stage_.results.begin(), stage_.results.end(), std::int64_t{0},
-                        [](std::int64_t sum, const StageResult &earlier) { return sum + earlier.removed; });
-    result.removed = std::ssize(stage_.removed) - before;
-    stage_.results.push_back(result);
     stage_.end_time = time();
+    stage_.results.push_back(result_without_steps(stage_));
     stage_.ended = true;
   }
 }
