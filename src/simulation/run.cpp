@@ -246,18 +246,9 @@ private:
     if (!log_->progress_due()) {
       return;
     }
-    const auto steps = static_cast<double>(simulation_.step_count() - first_step_);
     const double elapsed = seconds_since(loop_start);
-    const auto all_steps = static_cast<double>(simulation_.plan().num_steps);
-    const double share = static_cast<double>(simulation_.stage_step()) / all_steps;
-    constexpr std::size_t bar_length = 20;
-    const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_length));
-    log_->progress(fmt::format(
-        "[{:.<{}}] {:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  remaining {:.0f} s  "
-        "unbalanced {:.1e}  max speed {:.3g} m/s",
-        std::string(filled, '='), bar_length, 100.0 * share, simulation_.time(), simulation_.step_count(),
-        steps * static_cast<double>(simulation_.num_blocks()) / elapsed,
-        elapsed * (1.0 - share) * all_steps / steps, energy_.unbalanced_ratio, energy_.max_speed));
+    const double per_step = elapsed / static_cast<double>(simulation_.step_count() - first_step_);
+    log_->progress(words_on_progress(simulation_, energy_, per_step));
   }
 
   void write_due() {

@@ -79,16 +79,22 @@ public:
       : world_(world), scene_(scene), options_(options) {}
 
   SafetyOutcome find() {
-    on_root(world_, [&] { prepare_safety_directory(options_.directory, options_.overwrite); });
-    const int code = search();
-    return {code, std::move(report_), std::move(message_)};
+    const int code = begin();
+    return {code == 0 ? search() : code, std::move(report_), std::move(message_)};
   }
 
 private:
-  int search() {
-    if (const int code = options_.settled.empty() ? settle_as_it_can() : take_settled(); code != 0) {
-      return code;
+  int begin() {
+    if (!options_.settled.empty()) { // a state that cannot be taken leaves no folder behind
+      if (const int code = take_settled(); code != 0) {
+        return code;
+      }
     }
+    on_root(world_, [&] { prepare_safety_directory(options_.directory, options_.overwrite); });
+    return options_.settled.empty() ? settle_as_it_can() : 0;
+  }
+
+  int search() {
     const std::size_t at_once = choose_groups();
     while (true) {
       const std::vector<double> factors = next_factors(

@@ -17,8 +17,14 @@ TMPDIR=$(mktemp -d)
 export TMPDIR # the block files
 trap 'rm -rf "$TMPDIR"' EXIT
 mkdir -p "$build/findings"
+# A string of a dictionary has its quotes and backslashes escaped.
+{
+  cat "$here/scene.dict"
+  grep -o '`[^`]*`' "$top/run/scene_keys.md" | tr -d '`' | sort -u | sed 's/[\"]/\\&/g; s/.*/"&"/'
+  sed -n 's/^## \(\[.*\]\)$/"\\x0A\1\\x0A"/p' "$top/run/scene_keys.md"
+} >"$build/scene.dict"
 declare -A options=(
-  [scene_fuzz]="-max_len=10000 -dict=$here/scene.dict $here/corpus/scene $top/run/scenes"
+  [scene_fuzz]="-max_len=10000 -dict=$build/scene.dict $here/corpus/scene $top/run/scenes"
   [block_file_fuzz]="-max_len=300 -len_control=0"
 )
 fuzz() {

@@ -84,6 +84,10 @@ TEST(Fos, BeginsWithTheStateOfAnEarlierSearch) {
   const Outcome nothing = run_gcpdda(0, with({"--settled", "results", "--out", "other"}), folder);
   EXPECT_EQ(nothing.exit_code, 4);
   EXPECT_FALSE(fs::exists(folder / "other"));
+  fs::remove_all(folder / state / "checkpoints");
+  const Outcome stateless = run_gcpdda(2, with({"--settled", state, "--out", "other"}), folder);
+  EXPECT_EQ(stateless.exit_code, 4);
+  EXPECT_FALSE(fs::exists(folder / "other"));
 }
 
 TEST(Fos, RefusesWhatItCannotSearch) {
