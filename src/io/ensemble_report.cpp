@@ -72,8 +72,7 @@ std::string factor_text(const EnsembleStatistics &found) {
                         members_text(found.below));
   }
   if (found.above > 0) {
-    text += fmt::format("{} without a factor: no trial failed, up to fos.to\n",
-                        members_text(found.above));
+    text += fmt::format("{} without a factor: no trial failed, up to fos.to\n", members_text(found.above));
   }
   return text;
 }

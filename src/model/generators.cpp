@@ -165,7 +165,8 @@ SceneBlock make_block(const BrickGenerator &generator, std::int64_t index) {
 }
 
 std::int64_t num_blocks(const Scene &scene) {
-  auto count = static_cast<std::int64_t>(scene.blocks.size()) + scene.block_file.num_blocks + scene.num_region_blocks;
+  auto count =
+      static_cast<std::int64_t>(scene.blocks.size()) + scene.block_file.num_blocks + scene.num_region_blocks;
   for (const BrickGenerator &generator : scene.generators) {
     count += num_blocks(generator);
   }

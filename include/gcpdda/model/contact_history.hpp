@@ -16,9 +16,9 @@ enum class ContactState : std::uint8_t { stick = 1, slip = 2, bonded = 3 };
 /// Memory of one contact region, alive from its first evaluation with an overlap to its last, or of one bond,
 /// alive until it breaks.
 struct RegionMemory {
-  double shear = 0.0;   ///< F_t: along -t_r on the lower block, along t_r on the higher one, N/m
-  double longest = 0.0; ///< largest extent along t_r so far, m: the tangential stiffness never falls
-  double slip = 0.0;    ///< accumulated sliding distance, m
+  double shear = 0.0;    ///< F_t: along -t_r on the lower block, along t_r on the higher one, N/m
+  double longest = 0.0;  ///< largest extent along t_r so far, m: the tangential stiffness never falls
+  double slip = 0.0;     ///< accumulated sliding distance, m
   std::int32_t law = -1; ///< that the region was born with; -1: the only one its pair can have
   ContactState state = ContactState::stick;
   // All that a step needs of two convex blocks stands above.

@@ -1,7 +1,8 @@
 #pragma once
 
 // Where the blocks of a scene come from. BlockId is the order of the scene: inline blocks, then generators,
-// then the file, then the region. Generated blocks are pure functions of their number, so a rank makes its range and no more.
+// then the file, then the region. Generated blocks are pure functions of their number, so a rank makes its
+// range and no more.
 
 #include "gcpdda/model/scene.hpp"
 
@@ -34,7 +35,8 @@ std::string block_name(const Scene &scene, std::int64_t id);
 SourcePosition block_position(const Scene &scene, std::int64_t id);
 
 /// Id of the block of that name among those of generators, file and region, -1 where none has it. As long as
-/// the counts of file and region are not known, "b<id>" is taken for one of theirs whenever the id lies behind all others.
+/// the counts of file and region are not known, "b<id>" is taken for one of theirs whenever the id lies
+/// behind all others.
 std::int64_t find_generated_block(const Scene &scene, std::string_view name);
 
 } // namespace gcpdda

@@ -33,9 +33,9 @@ SizeSurvey survey_sizes(const Scene &scene, std::span<const SceneBlock> blocks, 
 /// @param median_size  of the surveyed blocks, the (n/2)-th in ascending order from 0, m
 void resolve_stiffness(Scene &scene, const SizeSurvey &survey, double median_size);
 
-/// How far the top of a pile of the surveyed blocks may come down when it takes up its weight, m: a column that
-/// carries rho g h everywhere, twice what a real one does, in layers of height b with the softest joints and
-/// the softest rock between them,
+/// How far the top of a pile of the surveyed blocks may come down when it takes up its weight, m: a column
+/// that carries rho g h everywhere, twice what a real one does, in layers of height b with the softest joints
+/// and the softest rock between them,
 ///
 ///     rho g h^2 (1/(k_n b) + 1/E).
 ///
