@@ -145,7 +145,7 @@ private:
       prepare_result_directory(directory_, options.overwrite, scene.resolved);
       histories_.emplace(directory_, scene.monitors, !scene.bolts.empty());
     });
-    log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet);
+    log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet, options.progress_of);
     frames_.emplace(communicator_, directory_, simulation_.num_blocks());
     simulation_.restored() ? ledger_.emplace(simulation_.restored()->facts) : ledger_.emplace(simulation_);
     checkpoints_.emplace(communicator_, directory_, std::filesystem::path());

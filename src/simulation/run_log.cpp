@@ -2,11 +2,14 @@
 
 #include <iostream>
 #include <unistd.h>
+#include <utility>
 
 namespace gcpdda {
 
-RunLog::RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode, bool quiet)
-    : speaks_(speaks), quiet_(quiet), terminal_(speaks && !quiet && isatty(STDERR_FILENO) != 0) {
+RunLog::RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode, bool quiet,
+               std::string progress_of)
+    : speaks_(speaks), quiet_(quiet), progress_of_(std::move(progress_of)),
+      terminal_(speaks && (!quiet || !progress_of_.empty()) && isatty(STDERR_FILENO) != 0) {
   if (speaks_) {
     file_.open(directory / "run.log", std::ios::out | mode);
   }
@@ -34,11 +37,14 @@ bool RunLog::progress_due() const {
 void RunLog::progress(const std::string &text) {
   last_progress_ = Clock::now();
   if (terminal_) {
-    std::cerr << '\r' << text << "\033[K" << std::flush;
+    std::cerr << '\r' << progress_of_ << text << "\033[K" << std::flush;
     in_progress_ = true;
-  } else {
-    line(text);
+    return;
   }
+  if (quiet_ && !progress_of_.empty()) {
+    std::cerr << progress_of_ << text << std::endl;
+  }
+  line(text);
 }
 
 void RunLog::end_progress() {

@@ -14,8 +14,10 @@ namespace gcpdda {
 class RunLog {
 public:
   /// @param mode  std::ios::trunc, or std::ios::app to go on with an earlier run.log
-  /// @param quiet  nothing to stderr
-  RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode, bool quiet = false);
+  /// @param quiet  nothing to stderr ...
+  /// @param progress_of  ... but progress, which begins with this there; empty for none
+  RunLog(bool speaks, const std::filesystem::path &directory, std::ios::openmode mode, bool quiet = false,
+         std::string progress_of = {});
 
   void line(const std::string &text);
   void diagnostic(const Diagnostic &diagnostic);
@@ -29,6 +31,7 @@ private:
 
   bool speaks_;
   bool quiet_;
+  std::string progress_of_;
   bool terminal_;
   bool in_progress_ = false;
   std::ofstream file_;

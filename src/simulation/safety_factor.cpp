@@ -210,8 +210,10 @@ private:
         fmt::format("# a trial of gcpdda fos: strengths as below divided by {:.17g}\n", factor) +
         scene_.resolved;
     const fs::path directory = trial_directory(factor);
-    RunOutcome outcome =
-        run_and_tell(*group_, weakened, {directory, false, false, settled_directory(), true});
+    const bool shows = !options_.quiet && group_number_ == 0; // of trials at once the first one's
+    RunOutcome outcome = run_and_tell(*group_, weakened,
+                                      {directory, false, false, settled_directory(), true, false,
+                                       shows ? fmt::format("factor {:.6g}: ", factor) : std::string()});
     on_root(*group_, [&] { fs::remove_all(directory / "checkpoints"); }); // large, and of no further use
     return outcome;
   }

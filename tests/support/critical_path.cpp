@@ -1,0 +1,55 @@
+#include "support/critical_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace gcpdda::testing {
+
+double perimeter_of_overlap(const Shape &a, const Shape &b) {
+  Overlap overlap;
+  overlap.find(a.view(), b.view(), PotentialKind::exact);
+  double sum = 0.0;
+  for (const Piece &piece : overlap.pieces()) {
+    sum += piece.length;
+  }
+  return sum;
+}
+
+void expect_continuous_force(const CriticalPath &path, double reach,
+                             const std::function<void(const Shape &, const RegionIntegrals &)> &also) {
+  SCOPED_TRACE(path.name);
+  const auto at = [&](double s) { return moved(path.moving, path.turn * s, {}, s * path.direction); };
+  std::vector<double> stations;
+  for (int k = 2; k <= 17; ++k) {
+    stations.push_back(std::pow(10.0, -k));
+    stations.push_back(-std::pow(10.0, -k));
+  }
+  for (int k = -200; k <= 200; ++k) {
+    stations.push_back(1e-4 * k);
+  }
+  std::sort(stations.begin(), stations.end());
+  double largest = 0.0;
+  for (std::size_t k = 0; k + 1 < stations.size(); ++k) {
+    const Shape begin = at(stations[k]);
+    const Shape end = at(stations[k + 1]);
+    const RegionIntegrals f0 = contact_of(begin, path.still);
+    const RegionIntegrals f1 = contact_of(end, path.still);
+    ASSERT_TRUE(std::isfinite(norm(f1.force)) && std::isfinite(f1.pressure));
+    const double step = (1.0 + reach * std::abs(path.turn)) * (stations[k + 1] - stations[k]);
+    const double perimeter =
+        std::max(perimeter_of_overlap(begin, path.still), perimeter_of_overlap(end, path.still));
+    const double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+    const double bound = 2.0 * (step + rounding) * (perimeter + step);
+    ASSERT_LE(norm(f1.force - f0.force), bound) << stations[k];
+    ASSERT_LE(std::abs(f1.pressure - f0.pressure), bound) << stations[k];
+    largest = std::max(largest, f1.pressure);
+    ASSERT_NO_FATAL_FAILURE(also(end, f1)) << stations[k];
+  }
+  EXPECT_GT(largest, 0.0) << "never touches";
+}
+
+} // namespace gcpdda::testing
