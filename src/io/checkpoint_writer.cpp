@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 class SlabRoute {
 public:
   /// @param ids  of this rank's rows
-  SlabRoute(const Communicator &communicator, std::int64_t num_blocks, std::vector<std::int64_t> ids)
+  SlabRoute(const Communicator &communicator, std::int64_t num_blocks, const std::vector<std::int64_t> &ids)
       : communicator_(communicator) {
     for (const std::int64_t id : ids) {
       owner_.push_back(static_cast<std::size_t>(slab_owner(num_blocks, communicator.size(), id)));

@@ -360,6 +360,47 @@ std::vector<double> FrameWriter::times() const {
   return times;
 }
 
+namespace {
+
+/// Of each topology that begins before frame `count` its cells, points and first frame.
+std::vector<std::int64_t> list_topologies(const std::filesystem::path &folder, std::ptrdiff_t count) {
+  const hdf5::QuietErrors quiet;
+  const hdf5::File needed(hdf5::open_to_read(folder / topology_name(0)));
+  std::vector<std::int64_t> numbers;
+  for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
+    const auto first = number_of(entry.path().filename().string(), "topology", ".h5");
+    if (!first || *first >= count) {
+      continue;
+    }
+    const hdf5::File file(hdf5::open_to_read(entry.path()));
+    for (const char *length : {"NumberOfCells", "NumberOfPoints"}) {
+      numbers.push_back(hdf5::read_numbers<std::int64_t>(file, vtk::at(length)).at(0));
+    }
+    numbers.push_back(*first);
+  }
+  return numbers;
+}
+
+/// And all that goes with them.
+void remove_frames_from(const std::filesystem::path &folder, std::ptrdiff_t count) {
+  std::vector<std::filesystem::path> later;
+  for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    std::optional<std::int64_t> number = number_of(name, "topology", ".h5");
+    for (const char *kind : {"frame", "contacts", "bolts"}) {
+      number = number ? number : number_of(name, kind, ".hdf");
+    }
+    if (number.value_or(-1) >= count) {
+      later.push_back(entry.path());
+    }
+  }
+  for (const std::filesystem::path &path : later) {
+    std::filesystem::remove(path);
+  }
+}
+
+} // namespace
+
 // The indices first: none ever tells of a frame that is gone.
 void FrameWriter::continue_behind(const std::vector<double> &times) {
   expect(!times.empty() && frames_.empty(), "frames to go on behind, before any are written");
@@ -367,25 +408,13 @@ void FrameWriter::continue_behind(const std::vector<double> &times) {
     frames_.emplace_back(static_cast<int>(frames_.size()), time);
   }
   const std::filesystem::path folder = directory_ / "frames";
-  std::vector<std::int64_t> numbers; // of each topology its first frame, cells and points
+  std::vector<std::int64_t> numbers;
   on_root(communicator_, [&] {
-    const hdf5::QuietErrors quiet;
-    const hdf5::File needed(hdf5::open_to_read(folder / topology_name(0)));
+    numbers = list_topologies(folder, std::ssize(times));
     for (const auto &[index, time] : frames_) {
       if (std::filesystem::exists(folder / fmt::format("bolts_{:06}.hdf", index))) {
         bolt_frames_.emplace_back(index, time);
       }
-    }
-    for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
-      const auto first = number_of(entry.path().filename().string(), "topology", ".h5");
-      if (!first || *first >= std::ssize(times)) {
-        continue;
-      }
-      const hdf5::File file(hdf5::open_to_read(entry.path()));
-      for (const char *count : {"NumberOfCells", "NumberOfPoints"}) {
-        numbers.push_back(hdf5::read_numbers<std::int64_t>(file, vtk::at(count)).at(0));
-      }
-      numbers.push_back(*first);
     }
   });
   const auto told = communicator_.all_gather(numbers);
@@ -396,22 +425,7 @@ void FrameWriter::continue_behind(const std::vector<double> &times) {
             [](const Topology &a, const Topology &b) { return a.first_frame < b.first_frame; });
   expect(!topologies_.empty(), "a run that goes on has a topology");
   write_indices();
-  on_root(communicator_, [&] {
-    std::vector<std::filesystem::path> later;
-    for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
-      const std::string name = entry.path().filename().string();
-      std::optional<std::int64_t> number = number_of(name, "topology", ".h5");
-      for (const char *kind : {"frame", "contacts", "bolts"}) {
-        number = number ? number : number_of(name, kind, ".hdf");
-      }
-      if (number.value_or(-1) >= std::ssize(times)) {
-        later.push_back(entry.path());
-      }
-    }
-    for (const std::filesystem::path &path : later) {
-      std::filesystem::remove(path);
-    }
-  });
+  on_root(communicator_, [&] { remove_frames_from(folder, std::ssize(times)); });
 }
 
 } // namespace gcpdda
