@@ -362,7 +362,7 @@ std::vector<double> FrameWriter::times() const {
 
 namespace {
 
-/// Of each topology that begins before frame `count` its cells, points and first frame.
+/// Of each topology that begins before frame `count` its cells, points and first frame, one after the other.
 std::vector<std::int64_t> list_topologies(const std::filesystem::path &folder, std::ptrdiff_t count) {
   const hdf5::QuietErrors quiet;
   const hdf5::File needed(hdf5::open_to_read(folder / topology_name(0)));
@@ -381,7 +381,7 @@ std::vector<std::int64_t> list_topologies(const std::filesystem::path &folder, s
   return numbers;
 }
 
-/// And all that goes with them.
+/// Those from number `count` on, and all that goes with them.
 void remove_frames_from(const std::filesystem::path &folder, std::ptrdiff_t count) {
   std::vector<std::filesystem::path> later;
   for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
