@@ -37,21 +37,31 @@ std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_er
       fidelity.num_rigid, fidelity.num_deformable, fidelity.worst_rigid, accepted_error, deformable);
 }
 
+namespace {
+
+/// How near to rest a stage is that waits for its verdict. Large models are looked at seldom.
+std::string words_on_look(const Simulation &simulation, const Stage &stage) {
+  if (simulation.stage_step() < steps_between_looks(simulation.num_blocks())) {
+    return "not looked at yet";
+  }
+  const StageLook &last = simulation.stage().memory.last;
+  return fmt::format("unbalanced {:.1e}, {:.0e} at rest  moved {:.2g} of a block's size",
+                     last.unbalanced_ratio, stage.tolerance, last.moved);
+}
+
+} // namespace
+
 std::string words_on_progress(const Simulation &simulation, const EnergyRow &energy, double per_step) {
   const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
   const auto num_steps = static_cast<double>(simulation.plan().num_steps);
   const double share = static_cast<double>(simulation.stage_step()) / num_steps;
   constexpr std::size_t bar_length = 20;
   const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_length));
-  const StageLook &last = simulation.stage().memory.last;
   const double remaining = per_step * (1.0 - share) * num_steps;
   const std::string outlook =
-      stage.until_verdict
-          ? fmt::format(
-                "limit in {:.0f} s  unbalanced {:.1e}, {:.0e} at rest  moved {:.2g} of a block's size",
-                remaining, last.unbalanced_ratio, stage.tolerance, last.moved)
-          : fmt::format("remaining {:.0f} s  unbalanced {:.1e}  max speed {:.3g} m/s", remaining,
-                        energy.unbalanced_ratio, energy.max_speed);
+      stage.until_verdict ? fmt::format("limit in {:.0f} s  {}", remaining, words_on_look(simulation, stage))
+                          : fmt::format("remaining {:.0f} s  unbalanced {:.1e}  max speed {:.3g} m/s",
+                                        remaining, energy.unbalanced_ratio, energy.max_speed);
   return fmt::format("[{:.<{}}] {:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  {}",
                      std::string(filled, '='), bar_length, 100.0 * share, simulation.time(),
                      simulation.step_count(), static_cast<double>(simulation.num_blocks()) / per_step,
