@@ -355,6 +355,10 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   deforming_.resize(system.deformation.size());
   find_motions(system, 0, system.num_owned);
   find_motions(system, system.first_fixed(), system.num_rows());
+  if (details == Details::now) { // for as many regions as the last time, and some more
+    const std::size_t all = candidates.pairs.size();
+    forces_.reserve(num_forces_ == 0 ? all : std::min(all, num_forces_ + num_forces_ / 64));
+  }
   num_forces_ = 0;
   damping_dyads_.clear();
   bond_dyads_.clear();
@@ -362,7 +366,6 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   ranges_.assign(candidates.pairs.size(), {});
   // Most candidates touch: to grow by doubling would take more memory than to have room for all.
   sums_.reserve(candidates.pairs.size());
-  forces_.reserve(details == Details::now ? candidates.pairs.size() : 0);
   next_.regions.reserve(candidates.pairs.size());
   report_ = {};
   evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);

@@ -202,6 +202,10 @@ template <std::size_t edges> struct CornerOverlap {
 
   /// True where the blocks overlap so; elsewhere nothing of this means anything.
   Mask find(const LaneSide &lower_side, const LaneSide &higher_side);
+  /// Is one of the two lines of the corner the nearest wherever an edge runs inside a block?
+  [[nodiscard]] Mask has_two_lines_each() const;
+  /// int_S (phi_A + phi_B) H dA where that is so, m3; see pair_energies.hpp.
+  [[nodiscard]] Lanes energy() const;
 
 private:
   static Mask find_stretches(const LaneCorner &own, const LaneSide &other_side, const LaneCorner &other,
@@ -245,6 +249,38 @@ Mask CornerOverlap<edges>::find(const LaneSide &lower_side, const LaneSide &high
   const Mask on_first = find_stretches(lower, higher_side, higher, {0.0, 0.0}, on_lower);
   return has_both & on_first &
          find_stretches(higher, lower_side, lower, higher.vertex - lower.vertex, on_higher);
+}
+
+// Walked along these two lines alone, an edge has the same pressure, bit for bit.
+template <std::size_t edges> Mask CornerOverlap<edges>::has_two_lines_each() const {
+  Mask same = lower.vertex.x == lower.vertex.x;
+  if constexpr (edges > 2) {
+    const auto compare = [&](const LaneCorner &own, const LaneCorner &other,
+                             const std::array<CornerStretch<edges>, 2> &stretches) {
+      FallingDepths<2> below;
+      each<2>([&](auto j) { below.depth[j] = dot(other.slope[j], other.vertex - own.vertex); });
+      each<2>([&](auto i) {
+        CornerStretch<2> stretch;
+        stretch.begin = stretches[i].begin;
+        stretch.direction = stretches[i].direction;
+        each<2>([&](auto j) { below.fall[j] = dot(other.slope[j], stretch.direction); });
+        integrate_stretch<2>(below, other, stretch);
+        same = same & (stretch.pressure == stretches[i].pressure);
+      });
+    };
+    compare(lower, higher, on_lower);
+    compare(higher, lower, on_higher);
+  }
+  return same;
+}
+
+template <std::size_t edges> Lanes CornerOverlap<edges>::energy() const {
+  LaneVec force{0.0, 0.0};
+  each<2>([&](auto i) {
+    force += on_higher[i].pressure * higher.normal[i];
+    force += -on_lower[i].pressure * lower.normal[i];
+  });
+  return Lanes(1.0 / 3.0) * dot(higher.vertex - lower.vertex, force);
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -34,10 +34,18 @@ struct LaneBlocks {
   std::array<const std::uint32_t *, num_lanes> chain; ///< entries of BlockSystem::vertex
 };
 
-[[gnu::always_inline]] inline void load_box(const LaneBlocks &blocks, LaneSide &side) {
-  const FourLanes box = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->box.low.x; });
+/// Of *get(i).
+template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, LaneSide &side) {
+  const FourLanes box = load_by_lane([&](std::size_t i) { return &get(i)->low.x; });
   side.low = {box[0], box[1]};
   side.high = {box[2], box[3]};
+}
+[[gnu::always_inline]] inline void load_box(const LaneBlocks &blocks, LaneSide &side) {
+  load_box_of([&](std::size_t i) { return &blocks.motion[i]->box; }, side);
+}
+[[gnu::always_inline]] inline void load_box(const BlockSystem &system, const LaneBlocks &blocks,
+                                            LaneSide &side) {
+  load_box_of([&](std::size_t i) { return &system.box[blocks.row[i]]; }, side);
 }
 
 [[gnu::always_inline]] inline LaneVec load_vertex(const BlockSystem &system, const LaneBlocks &blocks,

@@ -63,6 +63,17 @@ public:
   /// is far less work (lane_corners.hpp). Of the others some are seen not to touch, the rest is left to
   /// evaluate().
   virtual Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) = 0;
+  /// Energies by lane, m3; see find_energies.
+  struct Energies {
+    unsigned known = 0; ///< by bits
+    std::array<double, most_lanes> energy;
+  };
+  /// Of pairs that overlap with one corner of each block, where PlainPair::may_be_corners.
+  virtual Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
+                                        const PlainLanes &lanes) = 0;
+  /// Of most others of blocks with no more than most_corner_edges edges.
+  virtual Energies find_energies(const BlockSystem &system, const Candidates &candidates,
+                                 const PlainLanes &lanes) = 0;
   /// Write all of the sums but pair, rows, birth and bond, and shear, extent, slip and state of the memory,
   /// whose law is lost.
   /// @return bit i is set where the overlap of lane i exceeds what is allowed

@@ -3,6 +3,7 @@
 // What plain_batch.hpp promises, with one contact in each lane.
 
 #include "lane_corners.hpp"
+#include "lane_energies.hpp"
 #include "lane_motion.hpp"
 #include "lane_region.hpp"
 #include "lane_stretch.hpp"
@@ -22,6 +23,10 @@ public:
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
   unsigned evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
+  Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
+                                const PlainLanes &lanes) override;
+  Energies find_energies(const BlockSystem &system, const Candidates &candidates,
+                         const PlainLanes &lanes) override;
   unsigned store(const PlainResults &results, Details details) override {
     return regions_.store(results, details);
   }
@@ -36,6 +41,12 @@ private:
   void measure(const LaneConstants &constants);
   template <class AnyMotion> void add_dashpot(const LaneConstants &constants, const AnyMotion &motion);
   template <std::size_t edges> Corners evaluate_corners(const PlainScene &scene, const Pairs &pairs);
+  template <std::size_t edges> struct CornerPairs;
+  static void load_chain(const BlockSystem &system, const LaneBlocks &blocks, std::size_t edges,
+                         LaneSide &side);
+  static Energies by_lane(const Mask &known, const Lanes &energy);
+  /// visit(edges) with the number of edges the corners of all pairs are looked for among.
+  template <class Visit> static auto with_corner_edges(const PlainPair &pair, Visit &&visit);
   template <class Overlap> void measure(const Overlap &overlap, const LaneConstants &constants);
   template <class Overlap, class AnyMotion>
   void add_dashpot(const Overlap &overlap, const LaneConstants &constants, const AnyMotion &motion);
@@ -57,19 +68,26 @@ struct LaneBatch::Pairs {
   LaneBlocks lower;
   LaneBlocks higher;
 
-  [[gnu::always_inline]] Pairs(const PlainScene &scene, const PlainLanes &given)
+  /// As they lie.
+  [[gnu::always_inline]] Pairs(const Candidates &candidates, const PlainLanes &given)
       : lanes(given), first(*given.pair[0]) {
-    const BlockMotion *motions = scene.motions.data();
-    const std::uint32_t *chains = scene.candidates.chain_vertices.data();
+    const std::uint32_t *chains = candidates.chain_vertices.data();
     const std::size_t higher_chain = first.lower_edges + std::size_t{1};
     for (std::size_t i = 0; i < num_lanes; ++i) {
       const PlainPair &plain = *lanes.pair[i];
       lower.row[i] = plain.lower.value;
       higher.row[i] = plain.higher.value;
-      lower.motion[i] = motions + plain.lower.value;
-      higher.motion[i] = motions + plain.higher.value;
       lower.chain[i] = chains + plain.chain;
       higher.chain[i] = chains + plain.chain + higher_chain;
+    }
+  }
+  /// And as they move.
+  [[gnu::always_inline]] Pairs(const PlainScene &scene, const PlainLanes &given)
+      : Pairs(scene.candidates, given) {
+    const BlockMotion *motions = scene.motions.data();
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      lower.motion[i] = motions + lower.row[i];
+      higher.motion[i] = motions + higher.row[i];
     }
   }
 };
@@ -197,15 +215,19 @@ void LaneBatch::add_friction_and_dashpots(const PlainScene &scene, const Pairs &
   }
 }
 
+inline void LaneBatch::load_chain(const BlockSystem &system, const LaneBlocks &blocks, std::size_t edges,
+                                  LaneSide &side) {
+  side.edges = edges;
+  for (std::size_t k = 0; k < edges; ++k) {
+    load_edge(system, blocks, k, k, side);
+  }
+  side.vertex[edges] = load_vertex(system, blocks, edges);
+}
+
 inline unsigned LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
   const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
-    side.edges = edges;
-    for (std::size_t k = 0; k < edges; ++k) {
-      load_edge(scene.system, blocks, k, k, side);
-    }
-    side.vertex[edges] =
-        LaneVec::of([&](std::size_t i) { return &scene.system.vertex[blocks.chain[i][edges]]; });
+    load_chain(scene.system, blocks, edges, side);
     load_box(blocks, side);
     if (pairs.first.is_deformable) {
       load_deformed_slopes(scene, blocks, edges - 1, side);
@@ -280,31 +302,41 @@ void LaneBatch::add_dashpot(const Overlap &overlap, const LaneConstants &constan
 
 // The shorter chain goes on with copies of its last edge: no line is next to itself, and a corner is found
 // where it is first.
-template <std::size_t edges>
-PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const Pairs &pairs) {
+template <std::size_t edges> struct LaneBatch::CornerPairs {
   LaneSide lower;
   LaneSide higher;
-  const std::size_t last_lower = pairs.first.lower_edges - std::size_t{1};
-  const std::size_t last_higher = pairs.first.higher_edges - std::size_t{1};
-  each<edges>([&](auto k) {
-    load_edge(scene.system, pairs.lower, std::min<std::size_t>(k, last_lower), k, lower);
-    load_edge(scene.system, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
-  });
-  load_box(pairs.lower, lower);
-  load_box(pairs.higher, higher);
-  if (pairs.first.is_deformable) {
-    lower.edges = edges;
-    higher.edges = edges;
-    load_deformed_slopes(scene, pairs.lower, last_lower, lower);
-    load_deformed_slopes(scene, pairs.higher, last_higher, higher);
-  }
+  std::size_t last_lower;
+  std::size_t last_higher;
   CornerOverlap<edges> overlap;
-  const Mask valid = overlap.find(lower, higher);
+
+  [[gnu::always_inline]] CornerPairs(const BlockSystem &system, const Pairs &pairs)
+      : last_lower(pairs.first.lower_edges - std::size_t{1}),
+        last_higher(pairs.first.higher_edges - std::size_t{1}) {
+    each<edges>([&](auto k) {
+      load_edge(system, pairs.lower, std::min<std::size_t>(k, last_lower), k, lower);
+      load_edge(system, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
+    });
+  }
+};
+
+template <std::size_t edges>
+PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const Pairs &pairs) {
+  CornerPairs<edges> corners(scene.system, pairs);
+  load_box(pairs.lower, corners.lower);
+  load_box(pairs.higher, corners.higher);
+  if (pairs.first.is_deformable) {
+    corners.lower.edges = edges;
+    corners.higher.edges = edges;
+    load_deformed_slopes(scene, pairs.lower, corners.last_lower, corners.lower);
+    load_deformed_slopes(scene, pairs.higher, corners.last_higher, corners.higher);
+  }
+  CornerOverlap<edges> &overlap = corners.overlap;
+  const Mask valid = overlap.find(corners.lower, corners.higher);
   Corners result;
   if ((!valid).any()) {
-    lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.lower_edges);
-    higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.higher_edges);
-    const Mask apart = are_apart<edges>(lower, higher);
+    corners.lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.lower_edges);
+    corners.higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.higher_edges);
+    const Mask apart = are_apart<edges>(corners.lower, corners.higher);
     result.apart = (apart & !valid).by_lane();
     if (!valid.any()) {
       return result;
@@ -331,17 +363,56 @@ PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const P
   return result;
 }
 
+template <class Visit> auto LaneBatch::with_corner_edges(const PlainPair &pair, Visit &&visit) {
+  static_assert(most_corner_edges == 4);
+  switch (std::max(pair.lower_edges, pair.higher_edges)) {
+  case 2:
+    return visit(std::integral_constant<std::size_t, 2>{});
+  case 3:
+    return visit(std::integral_constant<std::size_t, 3>{});
+  default:
+    return visit(std::integral_constant<std::size_t, 4>{});
+  }
+}
+
 inline PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
-  static_assert(most_corner_edges == 4);
-  switch (std::max(pairs.first.lower_edges, pairs.first.higher_edges)) {
-  case 2:
-    return evaluate_corners<2>(scene, pairs);
-  case 3:
-    return evaluate_corners<3>(scene, pairs);
-  default:
-    return evaluate_corners<4>(scene, pairs);
+  return with_corner_edges(pairs.first, [&](auto edges) { return evaluate_corners<edges>(scene, pairs); });
+}
+
+inline PlainBatch::Energies LaneBatch::by_lane(const Mask &known, const Lanes &energy) {
+  Energies energies{known.by_lane(), {}};
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    energies.energy[i] = energy[i];
   }
+  return energies;
+}
+
+inline PlainBatch::Energies LaneBatch::find_corner_energies(const BlockSystem &system,
+                                                            const Candidates &candidates,
+                                                            const PlainLanes &lanes) {
+  const Pairs pairs(candidates, lanes);
+  return with_corner_edges(pairs.first, [&](auto edges) {
+    CornerPairs<edges> corners(system, pairs);
+    load_box(system, pairs.lower, corners.lower);
+    load_box(system, pairs.higher, corners.higher);
+    const Mask overlaps = corners.overlap.find(corners.lower, corners.higher);
+    return by_lane(overlaps & corners.overlap.has_two_lines_each(), corners.overlap.energy());
+  });
+}
+
+inline PlainBatch::Energies LaneBatch::find_energies(const BlockSystem &system, const Candidates &candidates,
+                                                     const PlainLanes &lanes) {
+  const Pairs pairs(candidates, lanes);
+  load_chain(system, pairs.lower, pairs.first.lower_edges, lower_);
+  load_chain(system, pairs.higher, pairs.first.higher_edges, higher_);
+  load_box(system, pairs.lower, lower_);
+  load_box(system, pairs.higher, higher_);
+  cut_edges(lower_, higher_, on_lower_);
+  cut_edges(higher_, lower_, on_higher_);
+  const LaneEnergy of_higher = find_field_energy(lower_, on_lower_, higher_);
+  const LaneEnergy of_lower = find_field_energy(higher_, on_higher_, lower_);
+  return by_lane(of_higher.known & of_lower.known, of_higher.energy + of_lower.energy);
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -2,11 +2,13 @@
 
 #include "gcpdda/base/exact_sum.hpp"
 #include "gcpdda/contact/bonds.hpp"
+#include "gcpdda/contact/pair_energies.hpp"
 #include "gcpdda/contact/region_law.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/simulation/half_works.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gcpdda {
 
@@ -119,12 +121,18 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
 
 void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
   const BlockSystem &blocks = simulation.blocks();
+  const std::vector<double> known = find_energies(blocks, simulation.candidates());
   for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
     const CandidatePair &pair = simulation.candidates().pairs[k];
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
     const bool is_dilated = simulation.history().is_dilated(k);
     if (!simulation.counts_here(pair) || !(is_dilated || blocks.box[a].meets(blocks.box[b]))) {
+      continue;
+    }
+    const bool is_known = !std::isnan(known[k]) && !is_dilated;
+    if (is_known && !pair.is_mixed) {
+      sum.add(share * pair.half_stiffness * known[k]);
       continue;
     }
     const BlockView first = view_of(blocks, a);
@@ -134,7 +142,7 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
     } else {
       const double half_stiffness =
           pair.is_mixed ? mean_stiffness(simulation, k, first, second) : pair.half_stiffness;
-      sum.add(share * half_stiffness * overlap_energy(first, second));
+      sum.add(share * half_stiffness * (is_known ? known[k] : overlap_energy(first, second)));
     }
   }
 }

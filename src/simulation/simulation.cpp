@@ -182,7 +182,9 @@ void Simulation::prescribe_motion() {
 void Simulation::evaluate_contacts() {
   {
     const auto scope = phases_.measure(Phase::forces);
-    contacts_.evaluate_interior(blocks_, candidates_, history_, Details::on_demand);
+    const std::int64_t coming = stage_step() + 1;
+    const bool is_told = plan_.output_due(coming) || plan_.history_due(coming);
+    contacts_.evaluate_interior(blocks_, candidates_, history_, is_told ? Details::now : Details::on_demand);
   }
   finish_ghosts();
   const auto scope = phases_.measure(Phase::forces);

@@ -5,6 +5,8 @@
 #include "support/scenes.hpp"
 #include "support/thinning.hpp"
 
+#include "gcpdda/contact/pair_energies.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -304,6 +306,34 @@ TEST(PlainPairs, WiderRegistersChangeNoBit) {
   }
 }
 
+// By forces or boundaries, without cutting the overlap out.
+TEST(PlainPairs, HaveTheEnergyOfTheirOverlap) {
+  std::mt19937 engine(94);
+  constexpr int count = 300;
+  const ContactBench bench(couples(engine, count, most_corner_edges), one_law(1e6, 0.3, 10.0), 0.1);
+  const BlockSystem &system = bench.system;
+  // Depths are differences of coordinates up to 10 m a couple, over the area of an overlap in a block of 2 m.
+  const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * 10.0 * count;
+  const std::vector<double> energies = find_energies(system, bench.candidates);
+  const std::vector<double> portable = find_energies(system, bench.candidates, Instructions::portable);
+  int known = 0;
+  int left = 0;
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    const CandidatePair &pair = bench.candidates.pairs[k];
+    const double cut = overlap_energy(view_of(system, pair.lower.value), view_of(system, pair.higher.value));
+    ASSERT_EQ(std::isnan(energies[k]), std::isnan(portable[k]));
+    if (std::isnan(energies[k])) {
+      left += cut > 0.0 ? 1 : 0;
+    } else {
+      ASSERT_EQ(energies[k], portable[k]);
+      ASSERT_NEAR(energies[k], cut, rounding) << k;
+      known += cut > 1e3 * rounding ? 1 : 0;
+    }
+  }
+  EXPECT_GT(known, count / 3);
+  EXPECT_LE(left, count / 100) << "these are for the general way";
+}
+
 void expect_same_bits_without_some_edges(std::size_t most_edges) {
   std::mt19937 engine(92);
   constexpr int count = thinning > 1 ? 80 : 200;
@@ -323,14 +353,27 @@ void expect_same_bits_without_some_edges(std::size_t most_edges) {
   EXPECT_LT(cut.candidates.chain_vertices.size() * whole.candidates.pairs.size(),
             whole.candidates.chain_vertices.size() * cut.candidates.pairs.size());
   int touching = 0;
+  int with_energy = 0;
   for (int step = 0; step < 3; ++step) {
     move_all(engine, 1e-3, whole, cut);
     whole.evaluate();
     cut.evaluate();
+    const std::vector<double> energies = find_energies(whole.system, whole.candidates);
+    const std::vector<double> cut_energies = find_energies(cut.system, cut.candidates);
     for (std::size_t k = 0; k < whole.candidates.pairs.size(); ++k) {
       const auto expected = whole.forces.of_pair(k);
       const auto place = find_pair(cut, whole.candidates.pairs[k]);
-      const auto got = place ? cut.forces.of_pair(*place) : std::span<const RegionForce>();
+      if (!place) {
+        ASSERT_TRUE(expected.empty());
+        ASSERT_FALSE(energies[k] > 0.0);
+        continue;
+      }
+      const auto got = cut.forces.of_pair(*place);
+      ASSERT_EQ(std::isnan(cut_energies[*place]), std::isnan(energies[k]));
+      if (!std::isnan(energies[k])) {
+        ASSERT_EQ(cut_energies[*place], energies[k]);
+        ++with_energy;
+      }
       ASSERT_EQ(got.size(), expected.size());
       if (!expected.empty()) {
         expect_same_bits(got.front(), expected.front());
@@ -340,6 +383,7 @@ void expect_same_bits_without_some_edges(std::size_t most_edges) {
     }
   }
   EXPECT_GT(touching, count);
+  EXPECT_GT(with_energy, most_edges == most_corner_edges ? count / 3 : count / 8);
 }
 
 // A neighbourhood may be refreshed at any time: with all edges in the list or those that a skin leaves, in

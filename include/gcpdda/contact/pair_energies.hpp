@@ -1,0 +1,30 @@
+#pragma once
+
+// Energies of overlaps, many at a time.
+//
+// That of two corners, V of block A and W of block B, follows from its forces.
+//
+// Where the two lines of W are the nearest ones of B's boundary, phi_B is homogeneous of degree 1 about W, so
+// div(phi_B (x - W)) = 3 phi_B, and by Gauss over the overlap S
+//     3 int_S phi_B dA = sum over A's edges in S of (V - W).N_i int phi_B ds,
+// since (x - W).N_i is the same all along an edge line through V, and B's own edges have phi_B = 0. Together
+// with the same of A, and D = W - V,
+//     int_S (phi_A + phi_B) dA = D.f/3,      f = sum N_j int phi_A ds - sum N_i int phi_B ds,
+// f the contact force on A for p_n = 1. That is Euler's theorem: scaled by D, without turning, everything is
+// scaled alike, and f is the gradient by D. Nothing is cut, nothing cancels, however short D is.
+
+#include "gcpdda/contact/candidates.hpp"
+#include "gcpdda/contact/contact_forces.hpp"
+
+#include <vector>
+
+namespace gcpdda {
+
+/// overlap_energy() (m3) by number of pair, as the blocks are posed, for plain pairs of rigid blocks with no
+/// more than most_corner_edges edges: those that overlap with one corner of each, as above, most others as
+/// src/contact/lane_energies.hpp says. Not a number for all others. Which those are, and every bit, depends
+/// on the shapes alone, not on the edges that a refresh leaves in a chain.
+std::vector<double> find_energies(const BlockSystem &system, const Candidates &candidates,
+                                  Instructions instructions = Instructions::widest);
+
+} // namespace gcpdda

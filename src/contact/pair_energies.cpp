@@ -1,0 +1,66 @@
+#include "gcpdda/contact/pair_energies.hpp"
+
+#include "plain_batch.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+namespace gcpdda {
+
+namespace {
+
+/// Have `evaluate` say the energies of those pairs, as many at a time as there are lanes.
+/// @return pairs of which it could not
+template <class Evaluate>
+std::vector<const PlainPair *> fill(const std::vector<const PlainPair *> &pairs, std::size_t width,
+                                    Evaluate evaluate, std::vector<double> &energies) {
+  std::vector<const PlainPair *> left;
+  PlainLanes lanes;
+  for (std::size_t begin = 0; begin < pairs.size(); begin += lanes.count) {
+    const std::size_t most = std::min(width, pairs.size() - begin);
+    lanes.count = 0;
+    while (lanes.count < most && pairs[begin + lanes.count]->is_like(*pairs[begin])) {
+      lanes.pair[lanes.count] = pairs[begin + lanes.count];
+      ++lanes.count;
+    }
+    std::fill(lanes.pair.begin() + static_cast<std::ptrdiff_t>(lanes.count), lanes.pair.end(), pairs[begin]);
+    const PlainBatch::Energies found = evaluate(lanes);
+    for (std::size_t i = 0; i < lanes.count; ++i) {
+      if ((found.known >> i & 1U) != 0) {
+        energies[lanes.pair[i]->pair] = found.energy[i];
+      } else {
+        left.push_back(lanes.pair[i]);
+      }
+    }
+  }
+  return left;
+}
+
+} // namespace
+
+std::vector<double> find_energies(const BlockSystem &system, const Candidates &candidates,
+                                  Instructions instructions) {
+  std::vector<double> energies(candidates.pairs.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<const PlainPair *> corners;
+  std::vector<const PlainPair *> others;
+  const auto is_simple = [&](BlockIndex row) { return system.num_vertices(row.value) <= most_corner_edges; };
+  for (const PlainPair &plain : candidates.plain) {
+    if (!plain.is_deformable && is_simple(plain.lower) && is_simple(plain.higher) &&
+        system.box[plain.lower.value].meets(system.box[plain.higher.value])) {
+      (plain.may_be_corners ? corners : others).push_back(&plain);
+    }
+  }
+  const std::unique_ptr<PlainBatch> batch = make_plain_batch(instructions);
+  const auto left = fill(
+      corners, batch->width(),
+      [&](const PlainLanes &lanes) { return batch->find_corner_energies(system, candidates, lanes); },
+      energies);
+  others.insert(others.end(), left.begin(), left.end());
+  fill(
+      others, batch->width(),
+      [&](const PlainLanes &lanes) { return batch->find_energies(system, candidates, lanes); }, energies);
+  return energies;
+}
+
+} // namespace gcpdda
