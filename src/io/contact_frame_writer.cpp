@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 namespace gcpdda {
@@ -46,22 +48,51 @@ public:
       source_.append(ids.first, ids.last, leaving_[rank]);
     }
     communicator_.all_to_all(leaving_, arrived_);
-    const auto in_file = [](const ContactRow *a, const ContactRow *b) {
-      return std::tie(a->lower, a->higher, a->position) < std::tie(b->lower, b->higher, b->position);
-    };
-    rows_.clear();
-    for (const std::vector<ContactRow> &part : arrived_) {
-      const auto num_before = std::ssize(rows_);
-      for (const ContactRow &row : part) {
-        rows_.push_back(&row);
-      }
-      std::inplace_merge(rows_.begin(), rows_.begin() + num_before, rows_.end(), in_file);
-    }
+    sort(strips_.of(communicator_.rank(), number));
   }
 
   [[nodiscard]] const std::vector<const ContactRow *> &rows() const { return rows_; }
 
 private:
+  // Each lower id has its place. Regions come in order from each rank, those of a mobile block all from one:
+  // where several meet, on a fixed block, they are sorted.
+  void sort(IdRange ids) {
+    std::vector<std::uint32_t> end(static_cast<std::size_t>(ids.last - ids.first) + 1); // of id i at i + 1
+    std::vector<bool> has_several(end.size());
+    for_each_id(ids, [&](std::size_t id, std::span<const ContactRow> rows) {
+      has_several[id] = end[id + 1] > 0;
+      end[id + 1] += static_cast<std::uint32_t>(rows.size());
+    });
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    rows_.resize(end.back());
+    for_each_id(ids, [&](std::size_t id, std::span<const ContactRow> rows) {
+      for (const ContactRow &row : rows) {
+        rows_[end[id]++] = &row;
+      }
+    });
+    // Each id ends where the next one began.
+    for (std::size_t id = 0; id + 1 < end.size(); ++id) {
+      if (has_several[id]) {
+        const auto begin = rows_.begin() + (id == 0 ? 0 : end[id - 1]);
+        std::sort(begin, rows_.begin() + end[id], [](const ContactRow *a, const ContactRow *b) {
+          return std::tie(a->higher, a->position) < std::tie(b->higher, b->position);
+        });
+      }
+    }
+  }
+
+  /// visit(id from the first one on, its rows) for what came from each rank, one after the other.
+  template <class Visit> void for_each_id(IdRange ids, Visit visit) const {
+    for (const std::vector<ContactRow> &part : arrived_) {
+      for (auto first = part.begin(); first != part.end();) {
+        const auto next =
+            std::find_if(first, part.end(), [&](const ContactRow &row) { return row.lower != first->lower; });
+        visit(static_cast<std::size_t>(first->lower - ids.first), std::span(first, next));
+        first = next;
+      }
+    }
+  }
+
   Communicator communicator_;
   Strips strips_;
   const ContactSource &source_;
@@ -75,61 +106,72 @@ class ContactTables {
 public:
   ContactTables(CollectiveFile &file, std::int64_t num_regions)
       : file_(file), cells_(file, num_regions, 2 * num_regions, vtk::CellType::line),
-        points_(file.table<double>(vtk::at("Points"), 2 * num_regions, 3)),
-        blocks_(file.table<std::int64_t>(vtk::cell_data("blocks"), num_regions, 2)),
-        joint_(file.table<std::int32_t>(vtk::cell_data("joint"), num_regions)),
-        state_(file.table<std::uint8_t>(vtk::cell_data("state"), num_regions)),
-        normal_force_(file.table<double>(vtk::cell_data("normal_force"), num_regions)),
-        shear_force_(file.table<double>(vtk::cell_data("shear_force"), num_regions)),
-        overlap_(file.table<double>(vtk::cell_data("overlap"), num_regions)),
-        slip_(file.table<double>(vtk::cell_data("slip"), num_regions)) {}
+        points_{file.table<double>(vtk::at("Points"), 2 * num_regions, 3), {}},
+        blocks_{file.table<std::int64_t>(vtk::cell_data("blocks"), num_regions, 2), {}},
+        joint_{file.table<std::int32_t>(vtk::cell_data("joint"), num_regions), {}},
+        state_{file.table<std::uint8_t>(vtk::cell_data("state"), num_regions), {}},
+        normal_force_{file.table<double>(vtk::cell_data("normal_force"), num_regions), {}},
+        shear_force_{file.table<double>(vtk::cell_data("shear_force"), num_regions), {}},
+        overlap_{file.table<double>(vtk::cell_data("overlap"), num_regions), {}},
+        slip_{file.table<double>(vtk::cell_data("slip"), num_regions), {}} {}
 
   /// Collective.
   void write(std::int64_t first, const std::vector<const ContactRow *> &rows) {
     cells_.write(first, 2 * first, std::vector<std::int32_t>(rows.size(), 2));
-    columns(points_, 2 * first, rows, real_, [](const ContactRow &row) {
-      return std::array{row.begin.x, row.begin.y, 0.0, row.end.x, row.end.y, 0.0};
-    });
-    columns(blocks_, first, rows, long_, [](const ContactRow &row) {
-      return std::array{row.lower, row.higher};
-    });
-    columns(joint_, first, rows, int_, [](const ContactRow &row) { return std::array{row.joint}; });
-    columns(state_, first, rows, small_, [](const ContactRow &row) { return std::array{row.state}; });
-    columns(normal_force_, first, rows, real_,
-            [](const ContactRow &row) { return std::array{row.normal_force}; });
-    columns(shear_force_, first, rows, real_,
-            [](const ContactRow &row) { return std::array{row.shear_force}; });
-    columns(overlap_, first, rows, real_, [](const ContactRow &row) { return std::array{row.overlap}; });
-    columns(slip_, first, rows, real_, [](const ContactRow &row) { return std::array{row.slip}; });
+    fill(rows);
+    write(points_, 2 * first);
+    write(blocks_, first);
+    write(joint_, first);
+    write(state_, first);
+    for (const Column<double> *column : {&normal_force_, &shear_force_, &overlap_, &slip_}) {
+      write(*column, first);
+    }
   }
 
 private:
-  /// @param get  the values of one region, as an array
-  template <class T, class Get>
-  void columns(const CollectiveFile::Table &table, std::int64_t first,
-               const std::vector<const ContactRow *> &rows, std::vector<T> &values, Get get) {
-    values.clear();
-    for (const ContactRow *row : rows) {
-      const auto of_row = get(*row);
-      values.insert(values.end(), of_row.begin(), of_row.end());
+  template <class T> struct Column {
+    CollectiveFile::Table table;
+    std::vector<T> values;
+  };
+  template <class T> void write(const Column<T> &column, std::int64_t first) {
+    file_.write(column.table, first, std::span<const T>(column.values));
+  }
+
+  // All columns in one pass, as for blocks.
+  void fill(const std::vector<const ContactRow *> &rows) {
+    const std::size_t count = rows.size();
+    points_.values.resize(6 * count);
+    blocks_.values.resize(2 * count);
+    joint_.values.resize(count);
+    state_.values.resize(count);
+    for (Column<double> *column : {&normal_force_, &shear_force_, &overlap_, &slip_}) {
+      column->values.resize(count);
     }
-    file_.write(table, first, std::span<const T>(values));
+    for (std::size_t k = 0; k < count; ++k) {
+      const ContactRow &row = *rows[k];
+      const std::array ends{row.begin.x, row.begin.y, 0.0, row.end.x, row.end.y, 0.0};
+      std::copy(ends.begin(), ends.end(), &points_.values[6 * k]);
+      blocks_.values[2 * k] = row.lower;
+      blocks_.values[2 * k + 1] = row.higher;
+      joint_.values[k] = row.joint;
+      state_.values[k] = row.state;
+      normal_force_.values[k] = row.normal_force;
+      shear_force_.values[k] = row.shear_force;
+      overlap_.values[k] = row.overlap;
+      slip_.values[k] = row.slip;
+    }
   }
 
   CollectiveFile &file_;
   vtk::CellTables cells_;
-  CollectiveFile::Table points_;
-  CollectiveFile::Table blocks_;
-  CollectiveFile::Table joint_;
-  CollectiveFile::Table state_;
-  CollectiveFile::Table normal_force_;
-  CollectiveFile::Table shear_force_;
-  CollectiveFile::Table overlap_;
-  CollectiveFile::Table slip_;
-  std::vector<double> real_;
-  std::vector<std::int64_t> long_;
-  std::vector<std::int32_t> int_;
-  std::vector<std::uint8_t> small_;
+  Column<double> points_;
+  Column<std::int64_t> blocks_;
+  Column<std::int32_t> joint_;
+  Column<std::uint8_t> state_;
+  Column<double> normal_force_;
+  Column<double> shear_force_;
+  Column<double> overlap_;
+  Column<double> slip_;
 };
 
 /// False on a rank whose regions are not as many as were counted; it writes none of them. Collective.

@@ -142,7 +142,10 @@ void SimulationFrame::append(std::int64_t first, std::int64_t last, std::vector<
     }
   };
   const std::size_t end = first_row_from(blocks, 0, blocks.num_owned, last);
-  for (std::size_t index = first_row_from(blocks, 0, blocks.num_owned, first); index < end; ++index) {
+  const std::size_t begin = first_row_from(blocks, 0, blocks.num_owned, first);
+  rows.reserve(rows.size() + end - begin); // growing by doubling would touch far more fresh memory
+  vertices.reserve(vertices.size() + blocks.vertex_begin[end] - blocks.vertex_begin[begin]);
+  for (std::size_t index = begin; index < end; ++index) {
     append_fixed_below(blocks.properties[index].id.value);
     rows.push_back(mobile_row(simulation_, index));
     append_current_vertices(blocks, index, vertices);
@@ -177,6 +180,7 @@ std::int64_t SimulationContacts::count(std::int64_t first, std::int64_t last) co
 void SimulationContacts::append(std::int64_t first, std::int64_t last, std::vector<ContactRow> &rows) const {
   const BlockSystem &blocks = simulation_.blocks();
   const ContactForces &contacts = simulation_.contacts();
+  rows.reserve(rows.size() + static_cast<std::size_t>(count(first, last)));
   for_each_pair(first, last, [&](std::size_t number) {
     const CandidatePair &pair = simulation_.candidates().pairs[number];
     std::int32_t position = 0;
