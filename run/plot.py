@@ -93,7 +93,10 @@ def chosen_frames(directory, words):
 
 def frame_before(directory, stage):
     """The last frame that is not later than the beginning of a stage."""
-    stages = json.loads((directory / "summary.json").read_text()).get("stages", [])
+    summary = directory / "summary.json"
+    if not summary.exists():
+        sys.exit(f"plot.py: no {summary}, which tells when stages began: the run goes on, or was killed")
+    stages = json.loads(summary.read_text()).get("stages", [])
     names = [entry["name"] for entry in stages]
     if stage not in names:
         sys.exit(f"plot.py: no stage {stage}: there are {', '.join(names) or 'none'}")

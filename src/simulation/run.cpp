@@ -40,7 +40,7 @@ public:
   /// @param lock  of the folder, if there is one yet
   SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
       : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
-        bolts_at_start_(scene.bolts),
+        is_once_(options.once), bolts_at_start_(scene.bolts),
         simulation_(communicator, scene, options.restart ? options.directory : options.from) {
     if (!options.restart) {
       begin_results(scene, options);
@@ -258,7 +258,8 @@ private:
     const std::int64_t step = simulation_.stage_step();
     const TimePlan &plan = simulation_.plan();
     const bool failed = simulation_.fault().has_value();
-    const bool ended = simulation_.is_staged() && simulation_.stage_is_over(); // wherever it falls
+    const bool ended = (simulation_.is_staged() && simulation_.stage_is_over()) || // wherever it falls
+                       (is_once_ && simulation_.stop_agreed());
     const bool output_due = failed || ended || plan.output_due(step);
     const bool history_due = failed || ended || plan.history_due(step);
     if (!output_due && !history_due) {
@@ -286,7 +287,7 @@ private:
   void write_checkpoint_if_due() {
     const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
     const bool stage_ends = simulation_.is_staged() && simulation_.stage_is_over();
-    if (simulation_.fault() || is_bare_ ||
+    if (simulation_.fault() || is_bare_ || is_once_ ||
         (!stopping && !stage_ends && !simulation_.plan().checkpoint_due(simulation_.stage_step()))) {
       return;
     }
@@ -450,6 +451,7 @@ private:
   Communicator communicator_;
   std::filesystem::path directory_;
   bool is_bare_;
+  bool is_once_;
   std::vector<Bolt> bolts_at_start_;
   Simulation simulation_;
   std::optional<HistoryWriter> histories_;

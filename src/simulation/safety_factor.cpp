@@ -103,8 +103,9 @@ private:
         break;
       }
       if (run_trials(factors)) {
-        say(fmt::format("stopped by a signal after {} trials; a search does not go on from there\n",
+        say(fmt::format("stopped by a signal in trial {}; a search does not go on from there\n",
                         trials_.size()));
+        conclude(); // with what is known so far
         return 6;
       }
     }
@@ -211,11 +212,10 @@ private:
         scene_.resolved;
     const fs::path directory = trial_directory(factor);
     const bool shows = !options_.quiet && group_number_ == 0; // of trials at once the first one's
-    RunOutcome outcome = run_and_tell(*group_, weakened,
-                                      {directory, false, false, settled_directory(), true, false,
-                                       shows ? fmt::format("factor {:.6g}: ", factor) : std::string()});
-    on_root(*group_, [&] { fs::remove_all(directory / "checkpoints"); }); // large, and of no further use
-    return outcome;
+    RunOptions options{directory, false, false, settled_directory(), true};
+    options.once = true;
+    options.progress_of = shows ? fmt::format("factor {:.6g}: ", factor) : std::string();
+    return run_and_tell(*group_, weakened, options);
   }
 
   /// What every group has found goes to all; the first trouble ends the search on all ranks.

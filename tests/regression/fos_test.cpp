@@ -4,7 +4,12 @@
 #include "support/plane_failure.hpp"
 #include "support/run_facts.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
 
 namespace gcpdda::fos_test {
 namespace {
@@ -88,6 +93,41 @@ TEST(Fos, BeginsWithTheStateOfAnEarlierSearch) {
   const Outcome stateless = run_gcpdda(2, with({"--settled", state, "--out", "other"}), folder);
   EXPECT_EQ(stateless.exit_code, 4);
   EXPECT_FALSE(fs::exists(folder / "other"));
+}
+
+// The second trial gains speed so slowly that it takes a long time.
+TEST(Fos, TellsWhatItKnowsWhereTheSignalStopsIt) {
+  const WorkFolder folder;
+  folder.write("plane.toml", testing::plane_failure_toml(0.0));
+  const fs::path results = folder / "results/plane_fos";
+  const std::string more = fmt::format("{:.7g}", 1.00001 * testing::plane_failure_factor(0.0));
+  testing::Process process(
+      testing::gcpdda_words(2, {"fos", "plane.toml", "--from", "0.8", "--to", more, "--set",
+                                "fos.failure_motion=1e6", "--set", "fos.limit=1e4"}),
+      folder.path());
+  const fs::path trial = results / ("trials/F" + more);
+  const fs::path started = trial / "history/energy.csv";
+  for (int tries = 0; tries < 1000 && !fs::exists(started); ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  kill(process.id(), SIGUSR1);
+  const Outcome stopped = process.wait();
+  EXPECT_EQ(stopped.exit_code, 6) << stopped.err;
+  EXPECT_NE(stopped.err.find("stopped by a signal in trial 2"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.out.find("the blocks still hold at 0.8"), std::string::npos) << stopped.out;
+  EXPECT_EQ(file_text(results / "fos.txt"), stopped.out);
+  EXPECT_EQ(std::stod(json_value(results / "fos.json", "holds")), 0.8);
+  EXPECT_EQ(lines_of(file_text(results / "fos_trials.csv")).size(), 3U);
+  EXPECT_TRUE(fs::exists(trial / "frames/frame_000000.hdf")) << "as it was stopped";
+  EXPECT_FALSE(fs::exists(trial / "checkpoints"));
+}
+
+TEST(Fos, SaysWhyATrialCannotRun) {
+  const WorkFolder folder;
+  folder.write("plane.toml", testing::plane_failure_toml(0.0));
+  const Outcome outcome = run_gcpdda(0, {"fos", "plane.toml", "--set", "fos.limit=1e6"}, folder);
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_NE(outcome.err.find("cannot run: plane.toml:"), std::string::npos) << outcome.err;
 }
 
 TEST(Fos, RefusesWhatItCannotSearch) {

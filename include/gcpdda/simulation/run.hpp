@@ -18,6 +18,7 @@ struct RunOptions {
   std::filesystem::path from = {};
   bool quiet = false; ///< the log goes to its file alone
   bool bare = false;  ///< no frames, histories and checkpoints: what the summary says is all that is wanted
+  bool once = false;  ///< nobody goes on from it: no checkpoints, and a last frame where the signal stops it
   std::string progress_of = {}; ///< what lines of progress of a quiet run begin with; empty for no such lines
 };
 

@@ -31,7 +31,8 @@ namespace gcpdda {
 class SceneError : public std::runtime_error {
 public:
   explicit SceneError(Diagnostics diagnostics)
-      : std::runtime_error("bad scene"), diagnostics_(std::move(diagnostics)) {}
+      : std::runtime_error(diagnostics.empty() ? "bad scene" : to_string(diagnostics.front())),
+        diagnostics_(std::move(diagnostics)) {}
   [[nodiscard]] const Diagnostics &diagnostics() const { return diagnostics_; }
 
 private:
