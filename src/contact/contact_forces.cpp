@@ -111,7 +111,8 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   static_assert(std::tuple_size_v<decltype(own_)> == most_lanes);
   PlainLanes lanes;
   lanes.count = entries.size();
-  for (std::size_t i = 0; i < batch_->width(); ++i) {
+  const std::size_t width = batch_->width();
+  for (std::size_t i = 0; i < width; ++i) {
     const PlainPair &plain = scene.candidates.plain[entries[std::min(i, entries.size() - 1)]];
     const RegionRange &old = scene.history.ranges[plain.pair];
     lanes.pair[i] = &plain;

@@ -118,12 +118,14 @@ template <std::size_t lines>
   Mask leaves{};
   Lanes depth = lower.depth[0];
   Lanes fall = lower.fall[0];
+  Lanes other_fall = fall; // of two lines
   each<lines>([&](auto j) __attribute__((always_inline)) {
     const Lanes end = select(lower.fall[j] > 0.0, lower.depth[j] / lower.fall[j], never);
     const Mask first = end < length;
     leaves = (first & other.has_line[j]) | (leaves & !first);
     length = min(end, length);
     const Mask nearer = (lower.depth[j] < depth) | ((lower.depth[j] == depth) & (lower.fall[j] > fall));
+    other_fall = select(nearer, fall, lower.fall[j]);
     depth = select(nearer, lower.depth[j], depth);
     fall = select(nearer, lower.fall[j], fall);
   });
@@ -138,7 +140,10 @@ template <std::size_t lines>
     Lanes there = 0.0;
     Lanes next_depth = depth;
     Lanes next_fall = fall;
-    if constexpr (k + 1 < lines) {
+    if constexpr (lines == 2 && k == 0) { // they cross once, whichever is nearer
+      const Lanes crossing = (lower.depth[1] - lower.depth[0]) / (lower.fall[1] - lower.fall[0]);
+      next = select((other_fall > fall) & (crossing < next), crossing, next);
+    } else if constexpr (k + 1 < lines) {
       each<lines>([&](auto j) __attribute__((always_inline)) {
         const Lanes crossing = (lower.depth[j] - depth) / (lower.fall[j] - fall);
         const Mask first = (lower.fall[j] > fall) & (crossing < next);
@@ -146,6 +151,8 @@ template <std::size_t lines>
         next_depth = select(first, lower.depth[j], next_depth);
         next_fall = select(first, lower.fall[j], next_fall);
       });
+    }
+    if constexpr (k + 1 < lines) {
       next = max(next, s);
       there = select(next < length, max(0.0, depth - fall * next), 0.0);
     }

@@ -357,7 +357,7 @@ private:
     const bool failed = simulation_.fault().has_value();
     const bool stopped = !simulation_.finished();
     RunSummary summary;
-    tell_end(simulation_, directory_, summary);
+    tell_end(simulation_, is_once_ ? std::filesystem::path() : directory_, summary);
     if (stopped) {
       contacts_at_end_ = count_contacts();
     }

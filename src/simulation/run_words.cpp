@@ -76,8 +76,10 @@ void tell_end(const Simulation &simulation, const std::filesystem::path &directo
     summary.message = fault_message(simulation);
   } else if (!simulation.finished()) {
     summary.verdict = "stopped";
-    summary.message = fmt::format("stopped by a signal at t = {:g} s, go on with gcpdda restart {}",
-                                  simulation.time(), directory.string());
+    summary.message = fmt::format("stopped by a signal at t = {:g} s", simulation.time());
+    if (!directory.empty()) {
+      summary.message += fmt::format(", go on with gcpdda restart {}", directory.string());
+    }
   } else if (simulation.is_staged() && stage.until_verdict) {
     summary.verdict = word_of(verdict);
     summary.message = fmt::format("stage '{}' {} at t = {:g} s", stage.name,

@@ -20,6 +20,7 @@ std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_er
 std::string words_on_progress(const Simulation &simulation, const EnergyRow &energy, double per_step);
 
 /// Tell in `summary` how a run has ended, and why.
+/// @param directory  of the run; empty where nobody can go on from it
 void tell_end(const Simulation &simulation, const std::filesystem::path &directory, RunSummary &summary);
 
 /// The most loaded bolts, and how many have yielded and broken.

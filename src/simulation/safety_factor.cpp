@@ -18,6 +18,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 
 namespace gcpdda {
 
@@ -235,7 +236,10 @@ private:
         trial.message.assign(messages[rank].begin(), messages[rank].end());
         trial.directory = trial_directory(facts.factor);
         trials_[facts.factor] = trial;
-        stopped = stopped || facts.exit_code == 6;
+        if (facts.exit_code == 6) {
+          stopped = true;
+          stopped_.insert(facts.factor);
+        }
         say(fmt::format("factor {:.6g}: {} after {:.4g} s, {} steps, {:.2f} CPU s on {} rank{} {}\n",
                         facts.factor, word_of(trial.verdict), trial.time, trial.steps, trial.cpu_s,
                         trial.ranks, trial.ranks == 1 ? "" : "s", trial.message));
@@ -264,7 +268,8 @@ private:
 
   [[nodiscard]] std::optional<Verdict> verdict_of(double factor) const {
     const auto trial = trials_.find(factor);
-    return trial == trials_.end() ? std::nullopt : std::optional(trial->second.verdict);
+    return trial == trials_.end() || stopped_.contains(factor) ? std::nullopt
+                                                               : std::optional(trial->second.verdict);
   }
 
   [[nodiscard]] fs::path settled_directory() const {
@@ -287,7 +292,8 @@ private:
     }
     for (const auto &[factor, trial] : trials_) {
       report_.trials.push_back(trial);
-      report_.trials.back().decisive = std::count(search.decisive.begin(), search.decisive.end(), factor) > 0;
+      report_.trials.back().decisive =
+          std::count(search.decisive.begin(), search.decisive.end(), factor) > 0 || stopped_.contains(factor);
     }
     if (!options_.quiet) {
       on_root(world_, [&] {
@@ -342,6 +348,7 @@ private:
   double start_time_ = 0.0; ///< of all trials, s
   std::int64_t num_blocks_ = 0;
   std::map<double, StrengthTrial> trials_; ///< by factor
+  std::set<double> stopped_;               ///< factors of those without a verdict because the signal came
   SafetyReport report_;
   std::string message_; ///< why there is no factor
 };

@@ -115,6 +115,8 @@ TEST(Fos, TellsWhatItKnowsWhereTheSignalStopsIt) {
   EXPECT_EQ(stopped.exit_code, 6) << stopped.err;
   EXPECT_NE(stopped.err.find("stopped by a signal in trial 2"), std::string::npos) << stopped.err;
   EXPECT_NE(stopped.out.find("the blocks still hold at 0.8"), std::string::npos) << stopped.out;
+  EXPECT_EQ(stopped.out.find("undecided in the limit"), std::string::npos) << stopped.out;
+  EXPECT_EQ(stopped.err.find("gcpdda restart"), std::string::npos) << "a trial is not gone on with";
   EXPECT_EQ(file_text(results / "fos.txt"), stopped.out);
   EXPECT_EQ(std::stod(json_value(results / "fos.json", "holds")), 0.8);
   EXPECT_EQ(lines_of(file_text(results / "fos_trials.csv")).size(), 3U);
