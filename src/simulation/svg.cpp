@@ -29,12 +29,19 @@ public:
                           scale_ * extent_.x + 2.0 * margin, scale_ * extent_.y + 2.0 * margin + legend)) {}
 
   void add(std::span<const Vec2> vertices, const std::string &fill, double outline) {
-    text_ += fmt::format("<polygon fill=\"{}\" stroke=\"#333\" stroke-width=\"{}\" points=\"", fill, outline);
+    text_ +=
+        fmt::format("<polygon fill=\"{}\" stroke=\"#333\" stroke-width=\"{:.2g}\" points=\"", fill, outline);
     for (const Vec2 p : vertices) {
       text_ += fmt::format("{:.2f},{:.2f} ", margin + scale_ * (p.x - region_.low.x),
                            margin + scale_ * (region_.high.y - p.y));
     }
     text_ += "\"/>\n";
+  }
+
+  /// Width of outlines that leave the colours of so many blocks to be seen, in pixels.
+  [[nodiscard]] double outline(std::size_t num_blocks) const {
+    const double of_block = scale_ * std::sqrt(extent_.x * extent_.y / static_cast<double>(num_blocks));
+    return std::min(0.5, 0.03 * of_block);
   }
 
   [[nodiscard]] std::string with(const std::string &line) const {
@@ -67,8 +74,9 @@ template <class Block> Aabb region_of(const std::vector<Block> &blocks) {
 std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains) {
   const Aabb region = region_of(blocks);
   Page page(region, 1600.0);
+  const double outline = page.outline(blocks.size());
   for (const DrawnBlock &block : blocks) {
-    page.add(block.vertices, colour_of(block.subdomain), block.deformable ? 1.5 : 0.5);
+    page.add(block.vertices, colour_of(block.subdomain), (block.deformable ? 3.0 : 1.0) * outline);
   }
   return page.with(fmt::format(
       "{} blocks, {} subdomain{}, {:.4g} m x {:.4g} m; grey: fixed; thick outline: deformable", blocks.size(),
@@ -81,12 +89,13 @@ std::string draw_mechanism(const SafetyReport &report) {
     farthest = std::max(farthest, block.motion);
   }
   Page page(region_of(report.mechanism), 1200.0);
+  const double outline = page.outline(report.mechanism.size());
   for (const FailingBlock &block : report.mechanism) {
     const double share = farthest > 0.0 ? block.motion / farthest : 0.0;
     page.add(block.vertices,
              block.fixed ? std::string(fixed_colour)
                          : fmt::format("hsl({:.0f},85%,{:.0f}%)", 50.0 - 50.0 * share, 97.0 - 45.0 * share),
-             0.5);
+             outline);
   }
   return page.with(fmt::format("at factor {:.5g}; colour: motion since the strengths were lowered, white 0 "
                                "to red {:.3g} m; grey: fixed",
