@@ -312,7 +312,7 @@ template <std::size_t edges> struct LaneBatch::CornerPairs {
   [[gnu::always_inline]] CornerPairs(const BlockSystem &system, const Pairs &pairs)
       : last_lower(pairs.first.lower_edges - std::size_t{1}),
         last_higher(pairs.first.higher_edges - std::size_t{1}) {
-    each<edges>([&](auto k) {
+    each<edges>([&](auto k) __attribute__((always_inline)) {
       load_edge(system, pairs.lower, std::min<std::size_t>(k, last_lower), k, lower);
       load_edge(system, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
     });
