@@ -24,7 +24,9 @@ struct RunOptions {
 
 /// How a run ended.
 struct RunOutcome {
-  int exit_code = 0; ///< 0 done, 5 numerical failure, 6 stopped by the signal with a checkpoint, 7 undecided
+  /// 0 done, 5 numerical failure, 6 stopped by the signal (with a checkpoint unless RunOptions::once), 7
+  /// undecided
+  int exit_code = 0;
   RunSummary summary;
 };
 
