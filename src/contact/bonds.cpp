@@ -276,10 +276,7 @@ void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair 
           pull_dyad.xy - pull_dyad.yx + cross(force.point - system.trial_centroid[row], pull);
       force.shear_torque[k] += k == 0 ? torque : -torque;
     }
-    if (system.is_deformable(pair.lower.value) || system.is_deformable(pair.higher.value)) {
-      bond_dyads_.resize(num_forces_);
-      bond_dyads_.back() = pull_dyad;
-    }
+    note_dyads(system, pair, force, pull_dyad);
     note(system, pair, force);
   }
 }

@@ -32,12 +32,6 @@ template <class Visit> void for_bits(unsigned bits, Visit &&visit) {
   }
 }
 
-template <class T> void grow(std::vector<T> &list, std::size_t size) {
-  if (list.size() < size) {
-    list.resize(size);
-  }
-}
-
 /// How a trial configuration moved since the one before, in a form without cancellation.
 TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
   const RigidDof step = system.trial[row] - system.trial_previous[row];
@@ -74,11 +68,19 @@ void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, 
   const Vec2 drag = (force.shear + dot(force.shear_force, tangent)) * tangent;
   force.damping_force += drag;
   add_torques(force.damping_torque, drag);
-  if (region < damping_dyads_.size()) {
-    damping_dyads_[region] += outer(force.point - force.origin, drag);
+  const Vec2 elastic = -shear * tangent;
+  if (region < dyads_.size()) {
+    for (const std::size_t k : {0U, 1U}) {
+      const Vec2 arm = k == 0 ? lower_arm : -higher_arm;
+      BlockGradientSum &dyads = dyads_[region][k];
+      dyads.force += outer(arm, change);
+      dyads.damping += outer(arm, drag);
+      dyads.shear =
+          force.bonded ? dyads.shear + outer(arm, elastic - force.shear_force) : outer(arm, elastic);
+    }
   }
   force.shear = shear;
-  force.shear_force = -shear * tangent;
+  force.shear_force = elastic;
   force.shear_torque = {};
   add_torques(force.shear_torque, force.shear_force);
   sums_[region] = force;
@@ -150,6 +152,10 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
   if (details == Details::now) {
     grow(forces_, num_forces_ + lanes.count);
   }
+  results.has_dyads = lanes.pair[0]->is_deformable;
+  if (results.has_dyads) {
+    grow(dyads_, num_forces_ + lanes.count);
+  }
   for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
@@ -170,16 +176,17 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
     if (details == Details::now) {
       results.details[i] = &forces_[num_forces_];
     }
+    if (results.has_dyads) {
+      results.dyads[i] = &dyads_[num_forces_];
+    }
     ++num_forces_;
   });
   return results;
 }
 
 void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching) {
-  const bool is_deformable = lanes.pair[0]->is_deformable;
-  const Details details = is_deformable ? Details::now : details_;
-  const PlainResults results = open_regions(lanes, touching, details);
-  const unsigned too_deep = batch_->store(results, details);
+  const PlainResults results = open_regions(lanes, touching, details_);
+  const unsigned too_deep = batch_->store(results, details_);
   for_bits(results.wanted, [&](std::size_t i) {
     RegionMemory &memory = *results.memory[i];
     memory.law = lanes.pair[i]->is_mixed ? lanes.constants[i]->law : -1;
@@ -187,13 +194,9 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
     memory.dilation = {};
     memory.lower_stretch = 0;
     memory.higher_stretch = 0;
-    if (details == Details::now) {
+    if (details_ == Details::now) {
       const auto region = static_cast<std::size_t>(results.sums[i] - sums_.data());
       static_cast<RegionSums &>(forces_[region]) = sums_[region];
-      if (is_deformable) {
-        damping_dyads_.resize(region + 1);
-        damping_dyads_.back() = batch_->damping_dyad(i);
-      }
     }
   });
   for_bits(too_deep, [&](std::size_t i) {
@@ -262,7 +265,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
   meeting_.clear();
   for (std::size_t k = 0; k < candidates.plain.size(); ++k) {
     const PlainPair &plain = candidates.plain[k];
-    if (ranges_[plain.pair].count > 0 && !plain.is_deformable) {
+    if (ranges_[plain.pair].count > 0) {
       meeting_.push_back(static_cast<std::uint32_t>(k));
     }
   }
@@ -361,8 +364,6 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
     forces_.reserve(num_forces_ == 0 ? all : std::min(all, num_forces_ + num_forces_ / 64));
   }
   num_forces_ = 0;
-  damping_dyads_.clear();
-  bond_dyads_.clear();
   dilation_works_.clear();
   ranges_.assign(candidates.pairs.size(), {});
   // Most candidates touch: to grow by doubling would take more memory than to have room for all.

@@ -45,8 +45,20 @@ bool counts_here(const BlockSystem &system, BlockIndex lower) {
 
 // Pairs ascend by (lower, higher): a block meets its partners in the order of their ids here too.
 ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts,
-                          const BlockSystem &system, std::span<BlockContactSum> sums) {
+                          const BlockSystem &system, std::span<BlockContactSum> sums,
+                          std::span<BlockGradientSum> gradient_sums) {
   ContactCount count;
+  const auto add_dyads = [&](std::size_t row, std::span<const RegionDyads> regions, std::size_t side) {
+    if (row >= system.num_owned || !system.is_deformable(row)) {
+      return;
+    }
+    BlockGradientSum &sum = gradient_sums[system.deformation_begin[row]];
+    for (const RegionDyads &region : regions) {
+      sum.force += region[side].force;
+      sum.shear += region[side].shear;
+      sum.damping += region[side].damping;
+    }
+  };
   constexpr std::size_t ahead = 8; // regions stand in the order of their evaluation
   const std::size_t num_pairs = candidates.pairs.size();
   for (std::size_t k = 0; k < num_pairs; ++k) {
@@ -77,51 +89,17 @@ ContactCount add_contacts(const Candidates &candidates, const ContactForces &con
         sums[higher].damping += {-f.damping_force, f.damping_torque[1]};
       }
     }
+    if (!gradient_sums.empty()) {
+      add_dyads(lower, contacts.dyads_of_pair(k), 0);
+      add_dyads(higher, contacts.dyads_of_pair(k), 1);
+    }
   }
   return count;
 }
 
-// Of pairs in their order too; those of two rigid blocks need not have details.
-void find_gradient_sums(const BlockSystem &system, const Candidates &candidates,
-                        const ContactForces &contacts, std::span<BlockGradientSum> sums) {
-  std::fill(sums.begin(), sums.end(), BlockGradientSum{});
-  const auto add = [&](std::size_t row, double sign, const RegionForce &f) {
-    BlockGradientSum &sum = sums[system.deformation_begin[row]];
-    const Vec2 centroid = system.trial_centroid[row];
-    const Vec2 arm = f.origin - centroid;
-    sum.force += sign * (f.dyad + outer(arm, f.force));
-    sum.shear += sign * (outer(f.point - centroid, f.shear_force) + contacts.bond_dyad(f));
-    sum.damping += sign * (contacts.damping_dyad(f) + outer(arm, f.damping_force));
-  };
-  for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
-    const CandidatePair &pair = candidates.pairs[k];
-    const auto takes = [&](BlockIndex row) {
-      return row.value < system.num_owned && system.is_deformable(row.value);
-    };
-    const bool lower = takes(pair.lower);
-    const bool higher = takes(pair.higher);
-    if (!lower && !higher) {
-      continue;
-    }
-    for (const RegionForce &f : contacts.of_pair(k)) {
-      if (lower) {
-        add(pair.lower.value, 1.0, f);
-      }
-      if (higher) {
-        add(pair.higher.value, -1.0, f);
-      }
-    }
-  }
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (!system.is_deformable(row)) {
-      continue;
-    }
-    // int t X^T with X = F^-1 (x - x_c).
-    BlockGradientSum &sum = sums[system.deformation_begin[row]];
-    const Mat2 &to_reference = system.trial_inverse[system.deformation_begin[row]];
-    const auto work_on_gradient = [&](const Mat2 &dyad) { return transposed(to_reference * dyad); };
-    sum = {work_on_gradient(sum.force), work_on_gradient(sum.shear), work_on_gradient(sum.damping)};
-  }
+BlockGradientSum in_reference_axes(const BlockGradientSum &sum, const Mat2 &to_reference) {
+  const auto work_on_gradient = [&](const Mat2 &dyad) { return transposed(to_reference * dyad); };
+  return {work_on_gradient(sum.force), work_on_gradient(sum.shear), work_on_gradient(sum.damping)};
 }
 
 std::array<double, 3> mean_stress(const BlockSystem &system, const Candidates &candidates,

@@ -170,6 +170,8 @@ void ContactForces::keep_open(const BlockSystem &system, const CandidatePair &pa
   force.point = nearest.point;
   force.origin = nearest.point;
   force.normal = nearest.normal;
+  damping_dyad_ = {};
+  note_dyads(system, pair, force);
   RegionMemory &memory = next_.regions.emplace_back(known);
   memory.shear = 0.0;
   memory.longest = 0.0;

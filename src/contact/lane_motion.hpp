@@ -5,27 +5,14 @@
 #include "lane_stretch.hpp"
 #include "plain_batch.hpp"
 
+#include "gcpdda/geometry/lane_mat.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
-
-/// A dyad or a gradient, by entries xx, xy, yx, yy.
-struct LaneMat {
-  FourLanes entry;
-
-  /// Lane i holds *get(i).
-  template <class Get> [[gnu::always_inline]] static LaneMat of(Get &&get) {
-    LaneMat result;
-    result.entry = load_by_lane([&](std::size_t i) { return &get(i)->xx; });
-    return result;
-  }
-  [[gnu::always_inline]] LaneVec operator()(const LaneVec &a) const {
-    return {entry[0] * a.x + entry[1] * a.y, entry[2] * a.x + entry[3] * a.y};
-  }
-};
 
 /// One block of each pair.
 struct LaneBlocks {

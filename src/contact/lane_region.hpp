@@ -4,8 +4,8 @@
 // integrated: resultant, friction, dashpots and the torques of it all. The laws are those of
 // contact_forces.hpp.
 
+#include "gcpdda/base/lanes.hpp"
 #include "lane_motion.hpp"
-#include "lanes.hpp"
 #include "plain_batch.hpp"
 
 #include <array>
@@ -124,6 +124,7 @@ public:
   void add_dashpot(const Lanes &total, const LaneVec &moment, const AnyMotion &motion);
   /// With all forces in place.
   template <class AnyMotion> void find_torques(const AnyMotion &motion);
+  void find_dyads(const LaneVec &centroid, double sign, std::array<FourLanes, 3> &dyads) const;
   unsigned store(const PlainResults &results, Details details);
   PlainBatch::Extremes take_extremes();
 
@@ -131,9 +132,6 @@ public:
   [[nodiscard]] const LaneVec &normal() const { return normal_; }
   [[nodiscard]] const Lanes &normal_force() const { return normal_force_; }
   [[nodiscard]] double overlap(std::size_t lane) const { return overlap_[lane]; }
-  [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const {
-    return {damping_dyad_[0][lane], damping_dyad_[1][lane], damping_dyad_[2][lane], damping_dyad_[3][lane]};
-  }
 
 private:
   LaneVec force_;
@@ -154,7 +152,8 @@ private:
   Lanes cap_;
   Mask slips_;
   LaneVec damping_force_;
-  FourLanes damping_dyad_; ///< of pairs with a deformable block
+  FourLanes damping_dyad_; ///< this and the next of pairs with a deformable block
+  std::array<std::array<FourLanes, 3>, 2> on_gradient_; ///< RegionDyads
   Torques torque_;
   Torques shear_torque_;
   Torques damping_torque_;
@@ -165,6 +164,7 @@ private:
   RegionSums unwanted_sums_;
   RegionMemory unwanted_memory_;
   RegionDetails unwanted_details_;
+  RegionDyads unwanted_dyads_;
 };
 
 inline void LaneRegions::find_resultant() {
@@ -254,6 +254,24 @@ template <class AnyMotion> void LaneRegions::find_torques(const AnyMotion &motio
   const Lanes about_origin = dyad_[1] - dyad_[2];
   torque_[0] = about_origin + cross(origin - motion.lower_centroid, force_);
   torque_[1] = -about_origin - cross(origin - motion.higher_centroid, force_);
+  if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
+    find_dyads(motion.lower_centroid, 1.0, on_gradient_[0]);
+    find_dyads(motion.higher_centroid, -1.0, on_gradient_[1]);
+  }
+}
+
+inline void LaneRegions::find_dyads(const LaneVec &centroid, double sign,
+                                    std::array<FourLanes, 3> &dyads) const {
+  const LaneVec arm = origin - centroid;
+  dyads = {dyad_, {0.0, 0.0, 0.0, 0.0}, damping_dyad_};
+  add_outer(dyads[0], arm, force_);
+  add_outer(dyads[1], point_ - centroid, -elastic_ * perp(normal_));
+  add_outer(dyads[2], arm, damping_force_);
+  for (FourLanes &dyad : dyads) {
+    for (Lanes &entry : dyad) {
+      entry = Lanes(sign) * entry;
+    }
+  }
 }
 
 inline unsigned LaneRegions::store(const PlainResults &results, Details details) {
@@ -286,6 +304,14 @@ inline unsigned LaneRegions::store(const PlainResults &results, Details details)
     store_by_lane(known, offsetof(RegionDetails, normal), normal_.x, normal_.y, normal_force_, shear_);
     store_by_lane(known, offsetof(RegionDetails, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
                   select(undefined, 0.0, extent_end_));
+  }
+  if (results.has_dyads) {
+    static_assert(sizeof(RegionDyads) == 6 * sizeof(Mat2));
+    const Places known = places(results.dyads, unwanted_dyads_);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const FourLanes &m = on_gradient_[k / 3][k % 3];
+      store_by_lane(known, k * sizeof(Mat2), m[0], m[1], m[2], m[3]);
+    }
   }
   const unsigned cancels = undefined.by_lane() & results.wanted;
   const unsigned slips = slips_.by_lane();

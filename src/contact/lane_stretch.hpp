@@ -4,7 +4,7 @@
 // contact in each lane. Every step is taken by all lanes and counts where it applies, so the bits of a
 // contact do not depend on which others are computed with it.
 
-#include "lanes.hpp"
+#include "gcpdda/base/lanes.hpp"
 
 #include "gcpdda/contact/candidates.hpp"
 

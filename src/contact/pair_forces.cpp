@@ -222,10 +222,23 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
     force.torque[k] = torque(force.dyad, force.force);
     force.shear_torque[k] = sign * cross(force.point - system.trial_centroid[row], force.shear_force);
     force.damping_torque[k] = torque(damping_dyad_, force.damping_force);
-    if (system.is_deformable(row)) {
-      damping_dyads_.resize(num_forces_);
-      damping_dyads_.back() = damping_dyad_;
-    }
+  }
+  note_dyads(system, pair, force);
+}
+
+void ContactForces::note_dyads(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
+                               const Mat2 &beyond) {
+  if (!system.is_deformable(pair.lower.value) && !system.is_deformable(pair.higher.value)) {
+    return;
+  }
+  grow(dyads_, num_forces_);
+  for (const std::size_t k : {0U, 1U}) {
+    const Vec2 centroid = system.trial_centroid[(k == 0 ? pair.lower : pair.higher).value];
+    const double sign = k == 0 ? 1.0 : -1.0;
+    const Vec2 arm = force.origin - centroid;
+    dyads_[num_forces_ - 1][k] = {sign * (force.dyad + outer(arm, force.force)),
+                                  sign * (outer(force.point - centroid, force.shear_force) + beyond),
+                                  sign * (damping_dyad_ + outer(arm, force.damping_force))};
   }
 }
 

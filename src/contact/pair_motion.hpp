@@ -3,8 +3,16 @@
 #include "gcpdda/contact/contact_forces.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace gcpdda {
+
+/// Lists that are filled anew in each step do not shrink.
+template <class T> void grow(std::vector<T> &list, std::size_t size) {
+  if (list.size() < size) {
+    list.resize(size);
+  }
+}
 
 /// Motion of the material point now at offset r from the trial centroid since the last trial configuration.
 inline Vec2 increment_at(const TrialIncrement &step, Vec2 r) {

@@ -1,13 +1,5 @@
-#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
-#define GCPDDA_INSTRUCTIONS widest
-#define GCPDDA_NUM_LANES 8
-#elif defined(__AVX__)
-#define GCPDDA_INSTRUCTIONS wide
-#define GCPDDA_NUM_LANES 4
-#else
-#define GCPDDA_INSTRUCTIONS portable
-#define GCPDDA_NUM_LANES 2
-#endif
+#include "gcpdda/base/lanes_of_build.hpp"
+
 #include "plain_kernel.hpp"
 
 #include <utility>

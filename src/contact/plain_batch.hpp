@@ -24,9 +24,6 @@ struct PlainScene {
   double stiffness_damping = 0.0;
 };
 
-/// Most pairs at a time.
-constexpr std::size_t most_lanes = 8;
-
 /// Up to as many pairs as there are lanes, with like numbers of edges, all rigid or none; lanes beyond repeat
 /// the last one.
 struct PlainLanes {
@@ -44,6 +41,8 @@ struct PlainResults {
   std::array<RegionSums *, most_lanes> sums;
   std::array<RegionMemory *, most_lanes> memory;
   std::array<RegionDetails *, most_lanes> details; ///< with Details::now
+  bool has_dyads = false;                          ///< the blocks deform
+  std::array<RegionDyads *, most_lanes> dyads;
 };
 
 /// Evaluates as many pairs at once as the registers of its instructions hold. All instructions give the same
@@ -80,8 +79,6 @@ public:
   virtual unsigned store(const PlainResults &results, Details details) = 0;
   /// Thickness of the overlap in a lane that touches, m.
   [[nodiscard]] virtual double overlap(std::size_t lane) const = 0;
-  /// Of a lane that touches where a block is deformable.
-  [[nodiscard]] virtual Mat2 damping_dyad(std::size_t lane) const = 0;
   /// Of all that has been stored since these were taken last.
   struct Extremes {
     std::int64_t normals_undefined = 0;

@@ -31,7 +31,6 @@ public:
     return regions_.store(results, details);
   }
   [[nodiscard]] double overlap(std::size_t lane) const override { return regions_.overlap(lane); }
-  [[nodiscard]] Mat2 damping_dyad(std::size_t lane) const override { return regions_.damping_dyad(lane); }
   Extremes take_extremes() override { return regions_.take_extremes(); }
 
 private:

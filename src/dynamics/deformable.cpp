@@ -6,8 +6,6 @@ namespace gcpdda {
 
 namespace {
 
-/// Blocks turn little in a step: the series to full precision takes a tenth of the time.
-constexpr double largest_ratio = 1.0 / 64.0;
 double small_arctangent(double x) {
   const double q = x * x;
   return x * (1.0 - q * (1.0 / 3.0 - q * (1.0 / 5.0 - q * (1.0 / 7.0 - q * (1.0 / 9.0 - q / 11.0)))));
@@ -31,7 +29,7 @@ double angle_between(const Mat2 &from, const Mat2 &to) {
   const Vec2 b{to.xx + to.yy, to.yx - to.xy};
   const double along = dot(a, b);
   const double ratio = cross(a, b) / along;
-  if (along > 0.0 && std::abs(ratio) <= largest_ratio) {
+  if (along > 0.0 && std::abs(ratio) <= largest_ratio_of_series) {
     return small_arctangent(ratio);
   }
   return std::atan2(cross(a, b), along);

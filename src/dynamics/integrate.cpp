@@ -94,12 +94,10 @@ void accelerate(BlockSystem &system, const BlockForces &forces) {
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                             const Scheme &scheme, double time_step, Elasticity elasticity,
                                             std::size_t first, std::size_t last) {
-  std::optional<std::size_t> broken;
+  std::optional<std::size_t> broken =
+      step_by_own_matrices(system, forces, scheme, time_step, elasticity, first, last);
   for (std::size_t i = first; i < last; ++i) {
     if (system.has_matrix(i)) {
-      if (!step_by_own_matrix(system, i, forces, scheme, time_step, elasticity)) {
-        broken = broken.value_or(i);
-      }
       continue;
     }
     expect(!system.is_deformable(i) || system.properties[i].keeps_its_velocity(),
@@ -112,7 +110,7 @@ std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForc
                                   time_step * time_step * ((0.5 - scheme.beta) * a + scheme.beta * a_new));
     const RigidDof v_new = system.velocity[i] + time_step * ((1.0 - scheme.gamma) * a + scheme.gamma * a_new);
     if (!is_finite(a_new) || !is_finite(v_new) || !is_finite(d_new)) {
-      broken = broken.value_or(i);
+      broken = std::min(i, broken.value_or(i));
       continue;
     }
     system.acceleration[i] = a_new;

@@ -1,13 +1,19 @@
 #pragma once
 
-// The step of a block with a matrix of its own: deformable, or with anchors or dashpots.
+// The step of blocks with a matrix of their own: deformable, or with anchors or dashpots.
 
+#include "gcpdda/base/instructions.hpp"
 #include "gcpdda/dynamics/integrate.hpp"
+
+#include <optional>
 
 namespace gcpdda {
 
-/// @return false, and the old state kept, if the new one is not finite
-bool step_by_own_matrix(BlockSystem &system, std::size_t row, const BlockForces &forces, const Scheme &scheme,
-                        double time_step, Elasticity elasticity);
+/// Of rows [first, last) those that have one; what solve_and_update() says holds.
+/// @return first row whose new state is broken
+std::optional<std::size_t> step_by_own_matrices(BlockSystem &system, const BlockForces &forces,
+                                                const Scheme &scheme, double time_step, Elasticity elasticity,
+                                                std::size_t first, std::size_t last,
+                                                Instructions instructions = Instructions::widest);
 
 } // namespace gcpdda

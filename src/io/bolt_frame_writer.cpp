@@ -25,7 +25,8 @@ void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
   for (const Vec2 &point : mine.points) {
     coordinates.insert(coordinates.end(), {point.x, point.y, 0.0});
   }
-  CollectiveFile file(communicator_, directory_ / "frames" / fmt::format("bolts_{:06}.hdf", index));
+  const std::filesystem::path path = directory_ / "frames" / fmt::format("bolts_{:06}.hdf", index);
+  CollectiveFile file(communicator_, path);
   vtk::write_header(file, time);
   vtk::CellTables(file, cells.total, points.total, vtk::CellType::poly_line)
       .write(cells.first, points.first, values_of([](const BoltRow &row) { return row.num_points; }));
@@ -40,10 +41,9 @@ void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
   column("shear_force", [](const BoltRow &row) { return row.shear_force; });
   column("extension", [](const BoltRow &row) { return row.extension; });
   column("slide", [](const BoltRow &row) { return row.slide; });
-  file.publish();
-  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+  publish_behind(file, path);
   bolt_frames_.emplace_back(index, time);
-  write_indices();
+  write_indices_behind();
 }
 
 } // namespace gcpdda

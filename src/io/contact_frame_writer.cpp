@@ -197,12 +197,12 @@ void FrameWriter::write_contacts(int index, double time, const ContactSource &so
   const std::vector<std::int64_t> counts = strips.count();
   const RowRange slab =
       rows_in_rank_order(communicator_, std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
-  CollectiveFile file(communicator_, directory_ / "frames" / fmt::format("contacts_{:06}.hdf", index));
+  const std::filesystem::path path = directory_ / "frames" / fmt::format("contacts_{:06}.hdf", index);
+  CollectiveFile file(communicator_, path);
   vtk::write_header(file, time);
   expect_on_all_ranks(communicator_, write_regions(file, strips, counts, slab),
                       "as many contacts as the source has counted");
-  file.publish();
-  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+  publish_behind(file, path);
 }
 
 } // namespace gcpdda

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -16,7 +17,7 @@ namespace gcpdda {
 
 namespace {
 
-int num_passing = 0; // of PassingFiles that live
+std::atomic<int> num_passing = 0; // of PassingFiles that live
 
 [[noreturn]] void fail(const std::string &what, const std::filesystem::path &path,
                        const std::string &reason) {

@@ -9,6 +9,7 @@
 #include "hdf5_input.hpp"
 #include "hdf5_vtk_layout.hpp"
 #include "numbered_name.hpp"
+#include "write_behind.hpp"
 
 #include <fmt/format.h>
 
@@ -209,10 +210,13 @@ int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block) {
 
 FrameWriter::FrameWriter(const Communicator &communicator, std::filesystem::path directory,
                          std::int64_t num_blocks, std::int64_t ids_per_strip)
-    : communicator_(communicator), directory_(std::move(directory)), num_blocks_(num_blocks),
+    : communicator_(communicator), directory_(std::move(directory)), behind_(std::make_unique<WriteBehind>()),
+      num_blocks_(num_blocks),
       ids_per_strip_(ids_per_strip > 0 ? ids_per_strip : usual_ids_per_strip(communicator.size())) {
   on_root(communicator_, [this] { make_directory(directory_ / "frames"); });
 }
+
+FrameWriter::~FrameWriter() = default;
 
 /// What a topology holds of this rank's slab.
 struct FrameWriter::Cells {
@@ -253,6 +257,7 @@ FrameWriter::Cells FrameWriter::survey(const FrameSource &source) {
 
 void FrameWriter::write(int index, double time, const FrameSource &source) {
   expect(frames_.empty() || index > frames_.back().first, "frames in the order of their numbers");
+  finish(); // no more than one frame is on its way
   std::int64_t num_cells = source.num_rows();
   communicator_.sum(std::span(&num_cells, 1));
   if (topologies_.empty() || topologies_.back().num_cells != num_cells) {
@@ -267,7 +272,8 @@ void FrameWriter::write(int index, double time, const FrameSource &source) {
   }
   const std::string topology = topology_name(topologies_.back().first_frame);
 
-  CollectiveFile file(communicator_, directory_ / "frames" / frame_name(index));
+  const std::filesystem::path path = directory_ / "frames" / frame_name(index);
+  CollectiveFile file(communicator_, path);
   vtk::write_header(file, time);
   for (const char *name : vtk::cell_datasets) {
     file.link(vtk::at(name), topology);
@@ -276,11 +282,17 @@ void FrameWriter::write(int index, double time, const FrameSource &source) {
     file.link(vtk::cell_data(name), topology);
   }
   expect_on_all_ranks(communicator_, write_strips(file, source), "each block once, with the vertices it had");
-  file.publish();
-  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
-
+  publish_behind(file, path);
   frames_.emplace_back(index, time);
-  write_indices();
+  write_indices_behind();
+}
+
+void FrameWriter::publish_behind(CollectiveFile &file, const std::filesystem::path &path) {
+  file.complete();
+  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+  if (communicator_.is_root()) {
+    behind_->add([path] { publish(path); });
+  }
 }
 
 // False on a rank whose rows are not what they should be; it writes none of them.
@@ -323,23 +335,36 @@ const FrameWriter::Topology &FrameWriter::topology_of(int frame) const {
   return *std::prev(later);
 }
 
-void FrameWriter::write_indices() const {
-  on_root(communicator_, [this] {
-    write_index(directory_ / "run.hdf.series", series_index(frames_, "frame"));
-    if (!bolt_frames_.empty()) {
-      write_index(directory_ / "bolts.hdf.series", series_index(bolt_frames_, "bolts"));
+// Behind the frames that they tell of.
+void FrameWriter::write_indices_behind() {
+  if (!communicator_.is_root()) {
+    return;
+  }
+  std::vector<std::pair<const char *, std::string>> indices{
+      {"run.hdf.series", series_index(frames_, "frame")}};
+  if (!bolt_frames_.empty()) {
+    indices.emplace_back("bolts.hdf.series", series_index(bolt_frames_, "bolts"));
+  }
+  std::vector<IndexedFrame> indexed;
+  for (const auto &[index, time] : frames_) {
+    const Topology &topology = topology_of(index);
+    indexed.push_back(
+        {index, time, topology.num_cells, topology.num_points, topology_name(topology.first_frame)});
+  }
+  indices.emplace_back("run.xdmf", xdmf_index(indexed));
+  behind_->add([directory = directory_, indices = std::move(indices)] {
+    for (const auto &[name, text] : indices) {
+      write_index(directory / name, text);
     }
-    std::vector<IndexedFrame> indexed;
-    for (const auto &[index, time] : frames_) {
-      const Topology &topology = topology_of(index);
-      indexed.push_back(
-          {index, time, topology.num_cells, topology.num_points, topology_name(topology.first_frame)});
-    }
-    write_index(directory_ / "run.xdmf", xdmf_index(indexed));
   });
 }
 
-void FrameWriter::sync() const {
+void FrameWriter::finish() {
+  on_root(communicator_, [this] { behind_->finish(); });
+}
+
+void FrameWriter::sync() {
+  finish();
   if (frames_.empty()) {
     return;
   }
@@ -424,7 +449,8 @@ void FrameWriter::continue_behind(const std::vector<double> &times) {
   std::sort(topologies_.begin(), topologies_.end(),
             [](const Topology &a, const Topology &b) { return a.first_frame < b.first_frame; });
   expect(!topologies_.empty(), "a run that goes on has a topology");
-  write_indices();
+  write_indices_behind();
+  finish();
   on_root(communicator_, [&] { remove_frames_from(folder, std::ssize(times)); });
 }
 

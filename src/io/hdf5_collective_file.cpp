@@ -111,7 +111,7 @@ CollectiveFile::CollectiveFile(const Communicator &communicator, std::filesystem
 
 CollectiveFile::~CollectiveFile() {
   close(file_);
-  if (!published_ && communicator_.is_root()) {
+  if (!is_complete_ && communicator_.is_root()) {
     std::error_code ignored;
     std::filesystem::remove(unfinished_name(path_), ignored);
   }
@@ -244,15 +244,19 @@ void CollectiveFile::link(const std::string &name, const std::string &file) {
   });
 }
 
-void CollectiveFile::publish() {
+void CollectiveFile::complete() {
   agree_on_writes();
   on_all_ranks(communicator_, [&] {
     if (!close(file_)) {
       throw FileError("cannot close " + unfinished_name(path_).string() + ": " + hdf5::last_error());
     }
   });
+  is_complete_ = true;
+}
+
+void CollectiveFile::publish() {
+  complete();
   on_root(communicator_, [&] { gcpdda::publish(path_); });
-  published_ = true;
 }
 
 } // namespace gcpdda

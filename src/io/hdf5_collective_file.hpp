@@ -34,7 +34,7 @@ struct RowRange {
 RowRange rows_in_rank_order(const Communicator &communicator, std::int64_t count);
 
 /// An HDF5 file written by all ranks together; every member is collective. It grows under a temporary name;
-/// without `publish` it vanishes with the object. What it holds does not depend on the number of ranks.
+/// unless completed it vanishes with the object. What it holds does not depend on the number of ranks.
 class CollectiveFile {
 public:
   CollectiveFile(const Communicator &communicator, std::filesystem::path path);
@@ -63,7 +63,7 @@ public:
     return make_table(name, rows, columns, NumberType<T>::file(), NumberType<T>::memory());
   }
   /// This rank's rows from `first` on, which nobody else writes; other ranks take part with theirs or with
-  /// none. What fails is told by `publish`.
+  /// none. What fails is told by `complete`.
   template <class T> void write(const Table &table, std::int64_t first, std::span<const T> values) {
     write_rows(table, first, values.size() / table.columns, values.data());
   }
@@ -75,7 +75,9 @@ public:
   void attribute(const std::string &object, const std::string &name, const std::string &ascii);
   /// `name` here stands for `name` in the file `file` of the same folder.
   void link(const std::string &name, const std::string &file);
-  /// Close, sync, rename. No table lives any more.
+  /// Close. No table lives any more; the file still has its temporary name and waits to be published.
+  void complete();
+  /// The same, then sync and rename.
   void publish();
 
   [[nodiscard]] bool is_root() const { return communicator_.is_root(); }
@@ -102,7 +104,7 @@ private:
   hdf5::File file_;
   std::int64_t reserved_ = 0; ///< bytes of the file that have their place on the disk
   std::string failed_write_;  ///< the first one of this rank
-  bool published_ = false;
+  bool is_complete_ = false;
   bool all_writes_collective_ = true;
 };
 

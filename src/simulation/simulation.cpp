@@ -209,12 +209,9 @@ void Simulation::take(const ForceReport &report) {
 void Simulation::sum_contacts_of_blocks() {
   const auto scope = phases_.measure(Phase::forces);
   contact_sums_.assign(blocks_.num_owned, {});
-  contact_count_ = add_contacts(candidates_, contacts_, blocks_, contact_sums_);
+  gradient_sums_.assign(blocks_.deformation.size(), {});
+  contact_count_ = add_contacts(candidates_, contacts_, blocks_, contact_sums_, gradient_sums_);
   contacts_.add_dilation_works(candidates_, blocks_);
-  if (!blocks_.deformation.empty()) {
-    gradient_sums_.resize(blocks_.deformation.size());
-    find_gradient_sums(blocks_, candidates_, contacts_, gradient_sums_);
-  }
   bolts_.add_forces(blocks_, contact_sums_);
   forces_.rigid.resize(blocks_.num_owned);
   forces_.gradient.resize(blocks_.deformation.size());
@@ -285,10 +282,11 @@ void Simulation::gather_block(std::size_t row, const BodyForces &body, const Wat
 void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   Deformation &d = blocks_.deformation_of(row);
   BlockLedger &ledger = blocks_.ledger[row];
-  const BlockGradientSum &sum = gradient_sums_[blocks_.deformation_begin[row]];
+  const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
+  const BlockGradientSum sum =
+      in_reference_axes(gradient_sums_[blocks_.deformation_begin[row]], to_reference);
   d.shear_force = sum.shear;
   d.damping_force = sum.damping;
-  const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
   d.load_force = unloading_of(blocks_.properties[row].id).gradient + water.dyad * transposed(to_reference);
   for (const MaterialLoad &load : blocks_.loads_of(row)) {
     d.load_force += outer(load.force, load.point);

@@ -130,13 +130,17 @@ int compare(const Communicator &world, const std::filesystem::path &folder, std:
   const Patches patches(world, num_blocks);
   FrameWriter writer(world, folder, num_blocks);
   writer.write(0, 0.0, patches); // the topology is written once in a run
+  writer.finish();
   const std::filesystem::path frame = folder / "frames" / "frame_000000.hdf";
   const std::uintmax_t bytes = std::filesystem::file_size(frame);
   const std::vector<double> mine(bytes / sizeof(double) / static_cast<std::size_t>(world.size()), 1.5);
   std::vector<Cost> frames;
   std::vector<Cost> plain;
   for (int k = 1; k <= repeats; ++k) {
-    frames.push_back(cost_of(world, [&] { writer.write(k, k, patches); }));
+    frames.push_back(cost_of(world, [&] {
+      writer.write(k, k, patches);
+      writer.finish();
+    }));
     plain.push_back(
         cost_of(world, [&] { write_plain(world, folder / fmt::format("plain_{}.h5", k), mine); }));
     if (world.is_root()) { // or the memory that holds files grows from round to round

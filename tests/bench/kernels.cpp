@@ -67,7 +67,8 @@ void sums(benchmark::State &state) {
   Pile pile(state.range(0));
   std::vector<BlockContactSum> sums(pile.blocks.num_owned);
   for ([[maybe_unused]] const auto _ : state) {
-    benchmark::DoNotOptimize(add_contacts(pile.candidates, pile.simulation.contacts(), pile.blocks, sums));
+    benchmark::DoNotOptimize(
+        add_contacts(pile.candidates, pile.simulation.contacts(), pile.blocks, sums, {}));
   }
   per(state, pile.candidates.pairs.size());
 }

@@ -129,6 +129,7 @@ void write_run(const Communicator &communicator, const fs::path &directory, std:
         GivenContacts(frame == 0 ? std::vector<ContactRow>{} : my_contacts(communicator, num_blocks, owner)));
   }
   EXPECT_TRUE(writer.all_writes_collective());
+  writer.finish();
 }
 
 std::array<double, 3> in_plane(Vec2 a) {
@@ -237,7 +238,7 @@ TEST(FrameTrouble, IsAFileErrorOnEveryRank) {
   const SharedFolder folder(world);
   FrameWriter writer(world, folder.path("run"), 20);
   writer.write(0, 0.0, GivenFrame(my_blocks(world, 20, 0, scattered)));
-  world.barrier();
+  writer.finish();
   if (world.is_root()) {
     fs::remove_all(folder.path("run"));
   }

@@ -299,6 +299,7 @@ TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
     writer.write_contacts(k, 0.1 * k, GivenContacts({}));
     writer.write_bolts(k, 0.1 * k, one_bolt(k));
   }
+  writer.finish();
   EXPECT_EQ(compare_runs(folder_ / "whole", folder_ / "cut"), std::vector<std::string>());
 }
 

@@ -1,4 +1,4 @@
-// The numbers of method.md, section 3, and that the product's step does what its amplification matrix says.
+// Limits that the amplification matrix has by hand, and that the product's step does what the matrix says.
 
 #include "gcpdda/dynamics/scheme.hpp"
 

@@ -82,7 +82,7 @@ bool is_clear(const SlopeCase &c, double margin) {
   return true;
 }
 
-// The digits of verification.md.
+// Digits of the closed form (tan of the slope against the slenderness).
 TEST(BlockOnSlope, LimitOfPureToppling) {
   struct Row {
     double slope, slenderness, limit;

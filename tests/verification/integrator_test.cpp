@@ -111,7 +111,7 @@ double lasting_amplitude(const std::string &run_keys, double w) {
   return second / first;
 }
 
-// The table of method.md, section 3, digits as printed, and the scheme of Hulbert and Chung. At 0.98 of the
+// Limits by the spectral radius of the amplification matrix, and the scheme of Hulbert and Chung. At 0.98 of the
 // limit nothing grows, at 1.02 the amplitude grows as the amplification matrix says.
 TEST(Stability, LimitsOfAllSchemes) {
   struct Row {

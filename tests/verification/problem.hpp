@@ -27,7 +27,7 @@ void expect_below(const std::string &problem, double limit, double got);
 /// At least the limit.
 void expect_above(const std::string &problem, double limit, double got);
 
-/// GCPDDA_VERIFICATION_FULL is set: problems take the size they have in verification.md however long it
+/// GCPDDA_VERIFICATION_FULL is set: problems take their full size however long it
 /// takes.
 bool full_size();
 /// Where further tables go: beside the table of checks; none without one.

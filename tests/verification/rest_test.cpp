@@ -30,7 +30,7 @@ TEST(Rest, OverlapOfASquareOnAPlane) {
   }
 }
 
-// omega^2 = (k_n L/m)(1 - d/L) for small amplitudes; verification.md asks for the leading term up to O(d/L).
+// omega^2 = (k_n L/m)(1 - d/L) for small amplitudes: the leading term up to O(d/L).
 TEST(Rest, PeriodOfASquareOnAPlane) {
   for (const double k_n : {1e7, 1e9}) {
     const double depth = 1.0 - std::sqrt(1.0 - 2.0 * weight / k_n);

@@ -1,4 +1,4 @@
-// Factors of safety by strength reduction against limit equilibrium (verification.md C2, C5).
+// Factors of safety by strength reduction against limit equilibrium.
 
 #include "problem.hpp"
 

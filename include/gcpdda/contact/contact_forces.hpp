@@ -28,6 +28,7 @@
 // along u.) Along n_r, not along the piece's normal: there it would drag on the sunk leading side of a
 // sliding block.
 
+#include "gcpdda/base/instructions.hpp"
 #include "gcpdda/base/prefetch.hpp"
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/dilation.hpp"
@@ -79,6 +80,18 @@ struct RegionDetails {
 };
 
 struct RegionForce : RegionSums, RegionDetails {};
+
+/// What contacts do to F of a deformable block, or of a row before its reference axes are known: int (x -
+/// x_c) df^T or int t X^T, N.
+struct BlockGradientSum {
+  Mat2 force;
+  Mat2 shear;
+  Mat2 damping;
+};
+
+/// The first of these of one region, with their signs, about the trial centroids of the lower and the higher
+/// block: of pairs with a deformable block.
+using RegionDyads = std::array<BlockGradientSum, 2>;
 
 /// How a trial configuration moved since the last evaluation: the material point now at x_c + r by
 /// u + turn(r).
@@ -140,10 +153,6 @@ struct PlainScene;
 struct PlainLanes;
 struct PlainResults;
 
-/// What plain pairs are computed with: the widest registers this machine has, or those every machine has. The
-/// results are the same. Without these instructions of its own avx2 means the next narrower ones.
-enum class Instructions { widest, avx2, portable };
-
 /// When RegionDetails are found: with the sums, or if find_details() asks for them.
 enum class Details { now, on_demand };
 
@@ -195,16 +204,9 @@ public:
     return {forces_.data() + ranges_[pair].begin, ranges_[pair].count};
   }
 
-  /// Dyad of `damping_force`; only pairs with a deformable block have one that is not 0.
-  [[nodiscard]] Mat2 damping_dyad(const RegionForce &force) const {
-    const auto region = static_cast<std::size_t>(&force - forces_.data());
-    return region < damping_dyads_.size() ? damping_dyads_[region] : Mat2{};
-  }
-
-  /// What the forces of a bond in `shear_force` do beyond acting at `point`: int (x - point) df^T, N.
-  [[nodiscard]] Mat2 bond_dyad(const RegionForce &force) const {
-    const auto region = static_cast<std::size_t>(&force - forces_.data());
-    return region < bond_dyads_.size() ? bond_dyads_[region] : Mat2{};
+  /// Of a pair with a deformable block.
+  [[nodiscard]] std::span<const RegionDyads> dyads_of_pair(std::size_t pair) const {
+    return {dyads_.data() + ranges_[pair].begin, ranges_[pair].count};
   }
 
   /// What slip has done against the pressure in the last evaluation, off the work of friction in the ledger
@@ -291,6 +293,10 @@ private:
   void note_depth(const BlockSystem &system, const CandidatePair &pair, double overlap);
   /// Torques of the region at hand, from its dyads, which are whole.
   void finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force);
+  /// Its dyads on deformable blocks.
+  /// @param beyond  what the forces of a bond in `shear_force` do beyond acting at `point`
+  void note_dyads(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
+                  const Mat2 &beyond = {});
 
   ContactParameters parameters_;
   Overlap overlap_;
@@ -312,9 +318,8 @@ private:
   ContactHistory next_;
   std::vector<BlockMotion> motions_;      ///< one a row
   std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation
-  std::vector<Mat2> damping_dyads_;       ///< by region, up to the last of a pair with a deformable block
-  Mat2 damping_dyad_;                     ///< of the region at hand
-  std::vector<Mat2> bond_dyads_;          ///< by region, up to the last bond
+  std::vector<RegionDyads> dyads_;        ///< by region, at least up to the last with a deformable block
+  Mat2 damping_dyad_;                     ///< of the region at hand, about its origin
   std::vector<BondAtWork> bonds_;         ///< of the pair at hand
   std::vector<double> facing_;            ///< of the pieces at hand, scratch
   /// N opened by slip, J/m.
@@ -345,19 +350,14 @@ struct ContactCount {
   std::int64_t crossing_formed = 0; ///< and they did not touch at the evaluation before
 };
 
-/// The same sums of all owned rows, bit by bit, added to those by row.
+/// The same sums of all owned rows, bit by bit, added to those by row; and on F of owned deformable rows,
+/// about their centroids, to those by entry of BlockSystem::deformation.
 ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts,
-                          const BlockSystem &system, std::span<BlockContactSum> sums);
+                          const BlockSystem &system, std::span<BlockContactSum> sums,
+                          std::span<BlockGradientSum> gradient_sums);
 
-/// What the same contacts do to F of a deformable row: int t X^T, N.
-struct BlockGradientSum {
-  Mat2 force;
-  Mat2 shear;
-  Mat2 damping;
-};
-/// Of all owned deformable rows, by entry of BlockSystem::deformation.
-void find_gradient_sums(const BlockSystem &system, const Candidates &candidates,
-                        const ContactForces &contacts, std::span<BlockGradientSum> sums);
+/// int t X^T with X = F^-1 (x - x_c) of what add_contacts() has added.
+BlockGradientSum in_reference_axes(const BlockGradientSum &sum, const Mat2 &to_reference);
 
 /// (1/area) int sym(x f) of a block's contacts about its trial centroid: xx, yy, xy in Pa, tension positive.
 std::array<double, 3> mean_stress(const BlockSystem &system, const Candidates &candidates,

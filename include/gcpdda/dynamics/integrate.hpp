@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -81,17 +80,29 @@ inline double moved_since_refresh(const BlockSystem &system, std::size_t row) {
   return norm(moved.u) + system.properties[row].radius * turned;
 }
 
-/// No less than the sum of these two of a rigid row; infinite of a deformable one.
+/// No less than the sum of these two, and found without a root.
 inline double most_motion(const BlockSystem &system, std::size_t row, double time_step) {
-  if (system.is_deformable(row)) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const auto most = [radius = system.properties[row].radius](const RigidDof &a) {
-    return std::abs(a.u.x) + std::abs(a.u.y) + radius * std::abs(a.r);
+  const double radius = system.properties[row].radius;
+  const auto most = [](Vec2 u) { return std::abs(u.x) + std::abs(u.y); };
+  const auto most_turn = [](const Mat2 &f) {
+    return std::abs(f.xx) + std::abs(f.xy) + std::abs(f.yx) + std::abs(f.yy);
   };
+  const RigidDof moved = system.displacement[row] - system.refreshed[row];
+  const RigidDof &v = system.velocity[row];
+  const RigidDof &a = system.acceleration[row];
+  double turned = std::abs(moved.r);
+  double turning = std::abs(v.r);
+  double turning_rate = std::abs(a.r);
+  if (system.is_deformable(row)) {
+    const Deformation &d = system.deformation_of(row);
+    turned = most_turn(d.gradient - d.refreshed);
+    turning = most_turn(d.rate);
+    turning_rate = most_turn(d.acceleration);
+  }
   constexpr double rounding = 1.0 + 1e-12;
-  return rounding * (most(system.displacement[row] - system.refreshed[row]) +
-                     time_step * (most(system.velocity[row]) + time_step * most(system.acceleration[row])));
+  return rounding *
+         (most(moved.u) + radius * turned +
+          time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its

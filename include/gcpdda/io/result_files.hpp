@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -16,6 +17,7 @@
 namespace gcpdda {
 
 class CollectiveFile;
+class WriteBehind;
 
 /// One block's row of a frame, in plain data so that it can travel to the rank that writes its slab.
 struct FrameRow {
@@ -98,14 +100,16 @@ public:
 std::int64_t slab_begin(std::int64_t num_blocks, int num_ranks, int rank);
 int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block);
 
-/// Writes frames/, run.hdf.series and run.xdmf of a result folder (interface.md, "Files in DIR").
-/// All members are collective. Files appear under their final name only when complete.
+/// Writes frames/, run.hdf.series and run.xdmf of a result folder.
+/// All members are collective. Files appear under their final name only when complete and on the disk; frames
+/// get there while the run goes on. What fails then is told by the next write() or finish().
 class FrameWriter {
 public:
   /// @param num_blocks  all blocks of the scene, fixed ones included
   /// @param ids_per_strip  that a rank writes at a time, 0 for the usual number; files do not depend on it
   FrameWriter(const Communicator &communicator, std::filesystem::path directory, std::int64_t num_blocks,
               std::int64_t ids_per_strip = 0);
+  ~FrameWriter(); ///< waits for frames that are on their way
 
   /// Go on behind the first frames of a run: later ones are removed, the indices tell of those that stay.
   /// @param times  of frames 0, 1, ... that stay, s
@@ -118,18 +122,22 @@ public:
   void write_contacts(int index, double time, const ContactSource &source);
   /// The same for frames/bolts_<index>.hdf, behind write(index), and bolts.hdf.series.
   void write_bolts(int index, double time, const BoltFrame &frame);
-  /// The indices are on the disk, too; frames always are. A restart makes them anew.
-  void sync() const;
+  /// All frames have their final names.
+  void finish();
+  /// And the indices are on the disk, too. A restart makes them anew.
+  void sync();
   /// False once HDF5 has broken a collective write into independent ones: slow, and worth a test.
   [[nodiscard]] bool all_writes_collective() const { return all_writes_collective_; }
   /// Of all frames, s; frame k is the k-th.
   [[nodiscard]] std::vector<double> times() const;
 
 private:
-  void write_indices() const;
+  void publish_behind(CollectiveFile &file, const std::filesystem::path &path);
+  void write_indices_behind();
 
   Communicator communicator_;
   std::filesystem::path directory_;
+  std::unique_ptr<WriteBehind> behind_; ///< at work on the root
   std::int64_t num_blocks_;
   std::int64_t ids_per_strip_;
   /// What stays the same from one frame on, until blocks go.
@@ -242,7 +250,7 @@ private:
   std::vector<std::string> pending_; ///< text not yet appended, per monitor, of energy, and of bolts if any
 };
 
-/// Everything summary.json holds (interface.md).
+/// Everything summary.json holds.
 struct RunSummary {
   int ranks = 1;
   std::int64_t blocks = 0;

@@ -8,7 +8,7 @@
 
 namespace gcpdda {
 
-/// Are two runs identical (interface.md)? Every file of frames/ and history/, run.hdf.series and run.xdmf:
+/// Are two runs identical? Every file of frames/ and history/, run.hdf.series and run.xdmf:
 /// HDF5 files by their datasets and attributes (path, type, shape, bytes; links into other files are
 /// followed), others byte for byte. summary.json, run.log, scene.toml and decomposition/ are exempt.
 ///

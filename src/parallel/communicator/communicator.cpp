@@ -284,7 +284,8 @@ double PendingMax::wait() {
 }
 
 MpiScope::MpiScope(int &argc, char **&argv) {
-  check(MPI_Init(&argc, &argv), "MPI_Init");
+  int provided = 0; // files are synced by a thread that does not call MPI
+  check(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
 }
 
 MpiScope::~MpiScope() {

@@ -1,10 +1,11 @@
 #pragma once
 
-// Several doubles at once, one for each of as many contacts. What a lane holds never depends on its
+// Several doubles at once, one for each of as many contacts or blocks. What a lane holds never depends on its
 // neighbours.
 //
-// This and all that is made of it is compiled once for each set of instructions (plain_batch_*.cpp), in a
-// namespace of that set's name: GCPDDA_INSTRUCTIONS, with GCPDDA_NUM_LANES doubles in a register.
+// This and all that is made of it is compiled once for each set of instructions (plain_batch_*.cpp,
+// deformable_lanes_*.cpp), in a namespace of that set's name: GCPDDA_INSTRUCTIONS, with GCPDDA_NUM_LANES
+// doubles in a register.
 
 #include <array>
 #include <cmath>

@@ -1,0 +1,42 @@
+// The lanes of a portable build on a machine that has AVX2; as in contact/plain_batch_avx2.cpp everything
+// that is not made for it is included first.
+
+#include "deformable_lanes.hpp"
+
+#include "gcpdda/dynamics/block_matrix.hpp"
+#include "gcpdda/dynamics/deformable.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <vector>
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX__)
+
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#define GCPDDA_INSTRUCTIONS avx2
+#define GCPDDA_NUM_LANES 4
+#include "lane_step.hpp"
+#pragma GCC pop_options
+
+namespace gcpdda {
+
+DeformableStepper avx2_stepper() {
+  return __builtin_cpu_supports("avx2") ? avx2::stepper : DeformableStepper{0, nullptr};
+}
+
+} // namespace gcpdda
+
+#else
+
+namespace gcpdda {
+
+DeformableStepper avx2_stepper() {
+  return {0, nullptr};
+}
+
+} // namespace gcpdda
+
+#endif

@@ -1,0 +1,45 @@
+// The same as deformable_lanes_avx2.cpp with eight lanes, for a machine that has AVX-512.
+
+#include "deformable_lanes.hpp"
+
+#include "gcpdda/dynamics/block_matrix.hpp"
+#include "gcpdda/dynamics/deformable.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <vector>
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX__)
+
+#include <immintrin.h>
+
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512dq,avx512vl")
+#define GCPDDA_INSTRUCTIONS avx512
+#define GCPDDA_NUM_LANES 8
+#include "lane_step.hpp"
+#pragma GCC pop_options
+
+namespace gcpdda {
+
+DeformableStepper avx512_stepper() {
+  const bool is_able = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                       __builtin_cpu_supports("avx512vl");
+  return is_able ? avx512::stepper : DeformableStepper{0, nullptr};
+}
+
+} // namespace gcpdda
+
+#else
+
+namespace gcpdda {
+
+DeformableStepper avx512_stepper() {
+  return {0, nullptr};
+}
+
+} // namespace gcpdda
+
+#endif

@@ -1,0 +1,154 @@
+// Deformable blocks step side by side, with whatever instructions a machine has: to the bits each has alone.
+
+#include "../../src/dynamics/own_step.hpp"
+
+#include "gcpdda/dynamics/deformable.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+namespace gcpdda::deformable_lanes_test {
+namespace {
+
+constexpr std::size_t num_blocks = 37; // no multiple of any number of lanes
+constexpr std::size_t inside_out = 13; // will be
+constexpr double time_step = 1e-4;
+constexpr double stiffness_damping = 2e-5;
+
+double next(std::mt19937 &engine) {
+  return -1.0 + 2.0 * static_cast<double>(engine()) / 4294967296.0;
+}
+Mat2 next_matrix(std::mt19937 &engine, double size) {
+  return {size * next(engine), size * next(engine), size * next(engine), size * next(engine)};
+}
+RigidDof next_dofs(std::mt19937 &engine, double size) {
+  return {{size * next(engine), size * next(engine)}, size * next(engine)};
+}
+
+Scheme usual_scheme() {
+  return make_scheme(SchemeKind::generalized_alpha, 0.8, ContactTime::leapfrog);
+}
+
+/// Every fifth one hangs on a point, every seventh is rigid and does too.
+struct Blocks {
+  BlockSystem system;
+  BlockForces forces;
+
+  Blocks() {
+    std::mt19937 engine(17);
+    for (std::size_t row = 0; row < num_blocks; ++row) {
+      SceneBlock block;
+      block.vertices = {{0.0, 0.0}, {2.0 + 0.1 * next(engine), 0.3}, {1.7, 1.2}, {-0.2 * next(engine), 1.0}};
+      if (row % 5 == 0 || row % 7 == 0) {
+        block.fixed_points = {block.vertices[0]};
+      }
+      append_block(system, BlockId{static_cast<std::int64_t>(row)}, block, {"rock", 2500.0, 5e8, 0.3},
+                   row % 7 == 0 ? BlockKind::rigid : BlockKind::deformable);
+    }
+    system.num_owned = num_blocks;
+    make_block_matrices(system, usual_scheme(), time_step, Elasticity::implicit, 1e9, stiffness_damping);
+    forces.stiffness_damping = stiffness_damping;
+    forces.gradient.resize(system.deformation.size());
+    for (std::size_t row = 0; row < num_blocks; ++row) {
+      system.velocity[row] = next_dofs(engine, 0.5);
+      system.acceleration[row] = next_dofs(engine, 30.0);
+      forces.rigid.push_back(next_dofs(engine, 1e5));
+    }
+    for (Deformation &d : system.deformation) {
+      // Most turn little in the step, some by more than a series reaches.
+      const double rate = next(engine) > 0.8 ? 400.0 : 2.0;
+      d.gradient = Mat2::identity() + next_matrix(engine, 1e-3);
+      d.trial_previous = d.gradient + next_matrix(engine, 1e-5);
+      d.trial = d.gradient + next_matrix(engine, 1e-5);
+      d.rate = Mat2{0.0, -rate, rate, 0.0} + next_matrix(engine, 0.5);
+      d.acceleration = next_matrix(engine, 100.0);
+      d.initial_strain = next_matrix(engine, 1e-4);
+      forces.gradient[static_cast<std::size_t>(&d - system.deformation.data())] = next_matrix(engine, 1e5);
+    }
+    system.deformation_of(inside_out).rate = {-2.0 / time_step, 0.0, 0.0, 0.0};
+    pose(system, 0, num_blocks);
+  }
+
+  std::optional<std::size_t> step(std::size_t first, std::size_t last, Instructions instructions,
+                                  Elasticity elasticity) {
+    return step_by_own_matrices(system, forces, usual_scheme(), time_step, elasticity, first, last,
+                                instructions);
+  }
+};
+
+void expect_same(const BlockSystem &a, const BlockSystem &b) {
+  for (std::size_t row = 0; row < num_blocks; ++row) {
+    SCOPED_TRACE(row);
+    EXPECT_EQ(a.displacement[row], b.displacement[row]);
+    EXPECT_EQ(a.velocity[row], b.velocity[row]);
+    EXPECT_EQ(a.acceleration[row], b.acceleration[row]);
+    EXPECT_EQ(a.ledger[row].load_work, b.ledger[row].load_work);
+    EXPECT_EQ(a.ledger[row].damping_work, b.ledger[row].damping_work);
+  }
+  for (std::size_t k = 0; k < a.deformation.size(); ++k) {
+    SCOPED_TRACE(k);
+    for (const auto field :
+         {&Deformation::gradient, &Deformation::rate, &Deformation::acceleration, &Deformation::internal,
+          &Deformation::damping_force, &Deformation::anchor_force}) {
+      EXPECT_EQ(a.deformation[k].*field, b.deformation[k].*field);
+    }
+  }
+}
+
+TEST(DeformableLanes, GiveTheSameBitsWithAllInstructionsAndNeighbours) {
+  for (const Elasticity elasticity : {Elasticity::implicit, Elasticity::explicit_}) {
+    Blocks alone;
+    for (std::size_t row = 0; row < num_blocks; ++row) {
+      EXPECT_EQ(alone.step(row, row + 1, Instructions::portable, elasticity).has_value(), row == inside_out);
+    }
+    for (const Instructions instructions :
+         {Instructions::portable, Instructions::avx2, Instructions::widest}) {
+      Blocks together;
+      EXPECT_EQ(together.step(0, num_blocks, instructions, elasticity), inside_out);
+      expect_same(together.system, alone.system);
+    }
+  }
+}
+
+TEST(DeformableLanes, LeaveABrokenBlockAsItWas) {
+  const Blocks before;
+  Blocks after;
+  after.step(0, num_blocks, Instructions::widest, Elasticity::implicit);
+  EXPECT_EQ(after.system.displacement[inside_out], before.system.displacement[inside_out]);
+  EXPECT_EQ(after.system.deformation_of(inside_out).gradient,
+            before.system.deformation_of(inside_out).gradient);
+  EXPECT_EQ(after.system.deformation_of(inside_out).internal,
+            before.system.deformation_of(inside_out).internal);
+  EXPECT_NE(after.system.displacement[inside_out + 2], before.system.displacement[inside_out + 2]);
+}
+
+// What the six equations of a block say, with the forces it was given and those it says it applied.
+TEST(DeformableLanes, ObeyTheEquationOfMotion) {
+  const Blocks before;
+  Blocks after;
+  after.step(0, num_blocks, Instructions::widest, Elasticity::implicit);
+  const double am = usual_scheme().alpha_m;
+  for (std::size_t row = 0; row < num_blocks; ++row) {
+    if (!before.system.is_deformable(row) || row == inside_out) {
+      continue;
+    }
+    SCOPED_TRACE(row);
+    const Deformation &old = before.system.deformation_of(row);
+    const Deformation &now = after.system.deformation_of(row);
+    const Mat2 mean = (1.0 - am) * now.acceleration + am * old.acceleration;
+    const Mat2 force = before.forces.gradient[before.system.deformation_begin[row]] - now.internal +
+                       now.damping_force - old.damping_force + now.anchor_force;
+    // Cancelling forces of up to 1e8 N solve to rounding of a system with a condition below 1e3.
+    const double rounding = 1e-12 * (norm(now.internal) + norm(now.anchor_force) + norm(force) + 1e6);
+    EXPECT_NEAR(norm(mean * old.second_moment - force), 0.0, rounding);
+    if (row % 5 != 0) {
+      const Vec2 a = (1.0 - am) * after.system.acceleration[row].u + am * before.system.acceleration[row].u;
+      EXPECT_NEAR(norm(before.system.properties[row].mass * a - before.forces.rigid[row].u), 0.0, 1e-8);
+    }
+  }
+}
+
+} // namespace
+} // namespace gcpdda::deformable_lanes_test
