@@ -1,6 +1,6 @@
 #include "own_step.hpp"
 
-#include "deformable_lanes.hpp"
+#include "block_lanes.hpp"
 #include "gcpdda/dynamics/block_matrix.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/viscous_sides.hpp"
@@ -145,7 +145,7 @@ void note_viscous(BlockSystem &system, std::size_t row, const Mat2 &viscous) {
 class DeformableSteps {
 public:
   DeformableSteps(BlockSystem &system, const OwnStep &step, Instructions instructions)
-      : system_(system), step_(step), stepper_(deformable_stepper(instructions)) {}
+      : system_(system), step_(step), block_lanes_(block_lanes(instructions)) {}
 
   void add(std::size_t row, Vec2 force, const Mat2 &gradient_force) {
     const std::size_t i = lanes_.count++;
@@ -158,7 +158,7 @@ public:
       lanes_.force[i] += held.u;
       lanes_.gradient_force[i] += held.gradient;
     }
-    if (lanes_.count == stepper_.width) {
+    if (lanes_.count == block_lanes_.width) {
       flush();
     }
   }
@@ -166,7 +166,7 @@ public:
     if (lanes_.count == 0) {
       return;
     }
-    const unsigned broken = stepper_.step(system_, lanes_, step_);
+    const unsigned broken = block_lanes_.step_deformables(system_, lanes_, step_);
     for (std::size_t i = 0; i < lanes_.count; ++i) {
       const std::size_t row = lanes_.row[i];
       if ((broken >> i & 1U) != 0) {
@@ -187,7 +187,7 @@ public:
 private:
   BlockSystem &system_;
   const OwnStep &step_;
-  const DeformableStepper stepper_;
+  const BlockLanes block_lanes_;
   DeformableLanes lanes_;
   std::array<std::optional<OwnSprings>, most_lanes> springs_;
   std::optional<std::size_t> broken_; ///< the first one

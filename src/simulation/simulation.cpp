@@ -221,17 +221,37 @@ void Simulation::sum_contacts_of_blocks() {
 
 // Some blocks at a time: what one pass reads is in the cache for the next.
 void Simulation::move_blocks() {
-  constexpr std::size_t rows_at_once = 256;
+  constexpr std::size_t rows_at_once = 64;
   const BodyForces body{gravity(), ground_acceleration()};
-  for (std::size_t first = 0; first < blocks_.num_owned; first += rows_at_once) {
+  const double dt = plan_.time_step;
+  std::optional<std::size_t> broken;
+  for (std::size_t first = move_free_blocks(0, body, broken); first < blocks_.num_owned;) {
     const std::size_t last = std::min(blocks_.num_owned, first + rows_at_once);
     gather_forces(first, last, body);
-    const auto scope = phases_.measure(Phase::update);
-    if (const auto row = solve_and_update(blocks_, forces_, scheme_, plan_.time_step, scene_.run.elasticity,
-                                          first, last)) {
-      keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0});
+    {
+      const auto scope = phases_.measure(Phase::update);
+      if (const auto row =
+              solve_and_update(blocks_, forces_, scheme_, dt, scene_.run.elasticity, first, last)) {
+        broken = std::min(*row, broken.value_or(*row));
+      }
     }
+    first = move_free_blocks(last, body, broken);
   }
+  if (broken) {
+    keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*broken].id, {}, 0.0, 0.0});
+  }
+}
+
+// Most blocks of most scenes are rigid, and only others act on them: with all that follows in one go.
+std::size_t Simulation::move_free_blocks(std::size_t first, const BodyForces &body,
+                                         std::optional<std::size_t> &broken) {
+  if (!scene_.water.empty() || !stage_.unloading.empty() || scene_.run.rayleigh.mass_damping != 0.0) {
+    return first;
+  }
+  const auto scope = phases_.measure(Phase::update);
+  return advance_free_rows(blocks_,
+                           {contact_sums_, forces_.rigid, body.gravity, body.shaking, local_damping_},
+                           scheme_, plan_.time_step, first, blocks_.num_owned, broken);
 }
 
 // The works of the ledger go by the trapezoid over increments of x*: half with the forces of the last

@@ -4,7 +4,7 @@
 // neighbours.
 //
 // This and all that is made of it is compiled once for each set of instructions (plain_batch_*.cpp,
-// deformable_lanes_*.cpp), in a namespace of that set's name: GCPDDA_INSTRUCTIONS, with GCPDDA_NUM_LANES
+// block_lanes_*.cpp), in a namespace of that set's name: GCPDDA_INSTRUCTIONS, with GCPDDA_NUM_LANES
 // doubles in a register.
 
 #include <array>
@@ -342,6 +342,59 @@ template <class Get> [[gnu::always_inline]] inline FourLanes load_by_lane(Get &&
   put(1, __builtin_shufflevector(c.values(), d.values(), 1, 3), sizeof(LaneValues));
 #endif
 #endif
+}
+
+/// Three numbers that stand together, by number and lane.
+using ThreeLanes = std::array<Lanes, 3>;
+
+/// Lane i holds the three from 3 i on.
+[[gnu::always_inline]] inline ThreeLanes load_triples(const double *first) {
+  std::array<LaneValues, 3> v;
+  std::memcpy(&v, first, sizeof(v));
+  const auto &[a, b, c] = v;
+#if GCPDDA_NUM_LANES == 8
+  const LaneValues x = __builtin_shufflevector(a, b, 0, 3, 6, 9, 12, 15, -1, -1);
+  const LaneValues y = __builtin_shufflevector(a, b, 1, 4, 7, 10, 13, -1, -1, -1);
+  const LaneValues z = __builtin_shufflevector(a, b, 2, 5, 8, 11, 14, -1, -1, -1);
+  return {Lanes(__builtin_shufflevector(x, c, 0, 1, 2, 3, 4, 5, 10, 13)),
+          Lanes(__builtin_shufflevector(y, c, 0, 1, 2, 3, 4, 8, 11, 14)),
+          Lanes(__builtin_shufflevector(z, c, 0, 1, 2, 3, 4, 9, 12, 15))};
+#elif GCPDDA_NUM_LANES == 4
+  const LaneValues x = __builtin_shufflevector(a, b, 0, 3, 6, -1);
+  const LaneValues y = __builtin_shufflevector(a, b, 1, 4, 7, -1);
+  const LaneValues z = __builtin_shufflevector(a, b, 2, 5, -1, -1);
+  return {Lanes(__builtin_shufflevector(x, c, 0, 1, 2, 5)), Lanes(__builtin_shufflevector(y, c, 0, 1, 2, 6)),
+          Lanes(__builtin_shufflevector(z, c, 0, 1, 4, 7))};
+#else
+  return {Lanes(__builtin_shufflevector(a, b, 0, 3)), Lanes(__builtin_shufflevector(a, c, 1, 2)),
+          Lanes(__builtin_shufflevector(b, c, 0, 3))};
+#endif
+}
+
+/// And back.
+[[gnu::always_inline]] inline void store_triples(double *first, const ThreeLanes &lanes) {
+  const LaneValues &x = lanes[0].values();
+  const LaneValues &y = lanes[1].values();
+  const LaneValues &z = lanes[2].values();
+#if GCPDDA_NUM_LANES == 8
+  const LaneValues a = __builtin_shufflevector(x, y, 0, 8, -1, 1, 9, -1, 2, 10);
+  const LaneValues b = __builtin_shufflevector(x, y, -1, 3, 11, -1, 4, 12, -1, 5);
+  const LaneValues c = __builtin_shufflevector(x, y, 13, -1, 6, 14, -1, 7, 15, -1);
+  const std::array<LaneValues, 3> v{__builtin_shufflevector(a, z, 0, 1, 8, 3, 4, 9, 6, 7),
+                                    __builtin_shufflevector(b, z, 10, 1, 2, 11, 4, 5, 12, 7),
+                                    __builtin_shufflevector(c, z, 0, 13, 2, 3, 14, 5, 6, 15)};
+#elif GCPDDA_NUM_LANES == 4
+  const LaneValues a = __builtin_shufflevector(x, y, 0, 4, -1, 1);
+  const LaneValues b = __builtin_shufflevector(x, y, 5, -1, 2, 6);
+  const LaneValues c = __builtin_shufflevector(x, y, -1, 3, 7, -1);
+  const std::array<LaneValues, 3> v{__builtin_shufflevector(a, z, 0, 1, 4, 3),
+                                    __builtin_shufflevector(b, z, 0, 5, 2, 3),
+                                    __builtin_shufflevector(c, z, 6, 1, 2, 7)};
+#else
+  const std::array<LaneValues, 3> v{__builtin_shufflevector(x, y, 0, 2), __builtin_shufflevector(z, x, 0, 3),
+                                    __builtin_shufflevector(y, z, 1, 3)};
+#endif
+  std::memcpy(first, &v, sizeof(v));
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -332,12 +332,7 @@ private:
   ClosedPair closed_;                 ///< the same, with one of these taken out
 };
 
-/// Sums of one block's contacts, in the order of the other blocks' ids.
-struct BlockContactSum {
-  RigidDof force;   ///< about the trial centroid
-  RigidDof shear;   ///< elastic friction in it
-  RigidDof damping; ///< dashpots in it
-};
+/// Of one block, in the order of the other blocks' ids.
 BlockContactSum sum_contacts(const Candidates &candidates, const ContactForces &contacts, std::size_t row);
 
 /// One rank counts what is known of a pair.

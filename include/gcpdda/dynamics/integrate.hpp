@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gcpdda/base/instructions.hpp"
 #include "gcpdda/dynamics/scheme.hpp"
 #include "gcpdda/model/block_system.hpp"
 
@@ -104,6 +105,28 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
          (most(moved.u) + radius * turned +
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
+
+/// What acts on free rigid rows: those without point loads, fixed points, viscous sides and water, which heed
+/// forces.
+struct FreeRows {
+  std::span<const BlockContactSum> contacts; ///< by row
+  std::span<RigidDof> forces;                ///< out, by row: in all
+  Vec2 gravity;
+  Vec2 shaking; ///< acceleration of the ground
+  double local_damping = 0.0;
+};
+
+/// Advances free rigid rows from `first` on, several at a time, as far as they come one behind the other: the
+/// forces of their contacts and loads, local damping, the works of the ledger by the trapezoid over
+/// increments of the trial configuration, and the step, to the bits that one after the other would have.
+///
+/// @param broken  the first row whose new state is not finite, which keeps its old one, if it comes before
+///                what stands here
+/// @return the first row that is left
+std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
+                              double time_step, std::size_t first, std::size_t last,
+                              std::optional<std::size_t> &broken,
+                              Instructions instructions = Instructions::widest);
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its
 /// size against the velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force

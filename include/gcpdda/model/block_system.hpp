@@ -117,6 +117,13 @@ struct BlockMatrix {
   std::array<double, 6> by_torque{}; ///< the solution under a unit torque, of a deformable block
 };
 
+/// What the contacts of one block add up to.
+struct BlockContactSum {
+  RigidDof force;   ///< about the trial centroid
+  RigidDof shear;   ///< elastic friction in it
+  RigidDof damping; ///< dashpots in it
+};
+
 /// What the energy ledger carries for one block: forces of the last evaluation and their work so far over
 /// increments of the trial configuration.
 struct BlockLedger {

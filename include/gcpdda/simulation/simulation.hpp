@@ -265,6 +265,7 @@ private:
     Vec2 gravity;
     Vec2 shaking; ///< acceleration of the ground
   };
+  std::size_t move_free_blocks(std::size_t first, const BodyForces &body, std::optional<std::size_t> &broken);
   void gather_forces(std::size_t first, std::size_t last, const BodyForces &body);
   void gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);

@@ -1,6 +1,6 @@
-// The same as deformable_lanes_avx2.cpp with eight lanes, for a machine that has AVX-512.
+// The same as block_lanes_avx2.cpp with eight lanes, for a machine that has AVX-512.
 
-#include "deformable_lanes.hpp"
+#include "block_lanes.hpp"
 
 #include "gcpdda/dynamics/block_matrix.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
@@ -19,15 +19,15 @@
 #pragma GCC target("avx512f,avx512dq,avx512vl")
 #define GCPDDA_INSTRUCTIONS avx512
 #define GCPDDA_NUM_LANES 8
-#include "lane_step.hpp"
+#include "lane_blocks.hpp"
 #pragma GCC pop_options
 
 namespace gcpdda {
 
-DeformableStepper avx512_stepper() {
+BlockLanes avx512_blocks() {
   const bool is_able = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                        __builtin_cpu_supports("avx512vl");
-  return is_able ? avx512::stepper : DeformableStepper{0, nullptr};
+  return is_able ? avx512::blocks : BlockLanes{};
 }
 
 } // namespace gcpdda
@@ -36,8 +36,8 @@ DeformableStepper avx512_stepper() {
 
 namespace gcpdda {
 
-DeformableStepper avx512_stepper() {
-  return {0, nullptr};
+BlockLanes avx512_blocks() {
+  return {};
 }
 
 } // namespace gcpdda

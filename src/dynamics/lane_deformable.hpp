@@ -1,8 +1,9 @@
 #pragma once
 
-// What deformable_lanes.hpp promises, with one block in each lane; the derivation is in deformable.hpp.
+// The step of deformable blocks, one in each lane; the derivation is in deformable.hpp.
 
-#include "deformable_lanes.hpp"
+#include "block_lanes.hpp"
+#include "lane_newmark.hpp"
 
 #include "gcpdda/base/lanes.hpp"
 #include "gcpdda/dynamics/block_matrix.hpp"
@@ -24,18 +25,6 @@ template <class Q>
 template <class Q> [[gnu::always_inline]] inline Q base_rate_of(const OwnStep &step, const Q &v, const Q &a) {
   return v + Lanes(step.spring.rate_acceleration) * a;
 }
-template <class Q>
-[[gnu::always_inline]] inline Q position_of(const OwnStep &step, const Q &q, const Q &v, const Q &a,
-                                            const Q &a_new) {
-  const double dt = step.time_step;
-  return q + (Lanes(dt) * v +
-              Lanes(dt * dt) * (Lanes(0.5 - step.scheme.beta) * a + Lanes(step.scheme.beta) * a_new));
-}
-template <class Q>
-[[gnu::always_inline]] inline Q velocity_of(const OwnStep &step, const Q &v, const Q &a, const Q &a_new) {
-  return v + Lanes(step.time_step) * (Lanes(1.0 - step.scheme.gamma) * a + Lanes(step.scheme.gamma) * a_new);
-}
-
 using LaneDofs = std::array<Lanes, 6>; ///< (u, v, r, ex, ey, gxy) in turning axes
 
 /// The constant matrix of each block.
@@ -197,6 +186,7 @@ inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, co
       Lanes(step.stiffness_damping) * elasticity.stress(back * base_rate_of(step, rate, acceleration));
 
   const double am = step.scheme.alpha_m;
+  const double dt = step.time_step;
   const LaneVec force = LaneVec::of([&](std::size_t i) { return &lanes.force[given[i]]; });
   const LaneMat gradient_force = LaneMat::of([&](std::size_t i) { return &lanes.gradient_force[given[i]]; });
   const Lanes mass = Lanes::of([&](std::size_t i) { return system.properties[row[i]].mass; });
@@ -227,10 +217,10 @@ inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, co
   viscous = turn * (viscous + Lanes(step.stiffness_damping * step.spring.rate_coming) *
                                   elasticity.stress(lane_gradient_of(x)));
   const LaneVec v = load_u(system.velocity);
-  const LaneVec u_new = position_of(step, load_u(system.displacement), v, a, a_new);
-  const LaneVec v_new = velocity_of(step, v, a, a_new);
-  const LaneMat f_new = position_of(step, gradient, rate, acceleration, acceleration_new);
-  const LaneMat rate_new = velocity_of(step, rate, acceleration, acceleration_new);
+  const LaneVec u_new = position_of(step.scheme, dt, load_u(system.displacement), v, a, a_new);
+  const LaneVec v_new = velocity_of(step.scheme, dt, v, a, a_new);
+  const LaneMat f_new = position_of(step.scheme, dt, gradient, rate, acceleration, acceleration_new);
+  const LaneMat rate_new = velocity_of(step.scheme, dt, rate, acceleration, acceleration_new);
 
   // Accelerations that are not finite leave their trace in velocities.
   Lanes nothing = Lanes(0.0) * u_new.x + Lanes(0.0) * u_new.y + Lanes(0.0) * v_new.x + Lanes(0.0) * v_new.y;
@@ -275,7 +265,5 @@ inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, co
   store_by_lane(viscous_force, 0, viscous.xx(), viscous.xy(), viscous.yx(), viscous.yy());
   return broken;
 }
-
-constexpr DeformableStepper stepper{num_lanes, step_deformables};
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -1,7 +1,7 @@
 // The lanes of a portable build on a machine that has AVX2; as in contact/plain_batch_avx2.cpp everything
 // that is not made for it is included first.
 
-#include "deformable_lanes.hpp"
+#include "block_lanes.hpp"
 
 #include "gcpdda/dynamics/block_matrix.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
@@ -18,13 +18,13 @@
 #pragma GCC target("avx2")
 #define GCPDDA_INSTRUCTIONS avx2
 #define GCPDDA_NUM_LANES 4
-#include "lane_step.hpp"
+#include "lane_blocks.hpp"
 #pragma GCC pop_options
 
 namespace gcpdda {
 
-DeformableStepper avx2_stepper() {
-  return __builtin_cpu_supports("avx2") ? avx2::stepper : DeformableStepper{0, nullptr};
+BlockLanes avx2_blocks() {
+  return __builtin_cpu_supports("avx2") ? avx2::blocks : BlockLanes{};
 }
 
 } // namespace gcpdda
@@ -33,8 +33,8 @@ DeformableStepper avx2_stepper() {
 
 namespace gcpdda {
 
-DeformableStepper avx2_stepper() {
-  return {0, nullptr};
+BlockLanes avx2_blocks() {
+  return {};
 }
 
 } // namespace gcpdda

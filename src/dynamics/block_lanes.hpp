@@ -1,8 +1,10 @@
 #pragma once
 
-// The step of deformable blocks (deformable.hpp), several at a time.
+// The step of deformable blocks (deformable.hpp) and of rigid ones that are free, several at a time.
 
 #include "own_springs.hpp"
+
+#include "gcpdda/dynamics/integrate.hpp"
 
 #include "gcpdda/base/instructions.hpp"
 
@@ -52,15 +54,21 @@ struct DeformableLanes {
 /// @return bit i is set where row i is such a one
 using StepDeformables = unsigned (*)(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step);
 
-struct DeformableStepper {
-  std::size_t width; ///< of lanes, what may be given at a time
-  StepDeformables step;
+/// Does to rows [first, first + width) what advance_free_rows() says.
+/// @return bit i is set where row first + i is not finite afterwards, and kept as it was
+using StepFreeRows = unsigned (*)(BlockSystem &system, std::size_t first, const FreeRows &rows,
+                                  const Scheme &scheme, double time_step);
+
+struct BlockLanes {
+  std::size_t width; ///< what is done at a time
+  StepDeformables step_deformables;
+  StepFreeRows step_free_rows;
 };
 
 /// All instructions give the same bits.
-DeformableStepper deformable_stepper(Instructions instructions);
-// Without a step where the compiler or the machine lacks these instructions, or the whole build uses AVX.
-DeformableStepper avx2_stepper();
-DeformableStepper avx512_stepper();
+BlockLanes block_lanes(Instructions instructions);
+// Of width 0 where the compiler or the machine lacks these instructions, or the whole build uses AVX.
+BlockLanes avx2_blocks();
+BlockLanes avx512_blocks();
 
 } // namespace gcpdda

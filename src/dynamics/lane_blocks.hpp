@@ -1,0 +1,10 @@
+#pragma once
+
+#include "lane_deformable.hpp"
+#include "lane_rigid.hpp"
+
+namespace gcpdda::GCPDDA_INSTRUCTIONS {
+
+constexpr BlockLanes blocks{num_lanes, step_deformables, step_free_rows};
+
+} // namespace gcpdda::GCPDDA_INSTRUCTIONS
