@@ -1,15 +1,19 @@
-// Deformable blocks step side by side, with whatever instructions a machine has: to the bits each has alone.
+// Blocks step side by side, with whatever instructions a machine has: to the bits each has alone.
 
 #include "../../src/dynamics/own_step.hpp"
 
 #include "gcpdda/dynamics/deformable.hpp"
+#include "gcpdda/simulation/simulation.hpp"
+
+#include "support/scenes.hpp"
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 #include <vector>
 
-namespace gcpdda::deformable_lanes_test {
+namespace gcpdda::block_lanes_test {
 namespace {
 
 constexpr std::size_t num_blocks = 37; // no multiple of any number of lanes
@@ -150,5 +154,116 @@ TEST(DeformableLanes, ObeyTheEquationOfMotion) {
   }
 }
 
+void expect_same(const BlockLedger &a, const BlockLedger &b) {
+  EXPECT_EQ(a.shear_force, b.shear_force);
+  EXPECT_EQ(a.damping_force, b.damping_force);
+  EXPECT_EQ(a.load_force, b.load_force);
+  EXPECT_EQ(a.anchor_force, b.anchor_force);
+  EXPECT_EQ(a.gravity_force, b.gravity_force);
+  EXPECT_EQ(a.shear_work, b.shear_work);
+  EXPECT_EQ(a.damping_work, b.damping_work);
+  EXPECT_EQ(a.load_work, b.load_work);
+  EXPECT_EQ(a.gravity_work, b.gravity_work);
+}
+
+/// The same scene, but that a point load of nothing keeps its blocks from being free.
+Scene with_loads_of_nothing(Scene scene) {
+  for (SceneBlock &block : scene.blocks) {
+    if (!block.fixed) {
+      block.loads.push_back({block.vertices[0], {0.0, 0.0}});
+    }
+  }
+  return scene;
+}
+
+TEST(FreeRows, MoveAsOneByOne) {
+  for (const char *damping : {"run.local_damping=0.0", "run.local_damping=0.7"}) {
+    const Scene scene = testing::scene_of(testing::falling_pile_toml(45, 0.2), {damping});
+    Simulation together(Communicator::self(), scene);
+    Simulation one_by_one(Communicator::self(), with_loads_of_nothing(scene));
+    while (!together.finished() && together.step_count() < 600) {
+      together.step();
+      one_by_one.step();
+    }
+    ASSERT_FALSE(together.fault());
+    double friction = 0.0;
+    for (std::size_t row = 0; row < together.blocks().num_owned; ++row) {
+      SCOPED_TRACE(row);
+      EXPECT_EQ(together.blocks().displacement[row], one_by_one.blocks().displacement[row]);
+      EXPECT_EQ(together.blocks().velocity[row], one_by_one.blocks().velocity[row]);
+      EXPECT_EQ(together.blocks().acceleration[row], one_by_one.blocks().acceleration[row]);
+      EXPECT_EQ(together.forces().rigid[row], one_by_one.forces().rigid[row]);
+      expect_same(together.blocks().ledger[row], one_by_one.blocks().ledger[row]);
+      friction += std::abs(together.blocks().ledger[row].shear_work);
+    }
+    EXPECT_GT(friction, 0.0) << "blocks that touch";
+  }
+}
+
+constexpr std::size_t num_free = 29;
+constexpr std::size_t not_finite = 11; // will not be
+constexpr std::size_t driven = 22;     // ends a run of free rows
+
+struct FreeBlocks {
+  BlockSystem system;
+  std::vector<BlockContactSum> contacts;
+  std::vector<RigidDof> forces{num_free};
+
+  FreeBlocks() {
+    std::mt19937 engine(5);
+    for (std::size_t row = 0; row < num_free; ++row) {
+      SceneBlock block;
+      block.vertices = {{0.0, 0.0}, {2.0 + next(engine), 0.3}, {1.7, 1.2}, {0.0, 1.0}};
+      block.driven = row == driven;
+      append_block(system, BlockId{static_cast<std::int64_t>(row)}, block, {"rock", 2500.0, 0.0, 0.0});
+      contacts.push_back({next_dofs(engine, 1e5), next_dofs(engine, 1e4), next_dofs(engine, 1e4)});
+    }
+    system.num_owned = num_free;
+    system.matrix_begin.assign(num_free + 1, 0);
+    for (std::size_t row = 0; row < num_free; ++row) {
+      for (auto *field : {&system.displacement, &system.velocity, &system.acceleration, &system.trial,
+                          &system.trial_previous}) {
+        (*field)[row] = next_dofs(engine, 1.0);
+      }
+      system.ledger[row].shear_force = next_dofs(engine, 1e4);
+      system.ledger[row].load_force = next_dofs(engine, 1e4);
+    }
+    system.velocity[3].u.x = 0.0; // nothing to damp
+    contacts[not_finite].force.r = std::numeric_limits<double>::infinity();
+  }
+
+  std::size_t step(Instructions instructions, std::optional<std::size_t> &broken) {
+    return advance_free_rows(system, {contacts, forces, {0.3, -9.81}, {0.7, 0.1}, 0.6}, usual_scheme(),
+                             time_step, 0, num_free, broken, instructions);
+  }
+};
+
+TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
+  std::optional<std::size_t> broken;
+  FreeBlocks portable;
+  const std::size_t end = portable.step(Instructions::portable, broken);
+  EXPECT_EQ(end, driven) << "two at a time";
+  EXPECT_EQ(broken, not_finite);
+  EXPECT_EQ(portable.system.velocity[not_finite], FreeBlocks().system.velocity[not_finite]);
+  for (const Instructions instructions : {Instructions::avx2, Instructions::widest}) {
+    FreeBlocks wider;
+    broken.reset();
+    const std::size_t wider_end = wider.step(instructions, broken);
+    EXPECT_LE(wider_end, driven);
+    EXPECT_GT(wider_end, not_finite);
+    EXPECT_EQ(broken, not_finite);
+    for (std::size_t row = 0; row < wider_end; ++row) {
+      SCOPED_TRACE(row);
+      EXPECT_EQ(wider.system.displacement[row], portable.system.displacement[row]);
+      EXPECT_EQ(wider.system.velocity[row], portable.system.velocity[row]);
+      EXPECT_EQ(wider.system.acceleration[row], portable.system.acceleration[row]);
+      if (row != not_finite) { // infinite less infinite
+        EXPECT_EQ(wider.forces[row], portable.forces[row]);
+        expect_same(wider.system.ledger[row], portable.system.ledger[row]);
+      }
+    }
+  }
+}
+
 } // namespace
-} // namespace gcpdda::deformable_lanes_test
+} // namespace gcpdda::block_lanes_test
