@@ -26,7 +26,7 @@ constexpr std::size_t large_array = 65536;
 /// All arrays but the largest side by side, so that one large page may hold several.
 [[maybe_unused]] const int side_by_side = mallopt(M_MMAP_THRESHOLD, 32 << 20);
 /// Room that an output leaves is there for the next one: fresh pages have to be cleared first.
-[[maybe_unused]] const int kept_room = mallopt(M_TRIM_THRESHOLD, 32 << 20);
+[[maybe_unused]] const int kept_room = mallopt(M_TRIM_THRESHOLD, 256 << 20);
 
 void ask_for_large_pages(void *memory, std::size_t size) {
   const std::size_t before_page =

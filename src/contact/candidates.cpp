@@ -361,6 +361,7 @@ Candidates make_candidates(const BlockSystem &system,
   });
   history.regions.clear();
   history.ranges.clear();
+  history.by_faces.clear();
   auto record = memory.begin();
   ChainFinder finder(system, skin);
   for (const auto &[lower, higher] : pairs) {

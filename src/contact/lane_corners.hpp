@@ -49,6 +49,20 @@ template <std::size_t lines>
   return inside;
 }
 
+/// Would find_corner() find one?
+inline Mask has_corner(const LaneSide &own, const LaneSide &other) {
+  Mask found = Mask::from(0);
+  for (std::size_t k = 1; k < own.edges; ++k) {
+    const LaneVec &x = own.vertex[k];
+    Mask inside = (other.low.x <= x.x) & (x.x <= other.high.x) & (other.low.y <= x.y) & (x.y <= other.high.y);
+    for (std::size_t j = 0; j < other.edges; ++j) {
+      inside = inside & (dot(other.slope[j], other.vertex[j] - x) > 0.0);
+    }
+    found = found | inside;
+  }
+  return found;
+}
+
 /// The first end of two edges of `own` inside `other`.
 template <std::size_t edges>
 [[gnu::always_inline]] inline Mask find_corner(const LaneSide &own, const LaneSide &other,

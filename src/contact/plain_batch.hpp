@@ -51,8 +51,12 @@ class PlainBatch {
 public:
   virtual ~PlainBatch() = default;
   [[nodiscard]] virtual std::size_t width() const = 0;
-  /// @return bit i is set where lane i touches
-  virtual unsigned evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;
+  /// What evaluate() says of each lane, by bits.
+  struct Faces {
+    unsigned touching = 0;
+    unsigned with_corners = 0; ///< a corner of each block is in the other one: what evaluate_corners() needs
+  };
+  virtual Faces evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;
   /// What evaluate_corners() can say of each lane, by bits.
   struct Corners {
     unsigned touching = 0;

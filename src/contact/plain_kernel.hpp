@@ -21,7 +21,7 @@ class LaneBatch final : public PlainBatch {
 public:
   static_assert(num_lanes <= most_lanes);
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
-  unsigned evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
+  Faces evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
   Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
                                 const PlainLanes &lanes) override;
@@ -223,7 +223,7 @@ inline void LaneBatch::load_chain(const BlockSystem &system, const LaneBlocks &b
   side.vertex[edges] = load_vertex(system, blocks, edges);
 }
 
-inline unsigned LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
+inline PlainBatch::Faces LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
   const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
     load_chain(scene.system, blocks, edges, side);
@@ -237,16 +237,17 @@ inline unsigned LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &l
   cut_edges(lower_, higher_, on_lower_);
   cut_edges(higher_, lower_, on_higher_);
   integrate();
-  const unsigned touching = regions_.touches.by_lane();
-  if (touching == 0) {
-    return 0;
+  const Faces result{regions_.touches.by_lane(),
+                     (has_corner(lower_, higher_) & has_corner(higher_, lower_)).by_lane()};
+  if (result.touching == 0) {
+    return result;
   }
   const LaneConstants constants = load_constants(scene, pairs);
   regions_.take_stiffness(constants.half_stiffness);
   measure(constants);
   add_friction_and_dashpots(scene, pairs, constants,
                             [&](const auto &motion) { add_dashpot(constants, motion); });
-  return touching;
+  return result;
 }
 
 // The corners and the places where the boundaries cross.

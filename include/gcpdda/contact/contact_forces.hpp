@@ -239,15 +239,19 @@ private:
   /// Entries [first, last) of Candidates::plain.
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                             std::size_t first, std::size_t last);
-  void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, bool by_corners);
+  /// How a pair is looked at: as one corner of each block; as one that was none in the step before; as one
+  /// that is none.
+  enum class Way { corners, faces_as_before, faces };
+  void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way);
   /// Entries [first, last) whose boxes meet.
   void find_meeting(const Candidates &candidates, const ContactHistory &history, std::size_t first,
                     std::size_t last);
   void evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries);
+  void evaluate_known(const PlainScene &scene);
   /// Places for the lanes that touch, and what of them is known already.
   PlainResults open_regions(const PlainLanes &lanes, unsigned touching, Details details);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
-  void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching);
+  void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, unsigned by_faces);
   /// Once more, with details.
   void store_again(const PlainLanes &lanes, unsigned touching);
   /// Visit entries of Candidates::plain that are alike, as many at a time as there are lanes.
@@ -302,6 +306,7 @@ private:
   Overlap overlap_;
   std::unique_ptr<PlainBatch> batch_;
   std::vector<std::uint32_t> meeting_;   ///< entries of Candidates::plain whose boxes meet, with a region ...
+  std::vector<std::uint32_t> faces_;     ///< ... that was not one corner in another ...
   std::vector<std::uint32_t> strangers_; ///< ... and without one
   std::vector<std::uint32_t> others_;    ///< those of them that are not one corner in another
   std::vector<std::uint32_t> births_;    ///< plain pairs whose new regions must choose among laws

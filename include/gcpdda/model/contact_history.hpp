@@ -55,6 +55,9 @@ struct RegionRange {
 struct ContactHistory {
   std::vector<RegionRange> ranges; ///< one a pair
   std::vector<RegionMemory> regions;
+  /// Whether a pair overlapped otherwise than with one corner of each block, and hardly will so in the next
+  /// step. Saves work and changes no result: it is forgotten where that is easier. One a pair, or none.
+  std::vector<std::uint8_t> by_faces;
 
   [[nodiscard]] std::span<const RegionMemory> of_pair(std::size_t pair) const {
     return {regions.data() + ranges[pair].begin, ranges[pair].count};
