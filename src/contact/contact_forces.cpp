@@ -87,7 +87,16 @@ void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, 
 }
 
 void ContactForces::find_motions(const BlockSystem &system, std::size_t first, std::size_t last) {
+  const std::size_t width = batch_->width();
   for (std::size_t row = first; row < last; ++row) {
+    while (row + width <= last && last <= system.first_fixed() &&
+           system.deformation_begin[row] == system.deformation_begin[row + width] &&
+           batch_->find_motions(system, row, motions_)) {
+      row += width;
+    }
+    if (row == last) {
+      break;
+    }
     const RigidDof &velocity = system.velocity[row];
     motions_[row] = {system.trial_centroid[row], velocity.u, {}, velocity.r, 0.0, system.box[row]};
     if (!system.is_fixed(row)) {

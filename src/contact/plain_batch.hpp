@@ -51,6 +51,10 @@ class PlainBatch {
 public:
   virtual ~PlainBatch() = default;
   [[nodiscard]] virtual std::size_t width() const = 0;
+  /// How rigid rows move, as many from `first` on as there are lanes.
+  /// @return false, and nothing is written, where one turns by more than a series reaches
+  virtual bool find_motions(const BlockSystem &system, std::size_t first,
+                            std::span<BlockMotion> motions) const = 0;
   /// What evaluate() says of each lane, by bits.
   struct Faces {
     unsigned touching = 0;

@@ -9,6 +9,8 @@
 #include "lane_stretch.hpp"
 #include "plain_batch.hpp"
 
+#include "gcpdda/geometry/lane_turn.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -21,6 +23,8 @@ class LaneBatch final : public PlainBatch {
 public:
   static_assert(num_lanes <= most_lanes);
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
+  bool find_motions(const BlockSystem &system, std::size_t first,
+                    std::span<BlockMotion> motions) const override;
   Faces evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
   Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
@@ -90,6 +94,31 @@ struct LaneBatch::Pairs {
     }
   }
 };
+
+inline bool LaneBatch::find_motions(const BlockSystem &system, std::size_t first,
+                                    std::span<BlockMotion> motions) const {
+  static_assert(sizeof(RigidDof) == 3 * sizeof(double));
+  const ThreeLanes trial = load_triples(&system.trial[first].u.x);
+  const ThreeLanes previous = load_triples(&system.trial_previous[first].u.x);
+  const ThreeLanes velocity = load_triples(&system.velocity[first].u.x);
+  const Lanes turn = trial[2] - previous[2];
+  if ((!LaneTurn::is_small(turn)).any()) {
+    return false;
+  }
+  const auto [sine, versine] = LaneTurn::of(turn);
+  const LaneVec centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[first + i]; });
+  std::array<std::byte *, num_lanes> to;
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    to[i] = reinterpret_cast<std::byte *>(&motions[first + i]);
+    motions[first + i].box = system.box[first + i];
+  }
+  static_assert(offsetof(BlockMotion, increment) == 4 * sizeof(double) &&
+                offsetof(BlockMotion, spin) == 10 * sizeof(double));
+  store_by_lane(to, 0, centroid.x, centroid.y, velocity[0], velocity[1]);
+  store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], versine, -sine);
+  store_by_lane(to, 8 * sizeof(double), sine, versine, velocity[2], 0.0);
+  return true;
+}
 
 inline LaneConstants LaneBatch::load_constants(const PlainScene &scene, const Pairs &pairs) {
   // Each with what stands behind it.

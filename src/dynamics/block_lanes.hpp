@@ -59,8 +59,16 @@ using StepDeformables = unsigned (*)(BlockSystem &system, DeformableLanes &lanes
 using StepFreeRows = unsigned (*)(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                   const Scheme &scheme, double time_step);
 
+/// Rows, no more than there are lanes.
+using RowsAtOnce = std::span<const std::size_t>;
+
+/// pose() of rigid or of deformable rows with four vertices, whose trial_centroid is known.
+using PoseQuads = void (*)(BlockSystem &system, const RowsAtOnce &rows);
+
 struct BlockLanes {
   std::size_t width; ///< what is done at a time
+  PoseQuads pose_rigid_quads;
+  PoseQuads pose_deformable_quads;
   StepDeformables step_deformables;
   StepFreeRows step_free_rows;
 };

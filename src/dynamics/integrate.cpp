@@ -1,11 +1,13 @@
 #include "gcpdda/dynamics/integrate.hpp"
 
+#include "block_lanes.hpp"
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "own_springs.hpp"
 #include "own_step.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -51,8 +53,61 @@ RigidDof PrescribedMotion::displacement(double time) const {
   return row.displacement + (0.5 * (time - row.time)) * (row.velocity + velocity(time));
 }
 
+namespace {
+
+/// Rows with four vertices on their way to the lanes.
+class Quads {
+public:
+  Quads(BlockSystem &system, std::size_t width, PoseQuads pose)
+      : system_(system), width_(width), pose_(pose) {}
+
+  void add(std::size_t row) {
+    system_.trial_centroid[row] = system_.properties[row].centroid + system_.trial[row].u;
+    rows_[count_++] = row;
+    if (count_ == width_) {
+      flush();
+    }
+  }
+  void flush() {
+    if (count_ > 0) {
+      pose_(system_, std::span(rows_).first(count_));
+    }
+    count_ = 0;
+  }
+
+private:
+  BlockSystem &system_;
+  const std::size_t width_;
+  const PoseQuads pose_;
+  std::array<std::size_t, most_lanes> rows_;
+  std::size_t count_ = 0;
+};
+
+/// As pose(), which has been called for all rows before.
+void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last) {
+  const BlockLanes lanes = block_lanes(Instructions::widest);
+  Quads rigid(system, lanes.width, lanes.pose_rigid_quads);
+  Quads deformable(system, lanes.width, lanes.pose_deformable_quads);
+  std::size_t others = first; // where a run of them may begin
+  for (std::size_t row = first; row < last; ++row) {
+    if (system.num_vertices(row) == 4) {
+      (system.is_deformable(row) ? deformable : rigid).add(row);
+    } else if (row + 1 == last || system.num_vertices(row + 1) == 4) {
+      pose(system, others, row + 1);
+    } else {
+      continue;
+    }
+    others = row + 1;
+  }
+  rigid.flush();
+  deformable.flush();
+}
+
+} // namespace
+
 void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
   constexpr std::size_t rows_at_once = 256; // they are posed from the cache
+  pose(system, 0, 0);                       // lists have their lengths
   const double by_velocity = scheme.trial_velocity * time_step;
   const double by_acceleration = scheme.trial_acceleration * time_step * time_step;
   for (std::size_t first = 0; first < system.num_owned; first += rows_at_once) {
@@ -68,7 +123,7 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
         system.trial[i].r = system.displacement[i].r + angle_between(d.gradient, d.trial);
       }
     }
-    pose(system, first, last);
+    pose_in_lanes(system, first, last);
   }
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "lane_deformable.hpp"
+#include "lane_pose.hpp"
 #include "lane_rigid.hpp"
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-constexpr BlockLanes blocks{num_lanes, step_deformables, step_free_rows};
+constexpr BlockLanes blocks{num_lanes, pose_rigid_quads, pose_deformable_quads, step_deformables,
+                            step_free_rows};
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

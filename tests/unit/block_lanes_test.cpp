@@ -265,5 +265,41 @@ TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
   }
 }
 
+// Blocks with three, four and five vertices, rigid and deformable, in any order; some have turned far.
+TEST(Predict, PosesEveryBlockAsPoseDoes) {
+  std::mt19937 engine(23);
+  BlockSystem system;
+  for (std::int64_t id = 0; id < 101; ++id) {
+    const int num_vertices = next(engine) > 0.4 ? (next(engine) > 0.0 ? 3 : 5) : 4;
+    SceneBlock block;
+    block.vertices = testing::random_polygon(static_cast<unsigned>(id + 1), num_vertices, 1.0, {0.0, 0.0});
+    append_block(system, BlockId{id}, block, {"rock", 2500.0, 5e8, 0.3},
+                 next(engine) > 0.0 ? BlockKind::rigid : BlockKind::deformable);
+    system.displacement.back() = next_dofs(engine, id % 9 == 0 ? 3.0 : 0.1);
+    system.velocity.back() = next_dofs(engine, 1.0);
+    system.acceleration.back() = next_dofs(engine, 10.0);
+  }
+  for (Deformation &d : system.deformation) {
+    d.gradient = Mat2::identity() + next_matrix(engine, 0.1);
+    d.rate = next_matrix(engine, 1.0);
+    d.acceleration = next_matrix(engine, 10.0);
+  }
+  system.num_owned = system.num_rows();
+  pose(system, 0, system.num_rows());
+  predict(system, usual_scheme(), 1e-3);
+  BlockSystem one_by_one = system;
+  pose(one_by_one, 0, one_by_one.num_rows());
+  EXPECT_EQ(system.trial_centroid, one_by_one.trial_centroid);
+  EXPECT_EQ(system.vertex, one_by_one.vertex);
+  EXPECT_EQ(system.normal, one_by_one.normal);
+  EXPECT_EQ(system.edge_length, one_by_one.edge_length);
+  EXPECT_EQ(system.trial_inverse, one_by_one.trial_inverse);
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    EXPECT_EQ(system.box[row].low, one_by_one.box[row].low);
+    EXPECT_EQ(system.box[row].high, one_by_one.box[row].high);
+    EXPECT_NE(system.trial[row].u, system.displacement[row].u) << "it has moved";
+  }
+}
+
 } // namespace
 } // namespace gcpdda::block_lanes_test
