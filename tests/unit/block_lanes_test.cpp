@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
 #include <vector>
@@ -242,7 +243,8 @@ TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
   std::optional<std::size_t> broken;
   FreeBlocks portable;
   const std::size_t end = portable.step(Instructions::portable, broken);
-  EXPECT_EQ(end, driven) << "two at a time";
+  EXPECT_LE(end, driven); // a build for this very machine has no narrower lanes
+  EXPECT_GT(end, not_finite);
   EXPECT_EQ(broken, not_finite);
   EXPECT_EQ(portable.system.velocity[not_finite], FreeBlocks().system.velocity[not_finite]);
   for (const Instructions instructions : {Instructions::avx2, Instructions::widest}) {
@@ -252,7 +254,7 @@ TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
     EXPECT_LE(wider_end, driven);
     EXPECT_GT(wider_end, not_finite);
     EXPECT_EQ(broken, not_finite);
-    for (std::size_t row = 0; row < wider_end; ++row) {
+    for (std::size_t row = 0; row < std::min(end, wider_end); ++row) {
       SCOPED_TRACE(row);
       EXPECT_EQ(wider.system.displacement[row], portable.system.displacement[row]);
       EXPECT_EQ(wider.system.velocity[row], portable.system.velocity[row]);
