@@ -432,11 +432,17 @@ void ContactForces::note_depth(const BlockSystem &system, const CandidatePair &p
   }
 }
 
-double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force) {
-  const auto increment = [&](BlockIndex row) {
-    return system.is_fixed(row.value) ? TrialIncrement{} : trial_increment(system, row.value);
-  };
-  return dot(slide_at(system, pair, force.point, increment(pair.lower), increment(pair.higher)),
+std::vector<TrialIncrement> trial_increments(const BlockSystem &system) {
+  std::vector<TrialIncrement> increments(system.num_rows());
+  for (std::size_t row = 0; row < system.first_fixed(); ++row) {
+    increments[row] = trial_increment(system, row);
+  }
+  return increments;
+}
+
+double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
+                    std::span<const TrialIncrement> increments) {
+  return dot(slide_at(system, pair, force.point, increments[pair.lower.value], increments[pair.higher.value]),
              perp(force.normal));
 }
 

@@ -83,7 +83,8 @@ private:
   std::size_t count_ = 0;
 };
 
-/// As pose(), which has been called for all rows before.
+} // namespace
+
 void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last) {
   const BlockLanes lanes = block_lanes(Instructions::widest);
   Quads rigid(system, lanes.width, lanes.pose_rigid_quads);
@@ -102,8 +103,6 @@ void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last) {
   rigid.flush();
   deformable.flush();
 }
-
-} // namespace
 
 void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
   constexpr std::size_t rows_at_once = 256; // they are posed from the cache

@@ -153,14 +153,21 @@ enum class Moment { now, middle };
 /// k), the form that the leapfrog conserves exactly. Slipping springs keep theirs.
 void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
   const ContactParameters &parameters = simulation.contacts().parameters();
-  for (std::size_t k = 0; k < simulation.contacts().regions().size(); ++k) {
-    const RegionForce &force = simulation.contacts().regions()[k];
+  const std::vector<TrialIncrement> increments =
+      moment == Moment::middle ? trial_increments(simulation.blocks()) : std::vector<TrialIncrement>();
+  const std::span<const RegionForce> forces = simulation.contacts().regions();
+  CandidatePair own; // of a mixed pair
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const RegionForce &force = forces[k];
     const CandidatePair &pair = simulation.candidates().pairs[force.pair];
     const RegionMemory &memory = simulation.history().regions[k];
     if (!simulation.counts_here(pair)) {
       continue;
     }
-    const CandidatePair constants = constants_of(simulation.blocks(), parameters, pair, memory.law);
+    if (memory.law >= 0) {
+      own = constants_of(simulation.blocks(), parameters, pair, memory.law);
+    }
+    const CandidatePair &constants = memory.law >= 0 ? own : pair;
     if (memory.is_bond()) {
       sum.add(2.0 * constants.half_stiffness *
               bond_energy(simulation.blocks(), pair, memory, moment == Moment::middle));
@@ -174,7 +181,7 @@ void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
       next += stiffness *
               (memory.is_bond()
                    ? opening_of(simulation.blocks(), pair, memory, Configuration::trial).slide - memory.slip
-                   : coming_slide(simulation.blocks(), pair, force));
+                   : coming_slide(simulation.blocks(), pair, force, increments));
     }
     sum.add(0.5 * memory.shear * next / stiffness);
   }
@@ -252,7 +259,7 @@ double unbalanced_ratio(const Simulation &simulation) {
           std::max(largest[1], blocks.properties[row].heavy_mass() * norm(simulation.scene().run.gravity));
     }
   }
-  for (const RegionForce &force : simulation.contacts().regions()) {
+  for (const RegionSums &force : simulation.contacts().sums()) {
     largest[1] = std::max(largest[1], norm(force.force));
   }
   simulation.communicator().max(largest);

@@ -370,9 +370,13 @@ struct ContactPart {
 };
 ContactPart contact_part(const RegionForce &force, bool is_lower, Vec2 centroid);
 
+/// By row, how the last two trial configurations differ.
+std::vector<TrialIncrement> trial_increments(const BlockSystem &system);
+
 /// Slide along t_r of the last evaluation's contact point when the system has moved on to its next trial
-/// configuration.
-double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force);
+/// configuration, by these increments.
+double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
+                    std::span<const TrialIncrement> increments);
 
 /// Material point X of a block that is now at x, in the trial configuration.
 Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x);

@@ -45,6 +45,9 @@ private:
 /// angles r of a deformable row, of displacement and trial, are those of F's rotation, unwrapped.
 void predict(BlockSystem &system, const Scheme &scheme, double time_step);
 
+/// As pose() of rows [first, last), all of which have been posed before; quadrilaterals several at a time.
+void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last);
+
 /// a = M^-1 f of one rigid block.
 inline RigidDof accelerate(const BlockProperties &block, const RigidDof &force) {
   return {(1.0 / block.mass) * force.u, force.r / block.inertia};

@@ -186,7 +186,7 @@ public:
     blocks_.trial = trial;
     blocks_.trial_previous = previous;
     blocks_.deformation = deformation;
-    pose(blocks_, 0, blocks_.num_mobile());
+    pose_in_lanes(blocks_, 0, blocks_.num_mobile());
   }
 
 private:
