@@ -270,8 +270,8 @@ void ContactForces::evaluate_corners_first(const PlainScene &scene, std::span<co
               [&](std::span<const std::uint32_t> batch) { evaluate_alike(scene, batch, Way::faces); });
 }
 
-// Those with a region. Faces stay faces: not to look for corners saves half of the work of a fifth of all
-// pairs and more, and changes nothing.
+// Those with a region. Faces mostly stay faces: to see that no corner is inside costs less than to look for
+// an overlap of corners in vain, and changes nothing.
 void ContactForces::evaluate_known(const PlainScene &scene) {
   for_batches(scene.candidates, scene.history, faces_, [&](std::span<const std::uint32_t> batch) {
     evaluate_alike(scene, batch, Way::faces_as_before);
