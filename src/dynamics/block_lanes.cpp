@@ -1,6 +1,6 @@
 #include "gcpdda/base/lanes_of_build.hpp"
 
-#include "lane_blocks.hpp"
+#include "block_kernel.hpp"
 
 namespace gcpdda {
 

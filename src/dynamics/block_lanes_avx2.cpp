@@ -19,7 +19,7 @@
 #pragma GCC target("avx2")
 #define GCPDDA_INSTRUCTIONS avx2
 #define GCPDDA_NUM_LANES 4
-#include "lane_blocks.hpp"
+#include "block_kernel.hpp"
 #pragma GCC pop_options
 
 namespace gcpdda {

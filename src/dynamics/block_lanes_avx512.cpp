@@ -20,7 +20,7 @@
 #pragma GCC target("avx512f,avx512dq,avx512vl")
 #define GCPDDA_INSTRUCTIONS avx512
 #define GCPDDA_NUM_LANES 8
-#include "lane_blocks.hpp"
+#include "block_kernel.hpp"
 #pragma GCC pop_options
 
 namespace gcpdda {

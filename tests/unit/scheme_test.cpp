@@ -1,4 +1,6 @@
-// Limits that the amplification matrix has by hand, and that the product's step does what the matrix says.
+// Limits of the step by closed forms and by eigenvalues of an amplification matrix that was written down
+// apart from this code, with as many digits as stand in the rows, and that the product's step does what the
+// matrix says.
 
 #include "gcpdda/dynamics/scheme.hpp"
 

@@ -82,7 +82,8 @@ bool is_clear(const SlopeCase &c, double margin) {
   return true;
 }
 
-// Digits of the closed form (tan of the slope against the slenderness).
+// A block that turns about its toe, with 4/3 m R^2, R half its diagonal, needs tan phi = [sin al - 3/4 sin(al
+// - de) cos de]/[cos al + 3/4 sin(al - de) sin de] there; digits of it, al the slope and de the slenderness.
 TEST(BlockOnSlope, LimitOfPureToppling) {
   struct Row {
     double slope, slenderness, limit;

@@ -21,8 +21,8 @@ double slid_error(const Incline &incline, const std::string &toml) {
   return std::abs(dot(displacement_of(simulation, 1).u, incline.downhill()) - expected) / expected;
 }
 
-// Closed form against its digits, then the run. The square starts in the depth and tilt in
-// which it slides on, so only round-off is left: 1e-16 m in coordinates over a depth of 2e-5 m.
+// Closed form against digits of g (sin th - tan phi cos th), then the run. The square starts in the depth and
+// tilt in which it slides on, so only round-off is left: 1e-16 m in coordinates over a depth of 2e-5 m.
 TEST(Incline, DistanceFromSlidingEquilibrium) {
   struct Case {
     double slope, friction, acceleration;

@@ -111,7 +111,8 @@ double lasting_amplitude(const std::string &run_keys, double w) {
   return second / first;
 }
 
-// Limits by the spectral radius of the amplification matrix, and the scheme of Hulbert and Chung. At 0.98 of the
+// Limits by eigenvalues of an amplification matrix written down apart from this code, and those of Hulbert
+// and Chung, W^2 = 2 (1 - 2 am)/(2 b - g) (doi:10.1016/S0045-7825(96)01036-5), as digits. At 0.98 of the
 // limit nothing grows, at 1.02 the amplitude grows as the amplification matrix says.
 TEST(Stability, LimitsOfAllSchemes) {
   struct Row {

@@ -1,5 +1,7 @@
 #pragma once
 
+// What block_lanes.hpp promises, with one block in each lane.
+
 #include "lane_deformable.hpp"
 #include "lane_pose.hpp"
 #include "lane_rigid.hpp"
