@@ -264,6 +264,32 @@ void order_evaluation(const BlockSystem &system, Candidates &candidates) {
   candidates.num_interior_general = static_cast<std::size_t>(border - candidates.general.begin());
 }
 
+/// Which blocks can add their contacts as they are evaluated.
+void find_waiting(const BlockSystem &system, Candidates &candidates) {
+  candidates.is_added.assign(system.num_owned, 1);
+  std::vector<bool> comes_late(candidates.pairs.size(), true);
+  for (std::size_t k = 0; k < candidates.num_interior_plain; ++k) {
+    comes_late[candidates.plain[k].pair] = candidates.plain[k].is_mixed;
+  }
+  const auto for_owned = [&](std::uint32_t pair, auto &&visit) {
+    for (const BlockIndex row : {candidates.pairs[pair].lower, candidates.pairs[pair].higher}) {
+      if (row.value < system.num_owned) {
+        visit(candidates.is_added[row.value]);
+      }
+    }
+  };
+  for (std::uint32_t k = 0; k < candidates.pairs.size(); ++k) {
+    for_owned(k, [&](std::uint8_t &is_added) { is_added = comes_late[k] ? 0 : is_added; });
+  }
+  for (std::uint32_t k = 0; k < candidates.pairs.size(); ++k) {
+    bool waits = false;
+    for_owned(k, [&](std::uint8_t is_added) { waits = waits || is_added == 0; });
+    if (waits) {
+      candidates.waiting.push_back(k);
+    }
+  }
+}
+
 /// Entries of BlockSystem::vertex at the ends of a chain's edges.
 void append_chain(const BlockSystem &system, std::size_t row, const EdgeChain &chain,
                   std::vector<std::uint32_t> &vertices) {
@@ -405,7 +431,7 @@ Candidates make_candidates(const BlockSystem &system,
   }
 
   order_evaluation(system, candidates);
-
+  find_waiting(system, candidates);
   list_contacts_of_blocks(system, candidates);
   return candidates;
 }

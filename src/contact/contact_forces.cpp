@@ -69,21 +69,21 @@ void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, 
   force.damping_force += drag;
   add_torques(force.damping_torque, drag);
   const Vec2 elastic = -shear * tangent;
-  if (region < dyads_.size()) {
+  const std::size_t number = region - ranges_[force.pair].begin;
+  if (RegionDyads *dyads = sums_.kept_dyads(force.pair, number)) {
     for (const std::size_t k : {0U, 1U}) {
       const Vec2 arm = k == 0 ? lower_arm : -higher_arm;
-      BlockGradientSum &dyads = dyads_[region][k];
-      dyads.force += outer(arm, change);
-      dyads.damping += outer(arm, drag);
-      dyads.shear =
-          force.bonded ? dyads.shear + outer(arm, elastic - force.shear_force) : outer(arm, elastic);
+      BlockGradientSum &sum = (*dyads)[k];
+      sum.force += outer(arm, change);
+      sum.damping += outer(arm, drag);
+      sum.shear = force.bonded ? sum.shear + outer(arm, elastic - force.shear_force) : outer(arm, elastic);
     }
   }
   force.shear = shear;
   force.shear_force = elastic;
   force.shear_torque = {};
   add_torques(force.shear_torque, force.shear_force);
-  sums_[region] = force;
+  sums_.kept(force.pair, number) = force;
 }
 
 void ContactForces::find_motions(const BlockSystem &system, std::size_t first, std::size_t last) {
@@ -159,17 +159,14 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   }
 }
 
-PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching, Details details) {
+PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching) {
   PlainResults results;
-  grow(sums_, num_forces_ + lanes.count);
   grow(next_.regions, num_forces_ + lanes.count);
-  if (details == Details::now) {
+  results.has_details = details_ == Details::now;
+  if (results.has_details) {
     grow(forces_, num_forces_ + lanes.count);
   }
   results.has_dyads = lanes.pair[0]->is_deformable;
-  if (results.has_dyads) {
-    grow(dyads_, num_forces_ + lanes.count);
-  }
   for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
@@ -179,19 +176,13 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
     }
     results.wanted |= 1U << i;
     ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
-    RegionSums &sums = sums_[num_forces_];
-    sums.pair = plain.pair;
-    sums.lower = plain.lower;
-    sums.higher = plain.higher;
-    sums.born = is_born;
-    sums.bonded = false;
-    results.sums[i] = &sums;
+    results.sums[i] = &sums_.open(plain.pair, is_born);
     results.memory[i] = &next_.regions[num_forces_];
-    if (details == Details::now) {
+    if (results.has_details) {
       results.details[i] = &forces_[num_forces_];
     }
     if (results.has_dyads) {
-      results.dyads[i] = &dyads_[num_forces_];
+      results.dyads[i] = &sums_.dyads(plain.pair);
     }
     ++num_forces_;
   });
@@ -200,19 +191,22 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
 
 void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching,
                                 unsigned by_faces) {
-  const PlainResults results = open_regions(lanes, touching, details_);
-  const unsigned too_deep = batch_->store(results, details_);
+  const PlainResults results = open_regions(lanes, touching);
+  const unsigned too_deep = batch_->store(results);
   for_bits(results.wanted, [&](std::size_t i) {
+    const std::uint32_t pair = lanes.pair[i]->pair;
+    next_.by_faces[pair] = static_cast<std::uint8_t>(by_faces >> i & 1U);
     RegionMemory &memory = *results.memory[i];
-    memory.law = lanes.pair[i]->is_mixed ? lanes.constants[i]->law : -1;
-    next_.by_faces[lanes.pair[i]->pair] = static_cast<std::uint8_t>(by_faces >> i & 1U);
     memory.position = {};
     memory.dilation = {};
     memory.lower_stretch = 0;
     memory.higher_stretch = 0;
-    if (details_ == Details::now) {
-      const auto region = static_cast<std::size_t>(results.sums[i] - sums_.data());
-      static_cast<RegionSums &>(forces_[region]) = sums_[region];
+    if (lanes.pair[i]->is_mixed) {
+      memory.law = lanes.constants[i]->law;
+    }
+    if (results.has_details) {
+      note_details(lanes, i, forces_[ranges_[pair].begin]);
+      static_cast<RegionSums &>(forces_[ranges_[pair].begin]) = *results.sums[i];
     }
   });
   for_bits(too_deep, [&](std::size_t i) {
@@ -220,22 +214,29 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
   });
 }
 
+void ContactForces::note_details(const PlainLanes &lanes, std::size_t lane, RegionDetails &details) {
+  details.pair = lanes.pair[lane]->pair;
+  details.born = lanes.memory[lane] == &PlainLanes::no_memory;
+  details.bonded = false;
+}
+
 void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
   PlainResults results;
+  results.has_details = true;
   std::array<RegionMemory, most_lanes> known;
   for (std::size_t i = 0; i < lanes.count; ++i) {
     const PlainPair &plain = *lanes.pair[i];
     // The general way, which mixed pairs are born by, finds details at once.
     if ((touching >> i & 1U) != 0 && !(plain.is_mixed && lanes.memory[i] == &PlainLanes::no_memory)) {
-      const std::uint32_t region = ranges_[plain.pair].begin;
-      static_cast<RegionSums &>(forces_[region]) = sums_[region];
+      RegionForce &force = forces_[ranges_[plain.pair].begin];
+      note_details(lanes, i, force);
       results.wanted |= 1U << i;
-      results.sums[i] = &forces_[region];
+      results.sums[i] = &force;
       results.memory[i] = &known[i];
-      results.details[i] = &forces_[region];
+      results.details[i] = &force;
     }
   }
-  batch_->store(results, Details::now);
+  batch_->store(results);
 }
 
 template <class Visit>
@@ -344,6 +345,7 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     find_meeting(candidates, history, begin, end);
     evaluate_known(scene);
     evaluate_corners_first(scene, strangers_);
+    sums_.close_group(system, candidates, candidates.plain[begin].group());
   }
   next_.regions.resize(num_forces_);
   const PlainBatch::Extremes seen = batch_->take_extremes();
@@ -358,14 +360,13 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
 void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidates &candidates,
                                       std::uint32_t number, std::span<RegionMemory> old) {
   const std::size_t begin = num_forces_;
+  first_of_pair_ = begin;
+  dyads_.clear();
   find_regions(system, candidates, number, old);
   ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(num_forces_ - begin)};
-  grow(sums_, num_forces_);
-  for (std::size_t region = begin; region < num_forces_; ++region) {
-    forces_[region].lower = candidates.pairs[number].lower;
-    forces_[region].higher = candidates.pairs[number].higher;
-    sums_[region] = forces_[region];
-  }
+  const std::size_t count = num_forces_ - begin;
+  sums_.keep(number, std::span(forces_).subspan(begin, count),
+             std::span(dyads_).first(std::min(count, dyads_.size())));
 }
 
 void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
@@ -382,7 +383,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
 }
 
 void ContactForces::evaluate_interior(const BlockSystem &system, const Candidates &candidates,
-                                      ContactHistory &history, Details details) {
+                                      ContactHistory &history, Details details, Keep keep) {
   details_ = details;
   has_details_ = details == Details::now;
   motions_.resize(system.num_rows());
@@ -398,8 +399,8 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   ranges_.assign(candidates.pairs.size(), {});
   history.by_faces.resize(candidates.pairs.size());
   next_.by_faces.assign(candidates.pairs.size(), 0);
+  sums_.start(system, candidates, keep);
   // Most candidates touch: to grow by doubling would take more memory than to have room for all.
-  sums_.reserve(candidates.pairs.size());
   next_.regions.reserve(candidates.pairs.size());
   report_ = {};
   evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);

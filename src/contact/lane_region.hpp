@@ -125,7 +125,7 @@ public:
   /// With all forces in place.
   template <class AnyMotion> void find_torques(const AnyMotion &motion);
   void find_dyads(const LaneVec &centroid, double sign, std::array<FourLanes, 3> &dyads) const;
-  unsigned store(const PlainResults &results, Details details);
+  unsigned store(const PlainResults &results);
   PlainBatch::Extremes take_extremes();
 
   [[nodiscard]] const LaneVec &point() const { return point_; }
@@ -274,7 +274,12 @@ inline void LaneRegions::find_dyads(const LaneVec &centroid, double sign,
   }
 }
 
-inline unsigned LaneRegions::store(const PlainResults &results, Details details) {
+/// RegionMemory's law, the only one a pair can have, and state in the place of one number.
+constexpr double only_law_and(ContactState state) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(state) << 32U | 0xffffffffU);
+}
+
+inline unsigned LaneRegions::store(const PlainResults &results) {
   using Places = std::array<std::byte *, num_lanes>;
   const auto wants = [&](std::size_t i) { return (results.wanted >> i & 1U) != 0; };
   const auto places = [&](const auto &of_results, auto &unwanted) {
@@ -291,13 +296,18 @@ inline unsigned LaneRegions::store(const PlainResults &results, Details details)
                 shear_torque_[1]);
   store_by_lane(sums, offsetof(RegionSums, damping_force), damping_force_.x, damping_force_.y,
                 damping_torque_[0], damping_torque_[1]);
-  static_assert(offsetof(RegionMemory, law) == offsetof(RegionMemory, shear) + 3 * sizeof(double));
+  static_assert(offsetof(RegionMemory, law) == offsetof(RegionMemory, shear) + 3 * sizeof(double) &&
+                offsetof(RegionMemory, state) == offsetof(RegionMemory, law) + sizeof(std::int32_t) &&
+                offsetof(RegionMemory, position) == offsetof(RegionMemory, law) + sizeof(double) &&
+                std::endian::native == std::endian::little);
   const Places memory = places(results.memory, unwanted_memory_);
-  store_by_lane(memory, offsetof(RegionMemory, shear), elastic_, longest_, slip_, slip_);
+  store_by_lane(
+      memory, offsetof(RegionMemory, shear), elastic_, longest_, slip_,
+      select(slips_, Lanes(only_law_and(ContactState::slip)), Lanes(only_law_and(ContactState::stick))));
   const Mask wanted = Mask::from(results.wanted);
   max_overlap_ = select(wanted, max(max_overlap_, overlap_), max_overlap_);
   max_overlap_share_ = select(wanted, max(max_overlap_share_, overlap_share_), max_overlap_share_);
-  if (details == Details::now) {
+  if (results.has_details) {
     const Places known = places(results.details, unwanted_details_);
     store_by_lane(known, offsetof(RegionDetails, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
     store_by_lane(known, offsetof(RegionDetails, origin), origin.x, origin.y, point_.x, point_.y);
@@ -314,12 +324,10 @@ inline unsigned LaneRegions::store(const PlainResults &results, Details details)
     }
   }
   const unsigned cancels = undefined.by_lane() & results.wanted;
-  const unsigned slips = slips_.by_lane();
   normals_undefined_ += std::popcount(cancels);
-  for (std::size_t i = 0; i < num_lanes; ++i) {
+  for (std::size_t i = 0; results.has_details && i < num_lanes; ++i) {
     if (wants(i)) {
-      results.sums[i]->normal_undefined = (cancels >> i & 1U) != 0;
-      results.memory[i]->state = (slips >> i & 1U) != 0 ? ContactState::slip : ContactState::stick;
+      results.details[i]->normal_undefined = (cancels >> i & 1U) != 0;
     }
   }
   return (wanted & (overlap_share_ > 0.5)).by_lane();

@@ -40,8 +40,9 @@ struct PlainResults {
   unsigned wanted = 0; ///< bits of the lanes someone asks for, which touch; other places are not looked at
   std::array<RegionSums *, most_lanes> sums;
   std::array<RegionMemory *, most_lanes> memory;
-  std::array<RegionDetails *, most_lanes> details; ///< with Details::now
-  bool has_dyads = false;                          ///< the blocks deform
+  bool has_details = false;
+  std::array<RegionDetails *, most_lanes> details;
+  bool has_dyads = false; ///< the blocks deform
   std::array<RegionDyads *, most_lanes> dyads;
 };
 
@@ -81,10 +82,10 @@ public:
   /// Of most others of blocks with no more than most_corner_edges edges.
   virtual Energies find_energies(const BlockSystem &system, const Candidates &candidates,
                                  const PlainLanes &lanes) = 0;
-  /// Write all of the sums but pair, rows, birth and bond, and shear, extent, slip and state of the memory,
-  /// whose law is lost.
+  /// Write the sums, all of the details but pair, birth and bond, and of the memory what two convex blocks
+  /// need; its law is that of a pair which has only one.
   /// @return bit i is set where the overlap of lane i exceeds what is allowed
-  virtual unsigned store(const PlainResults &results, Details details) = 0;
+  virtual unsigned store(const PlainResults &results) = 0;
   /// Thickness of the overlap in a lane that touches, m.
   [[nodiscard]] virtual double overlap(std::size_t lane) const = 0;
   /// Of all that has been stored since these were taken last.

@@ -31,9 +31,7 @@ public:
                                 const PlainLanes &lanes) override;
   Energies find_energies(const BlockSystem &system, const Candidates &candidates,
                          const PlainLanes &lanes) override;
-  unsigned store(const PlainResults &results, Details details) override {
-    return regions_.store(results, details);
-  }
+  unsigned store(const PlainResults &results) override { return regions_.store(results); }
   [[nodiscard]] double overlap(std::size_t lane) const override { return regions_.overlap(lane); }
   Extremes take_extremes() override { return regions_.take_extremes(); }
 

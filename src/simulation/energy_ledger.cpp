@@ -259,9 +259,7 @@ double unbalanced_ratio(const Simulation &simulation) {
           std::max(largest[1], blocks.properties[row].heavy_mass() * norm(simulation.scene().run.gravity));
     }
   }
-  for (const RegionSums &force : simulation.contacts().sums()) {
-    largest[1] = std::max(largest[1], norm(force.force));
-  }
+  largest[1] = std::max(largest[1], simulation.contacts().sums().largest_force());
   simulation.communicator().max(largest);
   return largest[1] > 0.0 ? largest[0] / largest[1] : 0.0;
 }

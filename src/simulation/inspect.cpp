@@ -55,9 +55,7 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(simulation.candidates().chain_vertices);
   add(simulation.history().regions);
   bytes += blocks.num_rows() * sizeof(BlockMotion);
-  bytes += simulation.contacts().regions().size() *
-           (sizeof(RegionForce) + sizeof(RegionSums) + sizeof(RegionMemory) +
-            (blocks.deformation.empty() ? 0 : sizeof(RegionDyads)));
+  bytes += simulation.contacts().regions().size() * (sizeof(RegionForce) + sizeof(RegionMemory));
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);
 }

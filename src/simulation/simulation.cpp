@@ -184,7 +184,8 @@ void Simulation::evaluate_contacts() {
     const auto scope = phases_.measure(Phase::forces);
     const std::int64_t coming = stage_step() + 1;
     const bool is_told = plan_.output_due(coming) || plan_.history_due(coming);
-    contacts_.evaluate_interior(blocks_, candidates_, history_, is_told ? Details::now : Details::on_demand);
+    contacts_.evaluate_interior(blocks_, candidates_, history_, is_told ? Details::now : Details::on_demand,
+                                Keep::waiting);
   }
   finish_ghosts();
   const auto scope = phases_.measure(Phase::forces);
@@ -208,11 +209,9 @@ void Simulation::take(const ForceReport &report) {
 // On each block in the order of its partners' ids.
 void Simulation::sum_contacts_of_blocks() {
   const auto scope = phases_.measure(Phase::forces);
-  contact_sums_.assign(blocks_.num_owned, {});
-  gradient_sums_.assign(blocks_.deformation.size(), {});
-  contact_count_ = add_contacts(candidates_, contacts_, blocks_, contact_sums_, gradient_sums_);
+  contact_count_ = contacts_.sums().finish(blocks_, candidates_);
   contacts_.add_dilation_works(candidates_, blocks_);
-  bolts_.add_forces(blocks_, contact_sums_);
+  bolts_.add_forces(blocks_, contacts_.sums().of_blocks());
   forces_.rigid.resize(blocks_.num_owned);
   forces_.gradient.resize(blocks_.deformation.size());
   forces_.wave = incoming_wave();
@@ -249,9 +248,9 @@ std::size_t Simulation::move_free_blocks(std::size_t first, const BodyForces &bo
     return first;
   }
   const auto scope = phases_.measure(Phase::update);
-  return advance_free_rows(blocks_,
-                           {contact_sums_, forces_.rigid, body.gravity, body.shaking, local_damping_},
-                           scheme_, plan_.time_step, first, blocks_.num_owned, broken);
+  return advance_free_rows(
+      blocks_, {contacts_.sums().of_blocks(), forces_.rigid, body.gravity, body.shaking, local_damping_},
+      scheme_, plan_.time_step, first, blocks_.num_owned, broken);
 }
 
 // The works of the ledger go by the trapezoid over increments of x*: half with the forces of the last
@@ -264,9 +263,10 @@ void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyFo
     const HalfWorks stretched =
         blocks_.is_deformable(row) ? half_works_on_gradient(blocks_.deformation_of(row)) : HalfWorks{};
     ledger.load_work += anchor_half_work(blocks_, row);
-    ledger.shear_force = contact_sums_[row].shear;
-    ledger.damping_force = contact_sums_[row].damping;
-    forces_.rigid[row] = contact_sums_[row].force;
+    const BlockContactSum &contacts = contacts_.sums().of_blocks()[row];
+    ledger.shear_force = contacts.shear;
+    ledger.damping_force = contacts.damping;
+    forces_.rigid[row] = contacts.force;
     const WaterLoad water =
         scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -body.gravity.y);
     gather_block(row, body, water);
@@ -304,7 +304,7 @@ void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   BlockLedger &ledger = blocks_.ledger[row];
   const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
   const BlockGradientSum sum =
-      in_reference_axes(gradient_sums_[blocks_.deformation_begin[row]], to_reference);
+      in_reference_axes(contacts_.sums().of_gradients()[blocks_.deformation_begin[row]], to_reference);
   d.shear_force = sum.shear;
   d.damping_force = sum.damping;
   d.load_force = unloading_of(blocks_.properties[row].id).gradient + water.dyad * transposed(to_reference);

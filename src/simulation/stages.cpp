@@ -120,9 +120,7 @@ void Simulation::look_at_stage() {
     mark.look = now;
     kinetic.add(kinetic_energy_of(blocks_, row));
   }
-  for (const RegionSums &force : contacts_.sums()) {
-    acting = std::max(acting, norm(force.force));
-  }
+  acting = std::max(acting, contacts_.sums().largest_force());
   overlap = force_report_.max_overlap;
   communicator_.max(largest);
   communicator_.sum(kinetic.limbs());

@@ -65,10 +65,10 @@ void general_pairs(benchmark::State &state) {
 
 void sums(benchmark::State &state) {
   Pile pile(state.range(0));
-  std::vector<BlockContactSum> sums(pile.blocks.num_owned);
+  ContactForces contacts(pile.simulation.contacts().parameters());
+  contacts.evaluate(pile.blocks, pile.candidates, pile.history);
   for ([[maybe_unused]] const auto _ : state) {
-    benchmark::DoNotOptimize(
-        add_contacts(pile.candidates, pile.simulation.contacts(), pile.blocks, sums, {}));
+    benchmark::DoNotOptimize(contacts.sums().finish(pile.blocks, pile.candidates));
   }
   per(state, pile.candidates.pairs.size());
 }

@@ -46,10 +46,8 @@ struct PlainPair {
   bool may_be_corners = false;
 
   /// Pairs of neighbouring numbers are evaluated together, while their blocks are in the cache.
-  [[nodiscard]] std::uint32_t group() const {
-    constexpr std::uint32_t pairs_in_cache = 1024;
-    return pair / pairs_in_cache;
-  }
+  static constexpr std::uint32_t pairs_in_group = 1024;
+  [[nodiscard]] std::uint32_t group() const { return pair / pairs_in_group; }
   /// May share an evaluation.
   [[nodiscard]] bool is_like(const PlainPair &other) const {
     return lower_edges == other.lower_edges && higher_edges == other.higher_edges &&
@@ -76,6 +74,10 @@ struct Candidates {
   std::vector<std::uint32_t> general; ///< numbers of all other pairs
   std::size_t num_interior_general = 0;
   std::vector<std::uint32_t> chain_vertices; ///< entries of BlockSystem::vertex
+  /// By owned row: all of its pairs are plain, without a ghost and of one law, and come in the order of the
+  /// other blocks' ids; see BlockSums.
+  std::vector<std::uint8_t> is_added;
+  std::vector<std::uint32_t> waiting; ///< numbers of the pairs of the others, in order
 };
 
 /// Most edges of one block of a plain pair.

@@ -29,10 +29,11 @@
 // sliding block.
 
 #include "gcpdda/base/instructions.hpp"
-#include "gcpdda/base/prefetch.hpp"
+#include "gcpdda/contact/block_sums.hpp"
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/dilation.hpp"
 #include "gcpdda/contact/overlap.hpp"
+#include "gcpdda/contact/region_sums.hpp"
 
 #include <array>
 #include <cstddef>
@@ -43,55 +44,6 @@
 #include <vector>
 
 namespace gcpdda {
-
-/// Torques of a region on the lower and the higher block of its pair, about their trial centroids, N.
-using PairTorques = std::array<double, 2>;
-
-/// One touching region: force on the lower block of its pair; the higher block gets the opposite at the same
-/// points. All that a step needs of two rigid blocks, together.
-struct RegionSums {
-  std::uint32_t pair = 0; ///< number of the candidate
-  BlockIndex lower;       ///< its rows
-  BlockIndex higher;
-  bool born = false;             ///< not there at the evaluation before
-  bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
-  bool bonded = false; ///< a bond (bonds.hpp): normal_force is minus its tension, which joins shear_force
-  // Four numbers each: the lanes write them so (lane_region.hpp).
-  Vec2 force; ///< normal, friction and dashpot, N/m
-  PairTorques torque{};
-  Vec2 shear_force; ///< elastic part of friction in `force`; acts at `point`
-  PairTorques shear_torque{};
-  Vec2 damping_force; ///< dashpots in `force`
-  PairTorques damping_torque{};
-};
-
-/// What else is known about it, see Details.
-struct RegionDetails {
-  Mat2 dyad;                 ///< int (x - origin) df^T, N
-  Vec2 origin;               ///< what dyads are about
-  Vec2 point;                ///< x_r
-  Vec2 normal;               ///< n_r
-  double normal_force = 0.0; ///< |N|
-  double shear = 0.0;        ///< friction and tangential dashpot along -t_r on the lower block
-  double cap = 0.0;          ///< N/m
-  double overlap = 0.0;      ///< thickness of the overlap along n_r, m
-  double extent_begin = 0.0; ///< of the pieces along t_r, from x_r, m
-  double extent_end = 0.0;
-};
-
-struct RegionForce : RegionSums, RegionDetails {};
-
-/// What contacts do to F of a deformable block, or of a row before its reference axes are known: int (x -
-/// x_c) df^T or int t X^T, N.
-struct BlockGradientSum {
-  Mat2 force;
-  Mat2 shear;
-  Mat2 damping;
-};
-
-/// The first of these of one region, with their signs, about the trial centroids of the lower and the higher
-/// block: of pairs with a deformable block.
-using RegionDyads = std::array<BlockGradientSum, 2>;
 
 /// How a trial configuration moved since the last evaluation: the material point now at x_c + r by
 /// u + turn(r).
@@ -170,51 +122,40 @@ public:
   [[nodiscard]] const ContactParameters &parameters() const { return parameters_; }
 
   /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory,
-  /// which moves on to this configuration.
+  /// which moves on to this configuration. Sums of all regions are kept.
   ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history) {
-    evaluate_interior(system, candidates, history);
+    evaluate_interior(system, candidates, history, Details::now, Keep::all);
     return evaluate_border(system, candidates, history);
   }
   /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
   void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
-                         Details details = Details::now);
+                         Details details, Keep keep);
   /// ... and then the rest.
   ForceReport evaluate_border(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history);
+
+  /// What the regions do to the blocks; those that wait have to be finished.
+  [[nodiscard]] BlockSums &sums() { return sums_; }
+  [[nodiscard]] const BlockSums &sums() const { return sums_; }
 
   /// The details of all regions, if they were not found with the last evaluation: as long as trial
   /// configuration and candidates are those of it.
   void find_details(const BlockSystem &system, const Candidates &candidates);
 
-  /// The sums of all touching regions, those of a pair together; region i is that of history.regions[i].
-  [[nodiscard]] std::span<const RegionSums> sums() const { return {sums_.data(), num_forces_}; }
-  /// Those of one pair.
-  [[nodiscard]] std::span<const RegionSums> sums_of_pair(std::size_t pair) const {
-    return {sums_.data() + ranges_[pair].begin, ranges_[pair].count};
-  }
-  /// Say that they will be asked for soon.
-  void fetch_sums(std::size_t pair) const {
-    prefetch(sums_.data() + ranges_[pair].begin, sizeof(RegionSums));
-  }
-
-  /// The same regions with their details, which must have been found.
+  /// All touching regions, those of a pair together, which must have been found with their details; region i
+  /// is that of history.regions[i].
   [[nodiscard]] std::span<const RegionForce> regions() const { return {forces_.data(), num_forces_}; }
   /// Those of one pair.
   [[nodiscard]] std::span<const RegionForce> of_pair(std::size_t pair) const {
     return {forces_.data() + ranges_[pair].begin, ranges_[pair].count};
   }
 
-  /// Of a pair with a deformable block.
-  [[nodiscard]] std::span<const RegionDyads> dyads_of_pair(std::size_t pair) const {
-    return {dyads_.data() + ranges_[pair].begin, ranges_[pair].count};
-  }
-
   /// What slip has done against the pressure in the last evaluation, off the work of friction in the ledger
   /// of each block.
   void add_dilation_works(const Candidates &candidates, BlockSystem &system);
 
-  /// Replace the shear of a region, friction alone; for the initial state. Arms of x_r from the trial
-  /// centroids.
+  /// Replace the shear of a region, friction alone; for the initial state, where all are kept. Arms of x_r
+  /// from the trial centroids.
   void set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm);
 
 private:
@@ -248,10 +189,12 @@ private:
                     std::size_t last);
   void evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries);
   void evaluate_known(const PlainScene &scene);
-  /// Places for the lanes that touch, and what of them is known already.
-  PlainResults open_regions(const PlainLanes &lanes, unsigned touching, Details details);
+  /// Places for the lanes that touch.
+  PlainResults open_regions(const PlainLanes &lanes, unsigned touching);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, unsigned by_faces);
+  /// What lanes do not know of them.
+  static void note_details(const PlainLanes &lanes, std::size_t lane, RegionDetails &details);
   /// Once more, with details.
   void store_again(const PlainLanes &lanes, unsigned touching);
   /// Visit entries of Candidates::plain that are alike, as many at a time as there are lanes.
@@ -311,9 +254,10 @@ private:
   std::vector<std::uint32_t> others_;    ///< those of them that are not one corner in another
   std::vector<std::uint32_t> births_;    ///< plain pairs whose new regions must choose among laws
   std::array<CandidatePair, 8> own_;     ///< constants of mixed pairs at hand, by lane
-  // The first num_forces_ of both; the others are of evaluations before and spare making new ones.
-  std::vector<RegionSums> sums_;
-  std::vector<RegionForce> forces_; ///< no longer than regions with details need
+  BlockSums sums_;
+  // The first num_forces_; the others are of evaluations before and spare making new ones. No longer than
+  // regions with details need.
+  std::vector<RegionForce> forces_;
   std::size_t num_forces_ = 0;
   Details details_ = Details::now; ///< asked for with the evaluation
   bool has_details_ = true;
@@ -323,7 +267,8 @@ private:
   ContactHistory next_;
   std::vector<BlockMotion> motions_;      ///< one a row
   std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation
-  std::vector<RegionDyads> dyads_;        ///< by region, at least up to the last with a deformable block
+  std::size_t first_of_pair_ = 0;         ///< region of the pair at hand
+  std::vector<RegionDyads> dyads_;        ///< of its regions, if a block deforms
   Mat2 damping_dyad_;                     ///< of the region at hand, about its origin
   std::vector<BondAtWork> bonds_;         ///< of the pair at hand
   std::vector<double> facing_;            ///< of the pieces at hand, scratch
@@ -340,23 +285,7 @@ private:
 /// Of one block, in the order of the other blocks' ids.
 BlockContactSum sum_contacts(const Candidates &candidates, const ContactForces &contacts, std::size_t row);
 
-/// One rank counts what is known of a pair.
-bool counts_here(const BlockSystem &system, BlockIndex lower);
-
-/// Pairs that touch and count on this rank.
-struct ContactCount {
-  std::int64_t touching = 0;
-  std::int64_t crossing = 0;        ///< the other block is a ghost
-  std::int64_t crossing_formed = 0; ///< and they did not touch at the evaluation before
-};
-
-/// The same sums of all owned rows, bit by bit, added to those by row; and on F of owned deformable rows,
-/// about their centroids, to those by entry of BlockSystem::deformation.
-ContactCount add_contacts(const Candidates &candidates, const ContactForces &contacts,
-                          const BlockSystem &system, std::span<BlockContactSum> sums,
-                          std::span<BlockGradientSum> gradient_sums);
-
-/// int t X^T with X = F^-1 (x - x_c) of what add_contacts() has added.
+/// int t X^T with X = F^-1 (x - x_c) of what BlockSums has added.
 BlockGradientSum in_reference_axes(const BlockGradientSum &sum, const Mat2 &to_reference);
 
 /// (1/area) int sym(x f) of a block's contacts about its trial centroid: xx, yy, xy in Pa, tension positive.

@@ -310,9 +310,7 @@ private:
   SceneIdentity identity_;
   std::optional<Restored> restored_;
   ForceReport force_report_;
-  std::vector<BlockContactSum> contact_sums_;
-  std::vector<BlockGradientSum> gradient_sums_; ///< by entry of BlockSystem::deformation
-  ContactCount contact_count_;                  ///< at the last evaluation
+  ContactCount contact_count_; ///< at the last evaluation
   std::optional<Fault> local_fault_;
   std::optional<Fault> fault_;
   Counters counters_;

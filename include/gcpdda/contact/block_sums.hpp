@@ -1,0 +1,107 @@
+#pragma once
+
+// What contacts do to each owned block, added up while their regions are still in the cache.
+//
+// A block adds its contacts in the order of its partners' ids, or its last bits would depend on the ranks.
+// Pairs ascend by (lower id, higher id), so a block meets its partners in that order if its pairs are added
+// as they ascend. Plain pairs without a ghost are evaluated by groups that ascend: what a group does is added
+// at once, and its regions are overwritten by those of the next one. Blocks that have some other pair as well
+// have to wait for it (Candidates::is_added); regions on them are kept, and finish() adds them. These are
+// few: blocks at the border of a domain, and those of odd shape.
+
+#include "gcpdda/contact/candidates.hpp"
+#include "gcpdda/contact/region_sums.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gcpdda {
+
+/// Pairs that touch and count on this rank.
+struct ContactCount {
+  std::int64_t touching = 0;
+  std::int64_t crossing = 0;        ///< the other block is a ghost
+  std::int64_t crossing_formed = 0; ///< and they did not touch at the evaluation before
+
+  ContactCount &operator+=(const ContactCount &other);
+};
+
+/// Which regions are kept until finish(): those on blocks that wait, or all, which may be changed then.
+enum class Keep { waiting, all };
+
+/// One rank counts what is known of a pair.
+bool counts_here(const BlockSystem &system, BlockIndex lower);
+
+class BlockSums {
+public:
+  void start(const BlockSystem &system, const Candidates &candidates, Keep keep);
+
+  /// Place for what the only region of a plain pair of the group at hand does.
+  RegionSums &open(std::uint32_t pair, bool born) {
+    const std::uint32_t slot = pair % PlainPair::pairs_in_group;
+    touched_[slot / 64] |= std::uint64_t{1} << slot % 64;
+    born_[slot / 64] |= std::uint64_t{born} << slot % 64;
+    return group_[slot];
+  }
+  RegionDyads &dyads(std::uint32_t pair) { return group_dyads_[pair % PlainPair::pairs_in_group]; }
+  /// All pairs of a group have been evaluated.
+  void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
+  /// All regions of some other pair.
+  /// @param dyads  theirs, or none
+  void keep(std::uint32_t pair, std::span<const RegionForce> regions, std::span<const RegionDyads> dyads);
+  /// What has been kept, on blocks that wait for it. May be called again after a change.
+  ContactCount finish(const BlockSystem &system, const Candidates &candidates);
+
+  /// Region `number` of a pair, of those that are kept.
+  RegionSums &kept(std::uint32_t pair, std::size_t number) {
+    return kept_[kept_range_[pair].begin + number].sums;
+  }
+  /// Null where no block deforms.
+  RegionDyads *kept_dyads(std::uint32_t pair, std::size_t number) {
+    return has_dyads_ ? &kept_dyads_[kept_range_[pair].begin + number] : nullptr;
+  }
+
+  // By row of the owned blocks, and by entry of BlockSystem::deformation.
+  [[nodiscard]] std::span<BlockContactSum> of_blocks() { return sums_; }
+  [[nodiscard]] std::span<const BlockContactSum> of_blocks() const { return sums_; }
+  [[nodiscard]] std::span<const BlockGradientSum> of_gradients() const { return gradients_; }
+  /// Of all regions, N/m.
+  [[nodiscard]] double largest_force() const;
+
+private:
+  struct KeptRegion {
+    RegionSums sums;
+    bool born = false;
+  };
+  using Group = std::array<std::uint64_t, PlainPair::pairs_in_group / 64>; ///< a bit a pair
+
+  /// When a row gets what a group does: not at all where it is not owned.
+  enum class When { at_once, later, never };
+  [[nodiscard]] When when(BlockIndex row) const {
+    if (row.value >= is_added_.size()) {
+      return When::never;
+    }
+    return keep_ == Keep::all || is_added_[row.value] == 0 ? When::later : When::at_once;
+  }
+  void add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads);
+
+  Keep keep_ = Keep::all;
+  bool has_dyads_ = false;
+  std::span<const std::uint8_t> is_added_; ///< Candidates::is_added
+  std::vector<BlockContactSum> sums_;
+  std::vector<BlockGradientSum> gradients_;
+  ContactCount count_; ///< of pairs that are not kept
+  double largest_squared_ = 0.0;
+  // Of the group at hand, by pair.
+  std::vector<RegionSums> group_;
+  std::vector<RegionDyads> group_dyads_; ///< if some block deforms
+  Group touched_{};
+  Group born_{};
+  std::vector<RegionRange> kept_range_; ///< of kept_, by pair
+  std::vector<KeptRegion> kept_;
+  std::vector<RegionDyads> kept_dyads_;
+};
+
+} // namespace gcpdda

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "gcpdda/base/ids.hpp"
+#include "gcpdda/geometry/mat2.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace gcpdda {
+
+/// Torques of a region on the lower and the higher block of its pair, about their trial centroids, N.
+using PairTorques = std::array<double, 2>;
+
+/// One touching region: force on the lower block of its pair; the higher block gets the opposite at the same
+/// points. All that a step needs of two rigid blocks, together. Four numbers each: the lanes write them so
+/// (lane_region.hpp).
+struct RegionSums {
+  Vec2 force; ///< normal, friction and dashpot, N/m
+  PairTorques torque{};
+  Vec2 shear_force; ///< elastic part of friction in `force`; acts at `point`
+  PairTorques shear_torque{};
+  Vec2 damping_force; ///< dashpots in `force`
+  PairTorques damping_torque{};
+};
+
+/// What else is known about it, see Details. Four numbers each at first, as above.
+struct RegionDetails {
+  Mat2 dyad;                 ///< int (x - origin) df^T, N
+  Vec2 origin;               ///< what dyads are about
+  Vec2 point;                ///< x_r
+  Vec2 normal;               ///< n_r
+  double normal_force = 0.0; ///< |N|
+  double shear = 0.0;        ///< friction and tangential dashpot along -t_r on the lower block
+  double cap = 0.0;          ///< N/m
+  double overlap = 0.0;      ///< thickness of the overlap along n_r, m
+  double extent_begin = 0.0; ///< of the pieces along t_r, from x_r, m
+  double extent_end = 0.0;
+  std::uint32_t pair = 0;        ///< number of the candidate
+  bool born = false;             ///< not there at the evaluation before
+  bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
+  bool bonded = false; ///< a bond (bonds.hpp): normal_force is minus its tension, which joins shear_force
+};
+
+struct RegionForce : RegionSums, RegionDetails {};
+
+/// What contacts do to F of a deformable block, or of a row before its reference axes are known: int (x -
+/// x_c) df^T or int t X^T, N.
+struct BlockGradientSum {
+  Mat2 force;
+  Mat2 shear;
+  Mat2 damping;
+};
+
+/// The first of these of one region, with their signs, about the trial centroids of the lower and the higher
+/// block: of pairs with a deformable block.
+using RegionDyads = std::array<BlockGradientSum, 2>;
+
+} // namespace gcpdda
