@@ -3,12 +3,13 @@
 // What block_lanes.hpp promises, with one block in each lane.
 
 #include "lane_deformable.hpp"
+#include "lane_gather.hpp"
 #include "lane_pose.hpp"
 #include "lane_rigid.hpp"
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-constexpr BlockLanes blocks{num_lanes, pose_rigid_quads, pose_deformable_quads, step_deformables,
-                            step_free_rows};
+constexpr BlockLanes blocks{num_lanes,        pose_rigid_quads, pose_deformable_quads,
+                            step_deformables, step_free_rows,   gather_deformables};
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

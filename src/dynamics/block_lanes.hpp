@@ -59,6 +59,9 @@ using StepDeformables = unsigned (*)(BlockSystem &system, DeformableLanes &lanes
 using StepFreeRows = unsigned (*)(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                   const Scheme &scheme, double time_step);
 
+/// Does to rows [first, first + width) what gather_free_deformables() says.
+using GatherDeformables = void (*)(BlockSystem &system, std::size_t first, const FreeRows &rows);
+
 /// Rows, no more than there are lanes.
 using RowsAtOnce = std::span<const std::size_t>;
 
@@ -71,6 +74,7 @@ struct BlockLanes {
   PoseQuads pose_deformable_quads;
   StepDeformables step_deformables;
   StepFreeRows step_free_rows;
+  GatherDeformables gather_deformables;
 };
 
 /// All instructions give the same bits.

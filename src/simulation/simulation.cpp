@@ -244,20 +244,35 @@ void Simulation::move_blocks() {
 // Most blocks of most scenes are rigid, and only others act on them: with all that follows in one go.
 std::size_t Simulation::move_free_blocks(std::size_t first, const BodyForces &body,
                                          std::optional<std::size_t> &broken) {
-  if (!scene_.water.empty() || !stage_.unloading.empty() || scene_.run.rayleigh.mass_damping != 0.0) {
+  if (!has_free_rows()) {
     return first;
   }
   const auto scope = phases_.measure(Phase::update);
-  return advance_free_rows(
-      blocks_, {contacts_.sums().of_blocks(), forces_.rigid, body.gravity, body.shaking, local_damping_},
-      scheme_, plan_.time_step, first, blocks_.num_owned, broken);
+  return advance_free_rows(blocks_, free_rows(body), scheme_, plan_.time_step, first, blocks_.num_owned,
+                           broken);
+}
+
+bool Simulation::has_free_rows() const {
+  return scene_.water.empty() && stage_.unloading.empty() && scene_.run.rayleigh.mass_damping == 0.0;
+}
+
+FreeRows Simulation::free_rows(const BodyForces &body) {
+  return {contacts_.sums().of_blocks(),    forces_.rigid,   body.gravity, body.shaking, local_damping_,
+          contacts_.sums().of_gradients(), forces_.gradient};
 }
 
 // The works of the ledger go by the trapezoid over increments of x*: half with the forces of the last
 // evaluation, half with those of this one.
 void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
   const auto scope = phases_.measure(Phase::forces);
+  const bool are_gathered_together = has_free_rows() && bolts_.empty();
   for (std::size_t row = first; row < last; ++row) {
+    if (are_gathered_together) {
+      row = gather_free_deformables(blocks_, free_rows(body), row, last);
+      if (row == last) {
+        break;
+      }
+    }
     BlockLedger &ledger = blocks_.ledger[row];
     const BlockLedger before = ledger;
     const HalfWorks stretched =

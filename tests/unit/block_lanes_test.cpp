@@ -177,9 +177,18 @@ Scene with_loads_of_nothing(Scene scene) {
   return scene;
 }
 
-TEST(FreeRows, MoveAsOneByOne) {
+void expect_same(const Deformation &a, const Deformation &b) {
+  EXPECT_EQ(a.gradient, b.gradient);
+  EXPECT_EQ(a.shear_force, b.shear_force);
+  EXPECT_EQ(a.damping_force, b.damping_force);
+  EXPECT_EQ(a.load_force, b.load_force);
+}
+
+void expect_same_motion(const std::vector<std::string> &sets) {
   for (const char *damping : {"run.local_damping=0.0", "run.local_damping=0.7"}) {
-    const Scene scene = testing::scene_of(testing::falling_pile_toml(45, 0.2), {damping});
+    std::vector<std::string> all = sets;
+    all.emplace_back(damping);
+    const Scene scene = testing::scene_of(testing::falling_pile_toml(45, 0.2), all);
     Simulation together(Communicator::self(), scene);
     Simulation one_by_one(Communicator::self(), with_loads_of_nothing(scene));
     while (!together.finished() && together.step_count() < 600) {
@@ -198,7 +207,21 @@ TEST(FreeRows, MoveAsOneByOne) {
       friction += std::abs(together.blocks().ledger[row].shear_work);
     }
     EXPECT_GT(friction, 0.0) << "blocks that touch";
+    for (std::size_t k = 0; k < together.blocks().deformation.size(); ++k) {
+      SCOPED_TRACE(k);
+      expect_same(together.blocks().deformation[k], one_by_one.blocks().deformation[k]);
+      EXPECT_EQ(together.forces().gradient[k], one_by_one.forces().gradient[k]);
+    }
   }
+}
+
+TEST(FreeRows, MoveAsOneByOne) {
+  expect_same_motion({});
+}
+
+TEST(FreeRows, AreGatheredAsOneByOneWhereTheyDeform) {
+  expect_same_motion({R"(run.fidelity="deformable")", "material.rock.youngs_modulus=1e9",
+                      "material.rock.poissons_ratio=0.25"});
 }
 
 constexpr std::size_t num_free = 29;

@@ -2,6 +2,7 @@
 
 #include "gcpdda/base/ids.hpp"
 #include "gcpdda/geometry/mat2.hpp"
+#include "gcpdda/model/block_system.hpp"
 
 #include <array>
 #include <cstdint>
@@ -43,15 +44,7 @@ struct RegionDetails {
 
 struct RegionForce : RegionSums, RegionDetails {};
 
-/// What contacts do to F of a deformable block, or of a row before its reference axes are known: int (x -
-/// x_c) df^T or int t X^T, N.
-struct BlockGradientSum {
-  Mat2 force;
-  Mat2 shear;
-  Mat2 damping;
-};
-
-/// The first of these of one region, with their signs, about the trial centroids of the lower and the higher
+/// BlockGradientSum of one region, with its signs, about the trial centroids of the lower and the higher
 /// block: of pairs with a deformable block.
 using RegionDyads = std::array<BlockGradientSum, 2>;
 

@@ -109,15 +109,26 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
 
-/// What acts on free rigid rows: those without point loads, fixed points, viscous sides and water, which heed
-/// forces.
+/// What acts on free rows: those without point loads, fixed points, viscous sides, bolts and water, which
+/// heed forces.
 struct FreeRows {
   std::span<const BlockContactSum> contacts; ///< by row
   std::span<RigidDof> forces;                ///< out, by row: in all
   Vec2 gravity;
   Vec2 shaking; ///< acceleration of the ground
   double local_damping = 0.0;
+  // Of deformable rows, by entry of BlockSystem::deformation.
+  std::span<const BlockGradientSum> gradients{}; ///< about their trial centroids
+  std::span<Mat2> gradient_forces{};             ///< out: on F
 };
+
+/// Gathers the forces on free deformable rows from `first` on, several at a time, as far as they come one
+/// behind the other, with local damping and the works of the ledger, to the bits that one after the other
+/// would have.
+///
+/// @return the first row that is left
+std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, std::size_t first,
+                                    std::size_t last, Instructions instructions = Instructions::widest);
 
 /// Advances free rigid rows from `first` on, several at a time, as far as they come one behind the other: the
 /// forces of their contacts and loads, local damping, the works of the ledger by the trapezoid over

@@ -43,6 +43,9 @@ struct LaneMat {
   [[gnu::always_inline]] friend LaneMat transposed(const LaneMat &a) {
     return {{a.xx(), a.yx(), a.xy(), a.yy()}};
   }
+  [[gnu::always_inline]] friend Lanes contract(const LaneMat &a, const LaneMat &b) {
+    return a.xx() * b.xx() + a.xy() * b.xy() + a.yx() * b.yx() + a.yy() * b.yy();
+  }
   [[gnu::always_inline]] friend Lanes determinant(const LaneMat &a) {
     return a.xx() * a.yy() - a.xy() * a.yx();
   }

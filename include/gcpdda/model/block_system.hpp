@@ -124,6 +124,14 @@ struct BlockContactSum {
   RigidDof damping; ///< dashpots in it
 };
 
+/// What contacts do to F of a deformable block, or of a row before its reference axes are known: int (x -
+/// x_c) df^T or int t X^T, N.
+struct BlockGradientSum {
+  Mat2 force;
+  Mat2 shear;
+  Mat2 damping;
+};
+
 /// What the energy ledger carries for one block: forces of the last evaluation and their work so far over
 /// increments of the trial configuration.
 struct BlockLedger {

@@ -265,6 +265,9 @@ private:
     Vec2 gravity;
     Vec2 shaking; ///< acceleration of the ground
   };
+  /// May there be any?
+  [[nodiscard]] bool has_free_rows() const;
+  [[nodiscard]] FreeRows free_rows(const BodyForces &body);
   std::size_t move_free_blocks(std::size_t first, const BodyForces &body, std::optional<std::size_t> &broken);
   void gather_forces(std::size_t first, std::size_t last, const BodyForces &body);
   void gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
