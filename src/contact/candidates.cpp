@@ -246,8 +246,8 @@ void order_evaluation(const BlockSystem &system, Candidates &candidates) {
     return is_ghost(pair.lower) || is_ghost(pair.higher);
   };
   const auto order = [&](const PlainPair &plain) {
-    return std::tuple(has_ghost(plain.pair), plain.group(), plain.is_deformable, plain.lower_edges,
-                      plain.higher_edges, plain.may_be_corners);
+    return std::tuple(has_ghost(plain.pair), plain.group(), plain.kind.is_deformable, plain.kind.lower_edges,
+                      plain.kind.higher_edges, plain.kind.may_be_corners);
   };
   std::stable_sort(candidates.plain.begin(), candidates.plain.end(),
                    [&](const PlainPair &a, const PlainPair &b) { return order(a) < order(b); });
@@ -401,14 +401,17 @@ Candidates make_candidates(const BlockSystem &system,
     candidate.is_plain = is_plain;
     candidates.pairs.push_back(candidate);
     if (is_plain) {
-      candidates.plain.push_back({static_cast<std::uint32_t>(candidates.pairs.size() - 1), lower, higher,
-                                  static_cast<std::uint32_t>(candidates.chain_vertices.size()),
-                                  static_cast<std::uint8_t>(lower_chain.count),
-                                  static_cast<std::uint8_t>(higher_chain.count),
-                                  finder.is_deformable(lower.value, higher.value), candidate.is_mixed,
-                                  lower_chain.count > 1 && higher_chain.count > 1 &&
-                                      system.num_vertices(lower.value) <= most_corner_edges &&
-                                      system.num_vertices(higher.value) <= most_corner_edges});
+      candidates.plain.push_back(
+          {static_cast<std::uint32_t>(candidates.pairs.size() - 1),
+           lower,
+           higher,
+           static_cast<std::uint32_t>(candidates.chain_vertices.size()),
+           {static_cast<std::uint8_t>(lower_chain.count), static_cast<std::uint8_t>(higher_chain.count),
+            finder.is_deformable(lower.value, higher.value),
+            lower_chain.count > 1 && higher_chain.count > 1 &&
+                system.num_vertices(lower.value) <= most_corner_edges &&
+                system.num_vertices(higher.value) <= most_corner_edges},
+           candidate.is_mixed});
       append_chain(system, lower.value, lower_chain, candidates.chain_vertices);
       append_chain(system, higher.value, higher_chain, candidates.chain_vertices);
     }

@@ -122,12 +122,16 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   PlainLanes lanes;
   lanes.count = entries.size();
   const std::size_t width = batch_->width();
+  const PlainPair *plains = scene.candidates.plain.data();
+  const CandidatePair *pairs = scene.candidates.pairs.data();
+  const RegionRange *ranges = scene.history.ranges.data();
+  const RegionMemory *regions = scene.history.regions.data();
   for (std::size_t i = 0; i < width; ++i) {
-    const PlainPair &plain = scene.candidates.plain[entries[std::min(i, entries.size() - 1)]];
-    const RegionRange &old = scene.history.ranges[plain.pair];
+    const PlainPair &plain = plains[entries[std::min(i, entries.size() - 1)]];
+    const RegionRange &old = ranges[plain.pair];
     lanes.pair[i] = &plain;
-    lanes.constants[i] = &scene.candidates.pairs[plain.pair];
-    lanes.memory[i] = old.count == 0 ? &PlainLanes::no_memory : scene.history.regions.data() + old.begin;
+    lanes.constants[i] = pairs + plain.pair;
+    lanes.memory[i] = old.count == 0 ? &PlainLanes::no_memory : regions + old.begin;
     if (plain.is_mixed && old.count > 0 && lanes.memory[i]->law != lanes.constants[i]->law) {
       own_[i] = constants_of(scene.system, parameters_, *lanes.constants[i], lanes.memory[i]->law);
       lanes.constants[i] = &own_[i];
@@ -166,7 +170,7 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
   if (results.has_details) {
     grow(forces_, num_forces_ + lanes.count);
   }
-  results.has_dyads = lanes.pair[0]->is_deformable;
+  results.has_dyads = lanes.pair[0]->kind.is_deformable;
   for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
@@ -261,7 +265,7 @@ void ContactForces::for_batches(const Candidates &candidates, const ContactHisto
 void ContactForces::evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries) {
   others_.clear();
   for_batches(scene.candidates, scene.history, entries, [&](std::span<const std::uint32_t> batch) {
-    if (scene.candidates.plain[batch[0]].may_be_corners) {
+    if (scene.candidates.plain[batch[0]].kind.may_be_corners) {
       evaluate_alike(scene, batch, Way::corners);
     } else {
       others_.insert(others_.end(), batch.begin(), batch.end());
@@ -309,23 +313,22 @@ void ContactForces::find_meeting(const Candidates &candidates, const ContactHist
   meeting_.resize(last - first);
   faces_.resize(last - first);
   strangers_.resize(last - first);
-  std::size_t num_known = 0;
-  std::size_t num_faces = 0;
-  std::size_t num_strangers = 0;
+  std::array<std::uint32_t *, 3> end{strangers_.data(), meeting_.data(), faces_.data()};
+  const BlockMotion *motions = motions_.data();
   for (std::size_t k = first; k < last; ++k) {
     const PlainPair &plain = candidates.plain[k];
-    meeting_[num_known] = faces_[num_faces] = strangers_[num_strangers] = static_cast<std::uint32_t>(k);
-    const bool meets = motions_[plain.lower.value].box.meets(motions_[plain.higher.value].box);
     const bool is_known = history.ranges[plain.pair].count > 0;
-    const bool by_faces = history.by_faces[plain.pair] != 0;
-    num_known += meets && is_known && !by_faces ? 1 : 0;
-    num_faces += meets && is_known && by_faces ? 1 : 0;
-    num_strangers += meets && !is_known ? 1 : 0;
+    std::uint32_t *&to = end[is_known ? 1U + history.by_faces[plain.pair] : 0U];
+    *to = static_cast<std::uint32_t>(k);
+    to += motions[plain.lower.value].box.meets(motions[plain.higher.value].box) ? 1 : 0;
   }
-  meeting_.resize(num_known);
-  faces_.resize(num_faces);
-  strangers_.resize(num_strangers);
-  report_.evaluations += static_cast<std::int64_t>(num_known + num_faces + num_strangers);
+  const auto cut = [&](std::vector<std::uint32_t> &list, const std::uint32_t *list_end) {
+    list.resize(static_cast<std::size_t>(list_end - list.data()));
+    report_.evaluations += std::ssize(list);
+  };
+  cut(strangers_, end[0]);
+  cut(meeting_, end[1]);
+  cut(faces_, end[2]);
 }
 
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,

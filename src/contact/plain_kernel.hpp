@@ -73,7 +73,7 @@ struct LaneBatch::Pairs {
   [[gnu::always_inline]] Pairs(const Candidates &candidates, const PlainLanes &given)
       : lanes(given), first(*given.pair[0]) {
     const std::uint32_t *chains = candidates.chain_vertices.data();
-    const std::size_t higher_chain = first.lower_edges + std::size_t{1};
+    const std::size_t higher_chain = first.kind.lower_edges + std::size_t{1};
     for (std::size_t i = 0; i < num_lanes; ++i) {
       const PlainPair &plain = *lanes.pair[i];
       lower.row[i] = plain.lower.value;
@@ -234,7 +234,7 @@ void LaneBatch::add_friction_and_dashpots(const PlainScene &scene, const Pairs &
     }
     regions_.find_torques(motion);
   };
-  if (pairs.first.is_deformable) {
+  if (pairs.first.kind.is_deformable) {
     add_with(DeformingMotion(scene, pairs.lower, pairs.higher));
   } else {
     add_with(RigidMotion(pairs.lower, pairs.higher));
@@ -255,12 +255,12 @@ inline PlainBatch::Faces LaneBatch::evaluate(const PlainScene &scene, const Plai
   const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
     load_chain(scene.system, blocks, edges, side);
     load_box(blocks, side);
-    if (pairs.first.is_deformable) {
+    if (pairs.first.kind.is_deformable) {
       load_deformed_slopes(scene, blocks, edges - 1, side);
     }
   };
-  load(pairs.lower, pairs.first.lower_edges, lower_);
-  load(pairs.higher, pairs.first.higher_edges, higher_);
+  load(pairs.lower, pairs.first.kind.lower_edges, lower_);
+  load(pairs.higher, pairs.first.kind.higher_edges, higher_);
   cut_edges(lower_, higher_, on_lower_);
   cut_edges(higher_, lower_, on_higher_);
   integrate();
@@ -337,8 +337,8 @@ template <std::size_t edges> struct LaneBatch::CornerPairs {
   CornerOverlap<edges> overlap;
 
   [[gnu::always_inline]] CornerPairs(const BlockSystem &system, const Pairs &pairs)
-      : last_lower(pairs.first.lower_edges - std::size_t{1}),
-        last_higher(pairs.first.higher_edges - std::size_t{1}) {
+      : last_lower(pairs.first.kind.lower_edges - std::size_t{1}),
+        last_higher(pairs.first.kind.higher_edges - std::size_t{1}) {
     each<edges>([&](auto k) __attribute__((always_inline)) {
       load_edge(system, pairs.lower, std::min<std::size_t>(k, last_lower), k, lower);
       load_edge(system, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
@@ -351,7 +351,7 @@ PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const P
   CornerPairs<edges> corners(scene.system, pairs);
   load_box(pairs.lower, corners.lower);
   load_box(pairs.higher, corners.higher);
-  if (pairs.first.is_deformable) {
+  if (pairs.first.kind.is_deformable) {
     corners.lower.edges = edges;
     corners.higher.edges = edges;
     load_deformed_slopes(scene, pairs.lower, corners.last_lower, corners.lower);
@@ -361,8 +361,8 @@ PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const P
   const Mask valid = overlap.find(corners.lower, corners.higher);
   Corners result;
   if ((!valid).any()) {
-    corners.lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.lower_edges);
-    corners.higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.higher_edges);
+    corners.lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.kind.lower_edges);
+    corners.higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.kind.higher_edges);
     const Mask apart = are_apart<edges>(corners.lower, corners.higher);
     result.apart = (apart & !valid).by_lane();
     if (!valid.any()) {
@@ -392,7 +392,7 @@ PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const P
 
 template <class Visit> auto LaneBatch::with_corner_edges(const PlainPair &pair, Visit &&visit) {
   static_assert(most_corner_edges == 4);
-  switch (std::max(pair.lower_edges, pair.higher_edges)) {
+  switch (std::max(pair.kind.lower_edges, pair.kind.higher_edges)) {
   case 2:
     return visit(std::integral_constant<std::size_t, 2>{});
   case 3:
@@ -431,8 +431,8 @@ inline PlainBatch::Energies LaneBatch::find_corner_energies(const BlockSystem &s
 inline PlainBatch::Energies LaneBatch::find_energies(const BlockSystem &system, const Candidates &candidates,
                                                      const PlainLanes &lanes) {
   const Pairs pairs(candidates, lanes);
-  load_chain(system, pairs.lower, pairs.first.lower_edges, lower_);
-  load_chain(system, pairs.higher, pairs.first.higher_edges, higher_);
+  load_chain(system, pairs.lower, pairs.first.kind.lower_edges, lower_);
+  load_chain(system, pairs.higher, pairs.first.kind.higher_edges, higher_);
   load_box(system, pairs.lower, lower_);
   load_box(system, pairs.higher, higher_);
   cut_edges(lower_, higher_, on_lower_);

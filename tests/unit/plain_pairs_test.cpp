@@ -250,7 +250,7 @@ TEST(PlainPairs, AgreeWhereBlocksDeform) {
 /// Pairs whose corners are looked for first.
 std::ptrdiff_t num_with_corners(const Candidates &candidates) {
   return std::count_if(candidates.plain.begin(), candidates.plain.end(),
-                       [](const PlainPair &plain) { return plain.may_be_corners; });
+                       [](const PlainPair &plain) { return plain.kind.may_be_corners; });
 }
 
 TEST(PlainPairs, AgreeWhereCornersOverlap) {

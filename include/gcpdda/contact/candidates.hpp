@@ -5,6 +5,7 @@
 #include "gcpdda/model/contact_history.hpp"
 #include "gcpdda/model/scene.hpp"
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -38,20 +39,22 @@ struct PlainPair {
   BlockIndex higher;
   std::uint32_t chain = 0; ///< Candidates::chain_vertices from here on: the ends of the lower block's edges,
                            ///< one more than edges, then those of the higher one's
-  std::uint8_t lower_edges = 0;
-  std::uint8_t higher_edges = 0;
-  bool is_deformable = false; ///< at least one block is
-  bool is_mixed = false;      ///< CandidatePair::is_mixed
-  /// Neither block has more than most_corner_edges edges, and each a corner in its chain.
-  bool may_be_corners = false;
+  /// Pairs that have these in common may share an evaluation.
+  struct Kind {
+    std::uint8_t lower_edges = 0;
+    std::uint8_t higher_edges = 0;
+    bool is_deformable = false; ///< at least one block is
+    /// Neither block has more than most_corner_edges edges, and each a corner in its chain.
+    bool may_be_corners = false;
+  };
+  Kind kind;
+  bool is_mixed = false; ///< CandidatePair::is_mixed
 
   /// Pairs of neighbouring numbers are evaluated together, while their blocks are in the cache.
   static constexpr std::uint32_t pairs_in_group = 1024;
   [[nodiscard]] std::uint32_t group() const { return pair / pairs_in_group; }
-  /// May share an evaluation.
   [[nodiscard]] bool is_like(const PlainPair &other) const {
-    return lower_edges == other.lower_edges && higher_edges == other.higher_edges &&
-           is_deformable == other.is_deformable && may_be_corners == other.may_be_corners;
+    return std::bit_cast<std::uint32_t>(kind) == std::bit_cast<std::uint32_t>(other.kind);
   }
 };
 
