@@ -104,7 +104,7 @@ void BlockSums::close_group(const BlockSystem &system, const Candidates &candida
   for (std::size_t word = 0; word < touched_.size(); ++word) {
     for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
       const std::size_t slot = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
-      const auto number = static_cast<std::uint32_t>(group * PlainPair::pairs_in_group + slot);
+      const std::uint32_t number = group * PlainPair::pairs_in_group + static_cast<std::uint32_t>(slot);
       const CandidatePair &pair = candidates.pairs[number];
       const RegionSums &region = group_[slot];
       const bool born = (born_[word] >> slot % 64 & 1U) != 0;

@@ -299,6 +299,26 @@ void append_chain(const BlockSystem &system, std::size_t row, const EdgeChain &c
   }
 }
 
+/// The last of all pairs is a plain one.
+void append_plain(const BlockSystem &system, const ChainFinder &finder, const EdgeChain &lower_chain,
+                  const EdgeChain &higher_chain, Candidates &candidates) {
+  const CandidatePair &pair = candidates.pairs.back();
+  const std::uint32_t lower = pair.lower.value;
+  const std::uint32_t higher = pair.higher.value;
+  candidates.plain.push_back(
+      {static_cast<std::uint32_t>(candidates.pairs.size() - 1),
+       pair.lower,
+       pair.higher,
+       static_cast<std::uint32_t>(candidates.chain_vertices.size()),
+       {static_cast<std::uint8_t>(lower_chain.count), static_cast<std::uint8_t>(higher_chain.count),
+        finder.is_deformable(lower, higher),
+        lower_chain.count > 1 && higher_chain.count > 1 && system.num_vertices(lower) <= most_corner_edges &&
+            system.num_vertices(higher) <= most_corner_edges},
+       pair.is_mixed});
+  append_chain(system, lower, lower_chain, candidates.chain_vertices);
+  append_chain(system, higher, higher_chain, candidates.chain_vertices);
+}
+
 /// Pairs ascend by (lower, higher): a block meets all lower partners, by id, before all higher ones, by id.
 void list_contacts_of_blocks(const BlockSystem &system, Candidates &candidates) {
   candidates.contact_begin.assign(system.num_owned + 1, 0);
@@ -401,19 +421,7 @@ Candidates make_candidates(const BlockSystem &system,
     candidate.is_plain = is_plain;
     candidates.pairs.push_back(candidate);
     if (is_plain) {
-      candidates.plain.push_back(
-          {static_cast<std::uint32_t>(candidates.pairs.size() - 1),
-           lower,
-           higher,
-           static_cast<std::uint32_t>(candidates.chain_vertices.size()),
-           {static_cast<std::uint8_t>(lower_chain.count), static_cast<std::uint8_t>(higher_chain.count),
-            finder.is_deformable(lower.value, higher.value),
-            lower_chain.count > 1 && higher_chain.count > 1 &&
-                system.num_vertices(lower.value) <= most_corner_edges &&
-                system.num_vertices(higher.value) <= most_corner_edges},
-           candidate.is_mixed});
-      append_chain(system, lower.value, lower_chain, candidates.chain_vertices);
-      append_chain(system, higher.value, higher_chain, candidates.chain_vertices);
+      append_plain(system, finder, lower_chain, higher_chain, candidates);
     }
     const std::pair key(system.properties[lower.value].id, system.properties[higher.value].id);
     while (record != memory.end() && record_key(*record) < key) {
