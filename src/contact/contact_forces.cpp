@@ -367,9 +367,10 @@ void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidate
   dyads_.clear();
   find_regions(system, candidates, number, old);
   ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(num_forces_ - begin)};
-  const std::size_t count = num_forces_ - begin;
-  sums_.keep(number, std::span(forces_).subspan(begin, count),
-             std::span(dyads_).first(std::min(count, dyads_.size())));
+  if (const std::size_t count = num_forces_ - begin; count > 0) {
+    sums_.keep(number, std::span(forces_).subspan(begin, count),
+               std::span(dyads_).first(std::min(count, dyads_.size())));
+  }
 }
 
 void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
