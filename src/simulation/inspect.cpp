@@ -55,7 +55,10 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(simulation.candidates().chain_vertices);
   add(simulation.history().regions);
   bytes += blocks.num_rows() * sizeof(BlockMotion);
-  bytes += simulation.contacts().regions().size() * (sizeof(RegionForce) + sizeof(RegionMemory));
+  // At the start, when the sums of all regions are kept.
+  bytes += simulation.contacts().regions().size() *
+           (sizeof(RegionForce) + sizeof(RegionSums) + sizeof(RegionMemory) +
+            (blocks.deformation.empty() ? 0 : sizeof(RegionDyads)));
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);
 }
