@@ -52,6 +52,6 @@ std::vector<std::size_t> rows_along_curve(const OccupiedCells &cells);
 Cut cut_along_curve(const OccupiedCells &cells, int num_parts);
 
 /// Nothing when METIS left a part empty.
-std::optional<Cut> cut_by_metis(const OccupiedCells &cells, int num_parts);
+std::optional<Cut> cut_by_metis(const OccupiedCells &cells, int num_parts, CutEffort effort);
 
 } // namespace gcpdda

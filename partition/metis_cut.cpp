@@ -115,14 +115,15 @@ Graph graph_of(const OccupiedCells &cells) {
 
 } // namespace
 
-std::optional<Cut> cut_by_metis(const OccupiedCells &cells, int num_parts) {
+std::optional<Cut> cut_by_metis(const OccupiedCells &cells, int num_parts, CutEffort effort) {
   Graph graph = graph_of(cells);
   std::array<idx_t, METIS_NOPTIONS> options;
   METIS_SetDefaultOptions(options.data());
   options[METIS_OPTION_NUMBERING] = 0;
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_UFACTOR] = 1; // heaviest part at most 1.001 of the mean where cells allow it
-  options[METIS_OPTION_NCUTS] = cells.size() <= max_retried_cells ? num_tries : 1;
+  options[METIS_OPTION_NCUTS] =
+      effort == CutEffort::several_tries && cells.size() <= max_retried_cells ? num_tries : 1;
   auto num_vertices = static_cast<idx_t>(cells.size());
   idx_t num_constraints = 1;
   idx_t parts = num_parts;

@@ -63,7 +63,7 @@ struct Choice {
   bool by_metis;
 };
 
-Choice choose_cut(const OccupiedCells &cells, int num_parts) {
+Choice choose_cut(const OccupiedCells &cells, int num_parts, CutEffort effort) {
   if (num_parts == 1 || cells.size() == 0) {
     return {Cut(cells.size(), 0), false};
   }
@@ -77,7 +77,7 @@ Choice choose_cut(const OccupiedCells &cells, int num_parts) {
   if (too_few || dominated) {
     return {std::move(by_curve), false};
   }
-  std::optional<Cut> by_metis = cut_by_metis(cells, num_parts);
+  std::optional<Cut> by_metis = cut_by_metis(cells, num_parts, effort);
   if (!by_metis || heaviest(cells, *by_metis, num_parts) > balance_margin * lightest_peak) {
     return {std::move(by_curve), false};
   }
@@ -162,13 +162,13 @@ OccupiedCells::OccupiedCells(const CellGrid &cells, std::span<const std::int64_t
 }
 
 DomainMap partition_cells(const CellGrid &grid, std::span<const std::int64_t> weights, int num_parts,
-                          PartitionReport *report) {
+                          PartitionReport *report, CutEffort effort) {
   expect(num_parts >= 1, "partition: at least one part");
   expect(grid.num_cells() <= max_background_cells, "partition: at most 2^27 cells");
   expect(static_cast<std::int64_t>(weights.size()) == grid.num_cells(),
          "partition: one weight for each cell");
   const OccupiedCells cells(grid, weights);
-  Choice choice = choose_cut(cells, num_parts);
+  Choice choice = choose_cut(cells, num_parts, effort);
   number_along_curve(cells, num_parts, choice.cut);
   if (report != nullptr) {
     *report = report_on(cells, choice, num_parts);

@@ -46,12 +46,25 @@ struct PublishedBox {
   Aabb box;
 };
 
-/// Published boxes of other ranks, sorted by the background cells they cover.
+/// Published boxes of other ranks, sorted by the background cells they cover, where one may be asked for:
+/// ranks that lie askew publish far more than what is near their border.
 class BoxesByCell {
 public:
-  BoxesByCell(const CellGrid &grid, const std::vector<PublishedBox> &boxes) : grid_(grid), boxes_(boxes) {
+  /// @param rows  those that will be asked for, of `own`
+  BoxesByCell(const CellGrid &grid, const std::vector<PublishedBox> &boxes, std::span<const Aabb> own,
+              std::span<const std::uint32_t> rows)
+      : grid_(grid), boxes_(boxes), is_listed_(static_cast<std::size_t>(grid.num_cells()), false) {
+    std::vector<bool> is_asked(is_listed_.size(), false);
+    for (const std::uint32_t row : rows) {
+      for_cells(own[row], [&](std::int64_t cell) { is_asked[static_cast<std::size_t>(cell)] = true; });
+    }
     for (std::uint32_t k = 0; k < boxes.size(); ++k) {
-      for_cells(boxes[k].box, [&](std::int64_t cell) { entries_.emplace_back(cell, k); });
+      for_cells(boxes[k].box, [&](std::int64_t cell) {
+        if (is_asked[static_cast<std::size_t>(cell)]) {
+          is_listed_[static_cast<std::size_t>(cell)] = true;
+          entries_.emplace_back(cell, k);
+        }
+      });
     }
     std::sort(entries_.begin(), entries_.end());
   }
@@ -59,10 +72,10 @@ public:
   /// Ranks with a published box that meets this one, ascending, each once.
   void ranks_meeting(const Aabb &box, std::vector<std::int32_t> &ranks) const {
     ranks.clear();
-    if (entries_.empty()) {
-      return;
-    }
     for_cells(box, [&](std::int64_t cell) {
+      if (!is_listed_[static_cast<std::size_t>(cell)]) {
+        return;
+      }
       auto entry = std::lower_bound(entries_.begin(), entries_.end(), std::pair(cell, std::uint32_t{0}));
       for (; entry != entries_.end() && entry->first == cell; ++entry) {
         if (boxes_[entry->second].box.meets(box)) {
@@ -88,16 +101,17 @@ private:
 
   CellGrid grid_;
   const std::vector<PublishedBox> &boxes_;
+  std::vector<bool> is_listed_; ///< cells with an entry
   std::vector<std::pair<std::int64_t, std::uint32_t>> entries_;
 };
 
-/// Union of the reach boxes of the owned blocks in each occupied cell.
-std::vector<Aabb> boxes_of_cells(const CellGrid &grid, const BlockSystem &system,
-                                 std::span<const Aabb> boxes) {
+/// Union of the reach boxes of these owned blocks in each cell that one of them occupies.
+std::vector<Aabb> boxes_of_cells(const CellGrid &grid, const BlockSystem &system, std::span<const Aabb> boxes,
+                                 std::span<const std::uint32_t> rows) {
   std::vector<std::pair<std::int64_t, std::uint32_t>> rows_by_cell;
-  rows_by_cell.reserve(system.num_owned);
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    rows_by_cell.emplace_back(grid.cell_of(system.centroid(row)), static_cast<std::uint32_t>(row));
+  rows_by_cell.reserve(rows.size());
+  for (const std::uint32_t row : rows) {
+    rows_by_cell.emplace_back(grid.cell_of(system.centroid(row)), row);
   }
   std::sort(rows_by_cell.begin(), rows_by_cell.end());
   std::vector<Aabb> published;
@@ -108,6 +122,25 @@ std::vector<Aabb> boxes_of_cells(const CellGrid &grid, const BlockSystem &system
     published.back().include(boxes[rows_by_cell[k].second]);
   }
   return published;
+}
+
+/// Owned rows whose reach box meets the hull of another rank: all that can be anybody's ghosts.
+std::vector<std::uint32_t> rows_near_others(const Communicator &communicator, std::span<const Aabb> own,
+                                            const std::vector<std::vector<Aabb>> &hulls) {
+  std::vector<std::uint32_t> near;
+  std::vector<Aabb> others;
+  const auto rank = static_cast<std::size_t>(communicator.rank());
+  for (std::size_t r = 0; r < hulls.size(); ++r) {
+    if (r != rank && hulls[r][0].meets(hulls[rank][0])) {
+      others.push_back(hulls[r][0]);
+    }
+  }
+  for (std::uint32_t row = 0; row < own.size(); ++row) {
+    if (std::any_of(others.begin(), others.end(), [&](const Aabb &hull) { return hull.meets(own[row]); })) {
+      near.push_back(row);
+    }
+  }
+  return near;
 }
 
 } // namespace
@@ -134,14 +167,16 @@ CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes)
 std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator,
                                                     const BlockSystem &system, std::span<const Aabb> boxes) {
   const auto num_ranks = static_cast<std::size_t>(communicator.size());
-  const CellGrid grid = publishing_grid(system, boxes);
-  const std::vector<Aabb> mine = boxes_of_cells(grid, system, boxes);
+  const std::span<const Aabb> own = boxes.first(system.num_owned);
   Aabb hull;
-  for (const Aabb &box : mine) {
+  for (const Aabb &box : own) {
     hull.include(box);
   }
   // One hull from everybody, then details only between ranks whose hulls meet.
   const std::vector<std::vector<Aabb>> hulls = communicator.all_gather(std::vector<Aabb>{hull});
+  const std::vector<std::uint32_t> near = rows_near_others(communicator, own, hulls);
+  const CellGrid grid = publishing_grid(system, boxes);
+  const std::vector<Aabb> mine = boxes_of_cells(grid, system, boxes, near);
   std::vector<std::vector<Aabb>> details(num_ranks);
   for (std::size_t r = 0; r < num_ranks; ++r) {
     if (static_cast<int>(r) != communicator.rank() && hulls[r][0].meets(hull)) {
@@ -156,13 +191,13 @@ std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communic
       published.push_back({static_cast<std::int32_t>(r), box});
     }
   }
-  const BoxesByCell lookup(grid, published);
+  const BoxesByCell lookup(grid, published, own, near);
   std::vector<std::vector<std::uint32_t>> rows(num_ranks);
   std::vector<std::int32_t> ranks;
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
+  for (const std::uint32_t row : near) {
     lookup.ranks_meeting(boxes[row], ranks);
     for (const std::int32_t r : ranks) {
-      rows[static_cast<std::size_t>(r)].push_back(static_cast<std::uint32_t>(row));
+      rows[static_cast<std::size_t>(r)].push_back(row);
     }
   }
   return rows;

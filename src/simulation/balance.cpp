@@ -85,15 +85,20 @@ std::vector<std::int64_t> weights_by_cell(const Communicator &communicator, cons
 bool Balance::is_lost(std::int64_t work) {
   measured_ = imbalance_of(communicator_, work - work_before_);
   work_before_ = work;
-  return measured_ > tolerated_;
+  if (measured_ <= tolerated_) {
+    return false;
+  }
+  lost_ += measured_ - 1.0;
+  return lost_ > worth_a_map;
 }
 
 std::optional<DomainMap> Balance::better_map(std::span<const Vec2> centroids,
                                              std::span<const std::int64_t> weights, PartitionReport &report) {
+  lost_ = 0.0;
   const CellGrid grid = lay_grid(communicator_, centroids);
   PartitionReport wanted;
   DomainMap map = partition_cells(grid, weights_by_cell(communicator_, grid, centroids, weights),
-                                  communicator_.size(), &wanted);
+                                  communicator_.size(), &wanted, CutEffort::one_try);
   const double now =
       imbalance_of(communicator_, std::accumulate(weights.begin(), weights.end(), std::int64_t{0}));
   if (now < least_gain * wanted.imbalance) {

@@ -219,7 +219,7 @@ TEST(Identity, OfAMixedWallInStages) {
   std::string toml = testing::mixed_wall_toml(24, 14, 0.02);
   toml.erase(toml.find("duration"), std::string("duration = 0.02\n").size());
   toml += "[[stage]]\nkind = \"run\"\nduration = 0.005\n"
-          "[[stage]]\nkind = \"excavate\"\nregion = [[5, 2], [12, 2], [12, 8], [5, 8]]\nrelax = 0.004\n"
+          "[[stage]]\nkind = \"excavate\"\nregion = [[2, 2], [9, 2], [9, 8], [2, 8]]\nrelax = 0.004\n"
           "blocks = [\"l2_2\"]\n"
           "[[stage]]\nkind = \"run\"\nduration = 0.005\nset = { \"run.gravity\" = [1.0, -9.0], "
           "\"joint.default.normal_stiffness\" = 2e9, "

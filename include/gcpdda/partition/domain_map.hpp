@@ -46,6 +46,10 @@ struct PartitionReport {
   std::int32_t empty_parts = 0; ///< parts without an occupied cell
 };
 
+/// How long METIS looks for short borders: a map for a whole run is worth several tries, one that a run waits
+/// for is not.
+enum class CutEffort { several_tries, one_try };
+
 /// Distribute the cells over `num_parts` parts with equal weight and short borders.
 ///
 /// Cells with weight 0 are empty: they take no part in the balance and get the owner of a near occupied cell.
@@ -58,7 +62,7 @@ struct PartitionReport {
 ///
 /// @param weights  (num_cells) counted work, >= 0, sum up to max_total_weight
 DomainMap partition_cells(const CellGrid &grid, std::span<const std::int64_t> weights, int num_parts,
-                          PartitionReport *report = nullptr);
+                          PartitionReport *report = nullptr, CutEffort effort = CutEffort::several_tries);
 
 /// Work of a part that lies with a rank before the parts are handed out.
 struct PartOnRank {

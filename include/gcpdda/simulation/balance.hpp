@@ -8,9 +8,9 @@
 // next ones than a sum over many: what falls has moved on.
 //
 // Hysteresis is twofold: a new map is made only when the work since the last look was more uneven than is
-// tolerated, and taken only when it is better by more than moving the blocks is worth. A map that was not
-// taken raises what is tolerated. A map that is taken brings a refresh of the neighbourhood, which may come
-// at any time.
+// tolerated and what unevenness has cost since the last map would have paid for one, and taken only when it
+// is better by more than moving the blocks is worth. A map that was not taken raises what is tolerated. A map
+// that is taken brings a refresh of the neighbourhood, which may come at any time.
 //
 // The grid is laid over the blocks as they lie then, few strays left out, so that a pile that has left its
 // place is still cut into small cells. No result depends on any of this.
@@ -44,7 +44,8 @@ class Balance {
 public:
   explicit Balance(const Communicator &communicator) : communicator_(communicator) {}
 
-  /// Whether the work since the last call was too uneven; the same on all ranks. Collective.
+  /// Whether it is time for a new map: the same on all ranks. To be asked after equal numbers of steps.
+  /// Collective.
   /// @param work  of this rank since the start of the run
   bool is_lost(std::int64_t work);
 
@@ -58,9 +59,13 @@ private:
   std::int64_t work_before_ = 0;
   double measured_ = 1.0;
   double tolerated_ = least_tolerated;
+  double lost_ = 0.0; ///< sum of max/mean - 1 over the calls since the last map
 
   static constexpr double least_tolerated = 1.01; ///< max/mean of the work
   static constexpr double least_gain = 1.005;
+  /// Of the time between two calls: what a map and the refresh behind it take of 64 steps on two ranks, of
+  /// the order of several steps.
+  static constexpr double worth_a_map = 0.05;
 };
 
 } // namespace gcpdda
