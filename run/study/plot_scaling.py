@@ -52,7 +52,8 @@ def main():
             axes.set_yscale("log")
         else:
             axes.set_ylim(bottom=0.0)
-    grid[0][0].legend(fontsize=7)
+    grid[1][0].legend(fontsize=7, loc="upper right", ncols=2)
+    grid[1][0].set_ylim(top=1e7)
     axes = grid[1][2]
     place = numpy.arange(len(times))
     for offset, (quantity, label, colour) in enumerate((("efficiency", "efficiency on 2 ranks", "tab:blue"),
@@ -61,6 +62,7 @@ def main():
         axes.bar(place + 0.27 * (offset - 1), [float(row[quantity]) for row in times], 0.25, label=label, color=colour)
     axes.set_xticks(place, [f"{row['problem']}\n{int(row['blocks']):,}" for row in times], fontsize=7)
     axes.set_title(f"2 ranks, medians of {times[0]['rounds']}", fontsize=10)
+    axes.set_ylim(top=1.5)
     axes.legend(fontsize=7)
     figure.tight_layout()
     for suffix in ("png", "svg"):
