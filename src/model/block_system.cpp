@@ -133,6 +133,30 @@ void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
   close_lists(to);
 }
 
+void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, std::size_t last) {
+  if (!from.edge_joint.empty() || !to.edge_joint.empty()) {
+    for (std::size_t row = first; row < last; ++row) {
+      append_row(to, from, row);
+    }
+    return;
+  }
+  const auto append = [](auto &to_field, const auto &from_field, std::size_t begin, std::size_t end) {
+    to_field.insert(to_field.end(), from_field.begin() + static_cast<std::ptrdiff_t>(begin),
+                    from_field.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  std::apply([&](auto... field) { (append(to.*field, from.*field, first, last), ...); },
+             BlockSystem::row_fields());
+  const auto append_lists = [&](auto begins, auto... fields) {
+    const std::uint32_t begin = (from.*begins)[first];
+    const std::uint32_t already = (to.*begins).back();
+    (append(to.*fields, from.*fields, begin, (from.*begins)[last]), ...);
+    for (std::size_t row = first; row < last; ++row) {
+      (to.*begins).push_back(already + (from.*begins)[row + 1] - begin);
+    }
+  };
+  std::apply([&](auto... list) { (std::apply(append_lists, list), ...); }, BlockSystem::lists());
+}
+
 void keep_rows(BlockSystem &system, std::size_t count) {
   std::apply([&](auto... field) { ((system.*field).resize(count), ...); }, BlockSystem::row_fields());
   const auto keep_list = [&](auto begins, auto... fields) {

@@ -257,9 +257,7 @@ void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span
   }
 
   BlockSystem fixed;
-  for (std::size_t row = system.num_owned; row < system.num_rows(); ++row) {
-    append_row(fixed, system, row);
-  }
+  append_rows(fixed, system, system.num_owned, system.num_rows());
   keep_rows(system, system.num_owned);
   // Senders pack in order of id, so walking the ghosts by id meets each sender's rows in message order.
   const Arrivals arrivals(received);
@@ -270,9 +268,7 @@ void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span
     append_row(system, arrivals.blocks, ghost);
     ++system.num_ghosts;
   }
-  for (std::size_t row = 0; row < fixed.num_rows(); ++row) {
-    append_row(system, fixed, row);
-  }
+  append_rows(system, fixed, 0, fixed.num_rows());
   prepare_motion(system);
 }
 

@@ -15,9 +15,7 @@ namespace {
 /// owned rows are not touched.
 void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, const BlockSystem &arrived) {
   BlockSystem fixed;
-  for (std::size_t row = system.first_fixed(); row < system.num_rows(); ++row) {
-    append_row(fixed, system, row);
-  }
+  append_rows(fixed, system, system.first_fixed(), system.num_rows());
   if (staying.size() == system.num_owned && arrived.num_rows() == 0) {
     keep_rows(system, system.num_owned);
   } else {
@@ -29,22 +27,29 @@ void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, c
     for (std::size_t row = 0; row < arrived.num_rows(); ++row) {
       order.emplace_back(arrived.properties[row].id.value, system.num_rows() + row);
     }
-    std::sort(order.begin(), order.end());
+    const auto first_arrived = order.begin() + std::ssize(staying);
+    std::sort(first_arrived, order.end());
+    std::inplace_merge(order.begin(), first_arrived, order.end());
     BlockSystem sorted;
     reserve_rows(sorted, order.size() + fixed.num_rows(),
                  system.reference_vertex.size() + arrived.reference_vertex.size());
-    for (const auto &[id, row] : order) {
-      const bool is_new = row >= system.num_rows();
-      append_row(sorted, is_new ? arrived : system, is_new ? row - system.num_rows() : row);
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) { // rows that stay together
+      const std::size_t first = order[begin].second;
+      const bool is_new = first >= system.num_rows();
+      end = begin + 1;
+      while (end < order.size() && order[end].second == first + (end - begin) &&
+             (order[end].second >= system.num_rows()) == is_new) {
+        ++end;
+      }
+      const std::size_t from = is_new ? first - system.num_rows() : first;
+      append_rows(sorted, is_new ? arrived : system, from, from + (end - begin));
     }
     sorted.num_owned = order.size();
     sorted.num_fixed = system.num_fixed;
     system = std::move(sorted);
   }
   system.num_ghosts = 0;
-  for (std::size_t row = 0; row < fixed.num_rows(); ++row) {
-    append_row(system, fixed, row);
-  }
+  append_rows(system, fixed, 0, fixed.num_rows());
 }
 
 } // namespace

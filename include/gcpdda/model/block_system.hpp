@@ -286,6 +286,8 @@ void reserve_rows(BlockSystem &system, std::size_t rows, std::size_t vertices);
 
 /// Append a copy of another system's row. The ranges' counts are the caller's.
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row);
+/// The same of rows [first, last).
+void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, std::size_t last);
 
 /// Drop all rows from `count` on. The ranges' counts are the caller's.
 void keep_rows(BlockSystem &system, std::size_t count);
