@@ -63,8 +63,8 @@ private:
 
   static constexpr double least_tolerated = 1.01; ///< max/mean of the work
   static constexpr double least_gain = 1.005;
-  /// Of the time between two calls: what a map and the refresh behind it take of 64 steps on two ranks, of
-  /// the order of several steps.
+  /// What unevenness may cost first, in the time between two calls, 64 steps. A map and the refresh behind it
+  /// take about ten steps on two ranks; a third of that keeps the sum of both small.
   static constexpr double worth_a_map = 0.05;
 };
 
