@@ -8,9 +8,9 @@
 // next ones than a sum over many: what falls has moved on.
 //
 // Hysteresis is twofold: a new map is made only when the work since the last look was more uneven than is
-// tolerated and what unevenness has cost since the last map would have paid for one, and taken only when it
-// is better by more than moving the blocks is worth. A map that was not taken raises what is tolerated. A map
-// that is taken brings a refresh of the neighbourhood, which may come at any time.
+// tolerated and unevenness since the last map has cost a good part of what a map costs, and taken only when
+// it is better by more than moving the blocks is worth. A map that was not taken raises what is tolerated. A
+// map that is taken brings a refresh of the neighbourhood, which may come at any time.
 //
 // The grid is laid over the blocks as they lie then, few strays left out, so that a pile that has left its
 // place is still cut into small cells. No result depends on any of this.
