@@ -98,20 +98,19 @@ template <std::size_t lines> struct CornerStretch {
   LaneVec begin; ///< from the origin
   LaneVec direction;
   Lanes length;
-  std::array<Lanes, lines> start; ///< of each piece, m from the begin; pieces may be empty
-  std::array<Lanes, lines> depth; ///< there
+  std::array<Lanes, lines> piece_start; ///< m from the begin; pieces may be empty
+  std::array<Lanes, lines> piece_depth; ///< there
   Lanes deepest;
   Lanes pressure; ///< int d ds, m2
   LaneVec moment; ///< int d (x - origin) ds, m3
 
-  [[nodiscard]] std::array<LanePiece, lines> pieces() const {
-    std::array<LanePiece, lines> result;
-    for (std::size_t k = 0; k < lines; ++k) {
-      const bool is_last = k + 1 == lines;
-      result[k] = {start[k], (is_last ? length : start[k + 1]) - start[k], depth[k],
-                   is_last ? Lanes(0.0) : depth[k + 1]};
-    }
-    return result;
+  // As LaneStretch tells of its pieces.
+  [[nodiscard, gnu::always_inline]] constexpr std::size_t count() const { return lines; }
+  [[nodiscard, gnu::always_inline]] Lanes start(std::size_t k) const {
+    return k < lines ? piece_start[k] : length;
+  }
+  [[nodiscard, gnu::always_inline]] Lanes depth(std::size_t k) const {
+    return k < lines ? piece_depth[k] : Lanes(0.0);
   }
 };
 
@@ -122,65 +121,109 @@ template <std::size_t lines> struct FallingDepths {
   PerLine<lines> fall;
 };
 
+/// A place `over`/`rate` along an edge, m. Places are compared by products: of all that are looked at, one or
+/// two are needed, and a division costs as much as a dozen products.
+struct PlaceAlong {
+  Lanes over;
+  Lanes rate; ///< above 0, or the place is nowhere
+
+  [[nodiscard, gnu::always_inline]] Mask is_before(const PlaceAlong &other) const {
+    return over * other.rate < other.over * rate;
+  }
+};
+
+/// The line nearest to an edge up to some place.
+struct NearestLine {
+  Lanes depth;
+  Lanes fall;
+
+  [[nodiscard, gnu::always_inline]] Lanes at(const Lanes &s) const { return max(0.0, depth - fall * s); }
+};
+
+/// Where the next line becomes the nearest one, and which one that is.
+template <std::size_t lines>
+[[gnu::always_inline]] inline PlaceAlong find_crossing(const FallingDepths<lines> &lower,
+                                                       const NearestLine &nearest, NearestLine &next) {
+  PlaceAlong first{1.0, 0.0};
+  each<lines>([&](auto j) __attribute__((always_inline)) {
+    const PlaceAlong place{lower.depth[j] - nearest.depth, lower.fall[j] - nearest.fall};
+    const Mask is_first = (place.rate > 0.0) & place.is_before(first);
+    first.over = select(is_first, place.over, first.over);
+    first.rate = select(is_first, place.rate, first.rate);
+    next.depth = select(is_first, lower.depth[j], next.depth);
+    next.fall = select(is_first, lower.fall[j], next.fall);
+  });
+  return first;
+}
+
 /// Walk along the lower envelope of the depths to where the first one is used up.
 /// @return where that is an edge of the other corner
 template <std::size_t lines>
 [[gnu::always_inline]] inline Mask integrate_stretch(const FallingDepths<lines> &lower,
                                                      const LaneCorner &other, CornerStretch<lines> &stretch) {
-  constexpr double never = std::numeric_limits<double>::infinity();
-  Lanes length = never;
-  Mask leaves{};
-  Lanes depth = lower.depth[0];
-  Lanes fall = lower.fall[0];
-  Lanes other_fall = fall; // of two lines
-  each<lines>([&](auto j) __attribute__((always_inline)) {
-    const Lanes end = select(lower.fall[j] > 0.0, lower.depth[j] / lower.fall[j], never);
-    const Mask first = end < length;
+  PlaceAlong exit{lower.depth[0], max(0.0, lower.fall[0])};
+  Mask leaves = other.has_line[0];
+  NearestLine nearest{lower.depth[0], lower.fall[0]};
+  Lanes other_fall = lower.fall[0]; // of two lines
+  each<lines - 1>([&](auto before) __attribute__((always_inline)) {
+    constexpr std::size_t j = before + 1;
+    const Lanes &depth = lower.depth[j];
+    const Lanes &fall = lower.fall[j];
+    const Mask first = PlaceAlong{depth, fall}.is_before(exit);
     leaves = (first & other.has_line[j]) | (leaves & !first);
-    length = min(end, length);
-    const Mask nearer = (lower.depth[j] < depth) | ((lower.depth[j] == depth) & (lower.fall[j] > fall));
-    other_fall = select(nearer, fall, lower.fall[j]);
-    depth = select(nearer, lower.depth[j], depth);
-    fall = select(nearer, lower.fall[j], fall);
+    exit.over = select(first, depth, exit.over);
+    exit.rate = select(first, fall, exit.rate);
+    const Mask nearer = (depth < nearest.depth) | ((depth == nearest.depth) & (fall > nearest.fall));
+    other_fall = select(nearer, nearest.fall, fall);
+    nearest.depth = select(nearer, depth, nearest.depth);
+    nearest.fall = select(nearer, fall, nearest.fall);
   });
+  // One division for the exit and the first crossing, if that comes before. A line left out of the chain
+  // never does, so it changes no bit.
+  NearestLine next = nearest;
+  Mask crosses{};
+  PlaceAlong crossing;
+  if constexpr (lines == 2) { // they cross once, whichever is nearer
+    crossing = {lower.depth[1] - lower.depth[0], lower.fall[1] - lower.fall[0]};
+    crosses = (other_fall > nearest.fall) & (abs(crossing.over) * exit.rate < exit.over * abs(crossing.rate));
+  } else {
+    crossing = find_crossing<lines>(lower, nearest, next);
+    crosses = crossing.is_before(exit);
+  }
+  crossing.rate = select(crosses, crossing.rate, 1.0);
+  const Lanes inverse = Lanes(1.0) / (exit.rate * crossing.rate);
+  const Lanes length = exit.over * (inverse * crossing.rate);
+  Lanes to = min(select(crosses, crossing.over * (inverse * exit.rate), length), length);
   Lanes s = 0.0;
-  Lanes here = depth;
+  Lanes here = nearest.depth;
   Lanes along = 0.0;
   stretch.length = length;
   stretch.pressure = 0.0;
   stretch.deepest = here;
   each<lines>([&](auto k) __attribute__((always_inline)) {
-    Lanes next = length;
-    Lanes there = 0.0;
-    Lanes next_depth = depth;
-    Lanes next_fall = fall;
-    if constexpr (lines == 2 && k == 0) { // they cross once, whichever is nearer
-      const Lanes crossing = (lower.depth[1] - lower.depth[0]) / (lower.fall[1] - lower.fall[0]);
-      next = select((other_fall > fall) & (crossing < next), crossing, next);
-    } else if constexpr (k + 1 < lines) {
-      each<lines>([&](auto j) __attribute__((always_inline)) {
-        const Lanes crossing = (lower.depth[j] - depth) / (lower.fall[j] - fall);
-        const Mask first = (lower.fall[j] > fall) & (crossing < next);
-        next = select(first, crossing, next);
-        next_depth = select(first, lower.depth[j], next_depth);
-        next_fall = select(first, lower.fall[j], next_fall);
-      });
+    const bool is_last = k + 1 == lines;
+    if constexpr (is_last) {
+      to = length;
+    } else if constexpr (k > 0) {
+      nearest = next;
+      const PlaceAlong place = find_crossing<lines>(lower, nearest, next);
+      const Mask comes = crosses & place.is_before(exit);
+      crosses = comes;
+      to = length;
+      if (comes.any()) {
+        to = select(comes, clamp(place.over / place.rate, s, length), length);
+      }
     }
-    if constexpr (k + 1 < lines) {
-      next = max(next, s);
-      there = select(next < length, max(0.0, depth - fall * next), 0.0);
-    }
-    const Lanes piece = next - s;
+    const Lanes there = is_last ? Lanes(0.0) : select(to < length, nearest.at(to), 0.0);
+    const Lanes piece = to - s;
     const Lanes total = Lanes(0.5) * piece * (here + there);
     stretch.pressure += total;
     along += s * total + piece * piece * (here + Lanes(2.0) * there) * Lanes(1.0 / 6.0);
-    stretch.start[k] = s;
-    stretch.depth[k] = here;
+    stretch.piece_start[k] = s;
+    stretch.piece_depth[k] = here;
     stretch.deepest = max(stretch.deepest, there);
-    s = next;
+    s = to;
     here = there;
-    depth = next_depth;
-    fall = next_fall;
   });
   stretch.moment = stretch.pressure * stretch.begin + along * stretch.direction;
   return leaves;

@@ -24,7 +24,7 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
   dyad[3] += a.y * b.y;
 }
 
-/// int q ds and int q s ds of a linear q.
+/// int q ds and int q s ds, s from the begin of a stretch.
 struct LaneTraction {
   Lanes total;
   Lanes along;
@@ -32,34 +32,17 @@ struct LaneTraction {
   LaneTraction()
       : total(0.0), along(0.0) {} // written out: an implied one is not compiled for the lanes' instructions
 
-  [[gnu::always_inline]] void add_linear(const Lanes &s0, const Lanes &q0, const Lanes &s1, const Lanes &q1) {
-    const Lanes length = s1 - s0;
-    const Lanes stretch = Lanes(0.5) * length * (q0 + q1);
-    total += stretch;
-    along += s0 * stretch + length * length * (q0 + Lanes(2.0) * q1) * Lanes(1.0 / 6.0);
+  /// A piece of length L from s0 on with the positive part of a linear g, which is g0 and g1 at its ends:
+  /// with a = max(0, g0), b = max(0, g1) and the share l = (a + b)/(|g0| + |g1|) where g > 0, int q ds = l L
+  /// (a + b)/2 and int q (s - s0) ds = l L^2 (l a + (3 - l) b)/6, of whatever sign g0 and g1.
+  [[gnu::always_inline]] void add_positive(const Lanes &s0, const Lanes &length, const Lanes &a,
+                                           const Lanes &b, const Lanes &share) {
+    const Lanes part = share * length;
+    const Lanes piece = Lanes(0.5) * part * (a + b);
+    total += piece;
+    along += s0 * piece + part * length * (share * a + (Lanes(3.0) - share) * b) * Lanes(1.0 / 6.0);
   }
 };
-
-/// Of q = max(-p, d) over a piece, p >= 0 and d linear.
-inline LaneTraction integrate_without_tension(const Lanes &length, const Lanes &p0, const Lanes &p1,
-                                              const Lanes &d0, const Lanes &d1) {
-  const Lanes sum0 = p0 + d0;
-  const Lanes sum1 = p1 + d1;
-  const Mask changes = ((sum0 > 0.0) & (sum1 < 0.0)) | ((sum0 < 0.0) & (sum1 > 0.0));
-  const Lanes q0 = max(-p0, d0);
-  const Lanes q1 = max(-p1, d1);
-  LaneTraction q;
-  if (!changes.any()) {
-    q.add_linear(0.0, q0, length, q1);
-    return q;
-  }
-  const Lanes share = sum0 / (sum0 - sum1);
-  const Lanes cut = select(changes, share * length, length);
-  const Lanes at_cut = select(changes, -(p0 + share * (p1 - p0)), q1);
-  q.add_linear(0.0, q0, cut, at_cut);
-  q.add_linear(cut, at_cut, length, q1);
-  return q;
-}
 
 /// What a pair's law and its past give.
 struct LaneConstants {
@@ -347,60 +330,82 @@ inline PlainBatch::Extremes LaneRegions::take_extremes() {
   return extremes;
 }
 
-/// Damping traction along n_r of as many stretches as follow one another.
+/// Damping traction along n_r of as many stretches as follow one another: q = max(-p, d), that is d and the
+/// positive part of -(p + d), with the pressure p >= 0 that can be released and the dashpot's linear d.
 class LaneDashpot {
 public:
   LaneDashpot(const LaneRegions &regions, const LaneConstants &constants, const Lanes &facing_pressure)
       : total(0.0), moment{0.0, 0.0}, regions_(regions), constants_(constants),
-        kept_(min(1.0, regions.normal_force() / constants.half_stiffness /
-                           select(facing_pressure > 0.0, facing_pressure, 1.0))) {}
+        releasable_(min(constants.half_stiffness,
+                        regions.normal_force() / select(facing_pressure > 0.0, facing_pressure, 1.0))) {}
 
   Lanes total;
   LaneVec moment; ///< about the origin
 
   /// A stretch from `begin` (from the origin) on along `direction` with the share w of its normal along n_r;
-  /// `velocity` is that of the lower block against the higher one at the origin, pieces() tells the depths
-  /// along it.
+  /// `velocity` is that of the lower block against the higher one at the origin.
   template <class AnyMotion, class Pieces>
-  [[gnu::always_inline]] void add(const Mask &valid, const LaneVec &begin, const LaneVec &direction,
-                                  const Lanes &length, Pieces &&pieces, const Lanes &share,
-                                  const AnyMotion &motion, const LaneVec &velocity) {
+  [[gnu::always_inline]] void add(const LaneVec &begin, const LaneVec &direction, const Pieces &pieces,
+                                  const Lanes &share, const AnyMotion &motion, const LaneVec &velocity) {
+    const Lanes &length = pieces.length;
     const Lanes rate = constants_.damping * share;
     const Lanes closing = -rate * dot(velocity + motion.velocity_change(begin), regions_.normal());
     const Lanes slope = -rate * dot(motion.velocity_change(direction), regions_.normal());
-    const Lanes closing_end = closing + slope * length;
     LaneTraction q;
-    q.add_linear(0.0, closing, length, closing_end);
-    const Mask closes = (!valid) | ((closing >= 0.0) & (closing_end >= 0.0));
-    if ((!closes).any()) {
-      const LaneTraction cut =
-          integrate_cut(pieces(), kept_ * share * constants_.half_stiffness, closing, slope);
-      q.total = select(closes, q.total, cut.total);
-      q.along = select(closes, q.along, cut.along);
+    q.total = Lanes(0.5) * length * (Lanes(2.0) * closing + slope * length);
+    q.along = length * length * (Lanes(3.0) * closing + Lanes(2.0) * slope * length) * Lanes(1.0 / 6.0);
+    if (((closing < 0.0) | (closing + slope * length < 0.0)).any()) { // else nothing pulls
+      add_excess(pieces, releasable_ * share, closing, slope, q);
     }
     total += q.total;
     moment += q.total * begin + q.along * direction;
   }
 
 private:
+  /// Of -(p + d): the first two pieces by one division; there are seldom more.
   template <class Pieces>
-  static LaneTraction integrate_cut(const Pieces &pieces, const Lanes &releasable, const Lanes &closing,
-                                    const Lanes &slope) {
-    LaneTraction cut;
-    for (const LanePiece &piece : pieces) {
-      const Lanes d = closing + slope * piece.begin;
-      const LaneTraction part =
-          integrate_without_tension(piece.length, releasable * piece.depth_begin,
-                                    releasable * piece.depth_end, d, d + slope * piece.length);
-      cut.total += part.total;
-      cut.along += part.along + piece.begin * part.total;
+  [[gnu::always_inline]] static void add_excess(const Pieces &pieces, const Lanes &releasable,
+                                                const Lanes &closing, const Lanes &slope, LaneTraction &q) {
+    struct End {
+      Lanes s;
+      Lanes g;
+      Lanes positive;
+    };
+    const auto end = [&](std::size_t k) __attribute__((always_inline)) {
+      const Lanes s = pieces.start(k);
+      const Lanes g = -(releasable * pieces.depth(k) + (closing + slope * s));
+      return End{s, g, max(0.0, g)};
+    };
+    const auto whole = [](const End &a, const End &b) __attribute__((always_inline)) {
+      constexpr double least = 1e-100; // no traction, and its square is not 0
+      return max(least, abs(a.g) + abs(b.g));
+    };
+    const auto add = [&](const End &a, const End &b, const Lanes &inverse) __attribute__((always_inline)) {
+      q.add_positive(a.s, b.s - a.s, a.positive, b.positive, (a.positive + b.positive) * inverse);
+    };
+    if (pieces.count() == 0) {
+      return;
     }
-    return cut;
+    const End begin = end(0);
+    const End middle = end(1);
+    End last = end(2);
+    const Lanes first = whole(begin, middle);
+    const Lanes second = whole(middle, last);
+    const Lanes inverse = Lanes(1.0) / (first * second);
+    add(begin, middle, inverse * second);
+    add(middle, last, inverse * first);
+    for (std::size_t k = 2; k < pieces.count(); ++k) {
+      const End next = end(k + 1);
+      if ((next.s > last.s).any()) {
+        add(last, next, Lanes(1.0) / whole(last, next));
+      }
+      last = next;
+    }
   }
 
   const LaneRegions &regions_;
   const LaneConstants &constants_;
-  Lanes kept_;
+  Lanes releasable_; ///< over the depth at w = 1, Pa/m
 };
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

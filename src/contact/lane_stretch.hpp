@@ -29,14 +29,6 @@ struct LaneSide {
   LaneVec high;
 };
 
-/// Linear depth along part of a stretch.
-struct LanePiece {
-  Lanes begin; ///< from the begin of the stretch, m
-  Lanes length;
-  Lanes depth_begin;
-  Lanes depth_end;
-};
-
 /// The part of an edge inside the other block. Where there is none all lengths and depths are 0.
 struct LaneStretch {
   Mask valid;
@@ -46,8 +38,20 @@ struct LaneStretch {
   Lanes pressure; ///< int d ds, m2
   Lanes moment;   ///< int d s ds, s from `begin`, m3
   Lanes deepest;
+  // Pieces of linear depth, which may be empty.
   std::size_t num_pieces = 0;
-  std::array<LanePiece, most_plain_edges> piece;
+  std::array<Lanes, most_plain_edges> piece_start; ///< m from `begin`
+  std::array<Lanes, most_plain_edges> piece_depth; ///< there
+  Lanes last_depth;                                ///< at `end`
+
+  /// From piece `count` on they are empty.
+  [[nodiscard, gnu::always_inline]] std::size_t count() const { return num_pieces; }
+  [[nodiscard, gnu::always_inline]] const Lanes &start(std::size_t k) const {
+    return k < num_pieces ? piece_start[k] : length;
+  }
+  [[nodiscard, gnu::always_inline]] const Lanes &depth(std::size_t k) const {
+    return k < num_pieces ? piece_depth[k] : last_depth;
+  }
 };
 
 using LaneStretches = std::array<LaneStretch, most_plain_edges>;
@@ -121,9 +125,11 @@ template <std::size_t lines>
     stretch.pressure += total;
     stretch.moment += from_begin * total + length * length * (here + Lanes(2.0) * there) * Lanes(1.0 / 6.0);
     stretch.deepest = max(stretch.deepest, there);
-    stretch.piece[stretch.num_pieces++] = {from_begin, length, here, there};
+    stretch.piece_start[stretch.num_pieces] = from_begin;
+    stretch.piece_depth[stretch.num_pieces++] = here;
     s = select(grows, s_next, s);
     here = there;
+    stretch.last_depth = there;
     if (!goes_on.any()) {
       return;
     }

@@ -216,9 +216,7 @@ void LaneBatch::add_dashpot(const LaneConstants &constants, const AnyMotion &mot
   const LaneVec velocity = motion.velocity_at(regions_.origin);
   each([&](const LaneStretch &stretch, const LaneVec &normal, const Lanes &share, double) {
     if ((stretch.valid & (share > 0.0)).any()) {
-      dashpot.add(
-          stretch.valid, stretch.begin - regions_.origin, perp(normal), stretch.length,
-          [&] { return std::span(stretch.piece).first(stretch.num_pieces); }, share, motion, velocity);
+      dashpot.add(stretch.begin - regions_.origin, perp(normal), stretch, share, motion, velocity);
     }
   });
   regions_.add_dashpot(dashpot.total, dashpot.moment, motion);
@@ -316,9 +314,7 @@ void LaneBatch::add_dashpot(const Overlap &overlap, const LaneConstants &constan
   LaneDashpot dashpot(regions_, constants, facing_pressure);
   const LaneVec velocity = motion.velocity_at(regions_.origin);
   const auto add = [&](const auto &stretch, const Lanes &w) __attribute__((always_inline)) {
-    dashpot.add(
-        regions_.touches, stretch.begin, stretch.direction, stretch.length, [&] { return stretch.pieces(); },
-        w, motion, velocity);
+    dashpot.add(stretch.begin, stretch.direction, stretch, w, motion, velocity);
   };
   each<2>([&](auto i) __attribute__((always_inline)) {
     add(overlap.on_lower[i], share[i]);
