@@ -13,24 +13,46 @@ namespace {
 
 using Two = double __attribute__((vector_size(2 * sizeof(double))));
 
-Two load(const Vec2 &a) {
+/// Straight from where the lanes left them: a copy made piece by piece would have to wait for all of it.
+Two load(const double &first) {
   Two two;
-  std::memcpy(&two, &a, sizeof(two));
+  std::memcpy(&two, &first, sizeof(two));
   return two;
 }
 
-/// Straight from where the lanes left them: a copy made piece by piece would have to wait for all of it.
-void add(const Vec2 &force, const PairTorques &torque, std::size_t k, RigidDof &sum) {
-  const Two whole = k == 0 ? load(sum.u) + load(force) : load(sum.u) - load(force);
-  const double turning = sum.r + torque[k];
-  sum = {{whole[0], whole[1]}, turning};
-}
+/// A BlockContactSum in registers.
+struct SumAtHand {
+  std::array<Two, 3> whole;
+  std::array<double, 3> turning;
 
-/// What the lower (k = 0) or the higher block of a region gets of it.
-void add_region(const RegionSums &f, std::size_t k, BlockContactSum &sum) {
-  add(f.force, f.torque, k, sum.force);
-  add(f.shear_force, f.shear_torque, k, sum.shear);
-  add(f.damping_force, f.damping_torque, k, sum.damping);
+  explicit SumAtHand(const BlockContactSum &sum)
+      : whole{load(sum.force.u.x), load(sum.shear.u.x), load(sum.damping.u.x)}, turning{sum.force.r,
+                                                                                        sum.shear.r,
+                                                                                        sum.damping.r} {}
+  /// What the lower (k = 0) or the higher block of a region gets of it.
+  void add(const RegionSums &f, std::size_t k) {
+    const std::array<Two, 3> part{load(f.force.x), load(f.shear_force.x), load(f.damping_force.x)};
+    const std::array<double, 3> torque{f.torque[k], f.shear_torque[k], f.damping_torque[k]};
+    for (std::size_t i = 0; i < 3; ++i) {
+      whole[i] = k == 0 ? whole[i] + part[i] : whole[i] - part[i];
+      turning[i] += torque[i];
+    }
+  }
+  void store(BlockContactSum &sum) const {
+    const auto put = [&](std::size_t i, RigidDof &to) {
+      std::memcpy(&to.u.x, &whole[i], sizeof(Two));
+      to.r = turning[i];
+    };
+    put(0, sum.force);
+    put(1, sum.shear);
+    put(2, sum.damping);
+  }
+};
+
+[[gnu::always_inline]] inline void add_region(const RegionSums &f, std::size_t k, BlockContactSum &sum) {
+  SumAtHand at_hand(sum);
+  at_hand.add(f, k);
+  at_hand.store(sum);
 }
 
 ContactCount counted(const BlockSystem &system, const CandidatePair &pair, bool born) {
@@ -91,8 +113,8 @@ void BlockSums::start(const BlockSystem &system, const Candidates &candidates, K
   keep_ = keep;
 }
 
-void BlockSums::add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads) {
-  if (system.is_deformable(row.value)) {
+inline void BlockSums::add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads) {
+  if (row.value < sums_.size() && system.is_deformable(row.value)) {
     BlockGradientSum &sum = gradients_[system.deformation_begin[row.value]];
     sum.force += dyads.force;
     sum.shear += dyads.shear;
@@ -100,38 +122,87 @@ void BlockSums::add_dyads(const BlockSystem &system, BlockIndex row, const Block
   }
 }
 
-void BlockSums::close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
-  for (std::size_t word = 0; word < touched_.size(); ++word) {
-    for (std::uint64_t bits = touched_[word]; bits != 0; bits &= bits - 1) {
-      const std::size_t slot = 64 * word + static_cast<std::size_t>(std::countr_zero(bits));
-      const std::uint32_t number = group * PlainPair::pairs_in_group + static_cast<std::uint32_t>(slot);
-      const CandidatePair &pair = candidates.pairs[number];
-      const RegionSums &region = group_[slot];
-      const bool born = (born_[word] >> slot % 64 & 1U) != 0;
-      const std::array<BlockIndex, 2> rows{pair.lower, pair.higher};
-      const std::array<When, 2> times{when(pair.lower), when(pair.higher)};
-      if (times[0] == When::later || times[1] == When::later) {
-        kept_range_[number] = {static_cast<std::uint32_t>(kept_.size()), 1};
-        kept_.push_back({region, born});
-        if (has_dyads_) {
-          kept_dyads_.push_back(group_dyads_[slot]);
-        }
-      } else {
-        count_ += counted(system, pair, born);
-        largest_squared_ = std::max(largest_squared_, squared(region.force));
-      }
-      each_side([&](auto k) {
-        if (times[k] == When::at_once) {
-          add_region(region, k, sums_[rows[k].value]);
-          if (has_dyads_) {
-            add_dyads(system, rows[k], group_dyads_[slot][k]);
-          }
-        }
-      });
+template <class Visit> void BlockSums::for_touched(std::uint32_t group, Visit &&visit) const {
+  using Eight = std::uint64_t;
+  static_assert(std::endian::native == std::endian::little);
+  for (std::size_t first = 0; first < seen_.size(); first += sizeof(Eight)) {
+    Eight seen = 0;
+    std::memcpy(&seen, &seen_[first], sizeof(seen));
+    for (seen &= 0x0101010101010101U * touches; seen != 0; seen &= seen - 1) {
+      const std::size_t slot = first + static_cast<std::size_t>(std::countr_zero(seen)) / 8;
+      visit(group * PlainPair::pairs_in_group + static_cast<std::uint32_t>(slot), group_[slot],
+            (seen_[slot] & is_born) != 0);
     }
   }
-  touched_ = {};
-  born_ = {};
+}
+
+// Pairs of one lower block follow one another, and its sum stays in registers meanwhile: what it gets as the
+// higher block of others has been added before.
+void BlockSums::add_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
+  const auto num_owned = static_cast<std::uint32_t>(sums_.size());
+  const CandidatePair *pairs = candidates.pairs.data();
+  BlockContactSum none;
+  BlockContactSum *lower = &none;
+  SumAtHand at_lower(none);
+  double largest_squared = largest_squared_;
+  for_touched(group, [&](std::uint32_t number, const RegionSums &region, bool) {
+    const CandidatePair &pair = pairs[number];
+    BlockContactSum *next = pair.lower.value < num_owned ? &sums_[pair.lower.value] : &none;
+    if (next != lower) {
+      at_lower.store(*lower);
+      at_lower = SumAtHand(*next);
+      lower = next;
+    }
+    at_lower.add(region, 0);
+    if (pair.higher.value < num_owned) {
+      add_region(region, 1, sums_[pair.higher.value]);
+    }
+    if (has_dyads_) {
+      const RegionDyads &dyads = group_dyads_[number % PlainPair::pairs_in_group];
+      add_dyads(system, pair.lower, dyads[0]);
+      add_dyads(system, pair.higher, dyads[1]);
+    }
+    largest_squared = std::max(largest_squared, squared(region.force));
+    ++count_.touching; // without a ghost, it counts here and does not cross
+  });
+  at_lower.store(*lower);
+  largest_squared_ = largest_squared;
+}
+
+void BlockSums::close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
+  if (keep_ != Keep::all && candidates.are_added[group] != 0) {
+    add_group(system, candidates, group);
+  } else {
+    sort_group(system, candidates, group);
+  }
+  seen_.fill(0);
+}
+
+void BlockSums::sort_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
+  for_touched(group, [&](std::uint32_t number, const RegionSums &region, bool born) {
+    const CandidatePair &pair = candidates.pairs[number];
+    const std::array<BlockIndex, 2> rows{pair.lower, pair.higher};
+    const std::array<When, 2> times{when(pair.lower), when(pair.higher)};
+    const std::size_t slot = number % PlainPair::pairs_in_group;
+    if (times[0] == When::later || times[1] == When::later) {
+      kept_range_[number] = {static_cast<std::uint32_t>(kept_.size()), 1};
+      kept_.push_back({region, born});
+      if (has_dyads_) {
+        kept_dyads_.push_back(group_dyads_[slot]);
+      }
+    } else {
+      count_ += counted(system, pair, born);
+      largest_squared_ = std::max(largest_squared_, squared(region.force));
+    }
+    each_side([&](auto k) {
+      if (times[k] == When::at_once) {
+        add_region(region, k, sums_[rows[k].value]);
+        if (has_dyads_) {
+          add_dyads(system, rows[k], group_dyads_[slot][k]);
+        }
+      }
+    });
+  });
 }
 
 void BlockSums::keep(std::uint32_t pair, std::span<const RegionForce> regions,

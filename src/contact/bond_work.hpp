@@ -9,7 +9,8 @@ namespace gcpdda {
 
 struct ContactForces::BondAtWork {
   RegionMemory memory;
-  CandidatePair constants; ///< of its law
+  LawConstants constants; ///< of its law
+  double damping = 0.0;   ///< CandidatePair::damping for it
   BondOpening stretched;
   double pull = 0.0;        ///< int k_n max(0, o) ds, N/m
   double pull_moment = 0.0; ///< int k_n max(0, o) s ds, s from the first end, N

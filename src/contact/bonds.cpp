@@ -150,6 +150,9 @@ void bond_joints(const BlockSystem &system, const Candidates &candidates, const 
   }
   for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
     const CandidatePair &pair = candidates.pairs[k];
+    if (pair.is_plain) { // whose laws have no bonds
+      continue;
+    }
     history.ranges[k].begin = static_cast<std::uint32_t>(history.regions.size());
     for (std::size_t a = 0; a < system.num_vertices(pair.lower.value); ++a) {
       for (std::size_t b = 0; b < system.num_vertices(pair.higher.value); ++b) {
@@ -178,7 +181,8 @@ void ContactForces::find_bonds(const BlockSystem &system, const CandidatePair &p
   for (const RegionMemory &known : memory) {
     BondAtWork &bond = bonds_.emplace_back();
     bond.memory = known;
-    bond.constants = constants_of(system, parameters_, pair, known.law);
+    bond.constants = parameters_.constants(known.law);
+    bond.damping = constants_of(system, parameters_, pair, known.law).damping;
     bond.stretched = opening_of(system, pair, known, Configuration::trial);
     const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(known.law)];
     const auto [o0, o1] = bond.stretched.opening;
@@ -219,7 +223,7 @@ TractionIntegral ContactForces::BondAtWork::drag(const RelativeVelocity &velocit
   const auto [first, last] = positive_part(stretched.opening[0], stretched.opening[1]);
   const auto at = [&](double share) {
     const Vec2 arm = (share - 0.5) * stretched.length * along;
-    return -2.0 * constants.damping * dot(velocity.at(arm), stretched.normal);
+    return -2.0 * damping * dot(velocity.at(arm), stretched.normal);
   };
   TractionIntegral sum;
   sum.add_linear(first * stretched.length, at(first), last * stretched.length, at(last));

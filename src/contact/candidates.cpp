@@ -288,6 +288,10 @@ void find_waiting(const BlockSystem &system, Candidates &candidates) {
       candidates.waiting.push_back(k);
     }
   }
+  candidates.are_added.assign(candidates.pairs.size() / PlainPair::pairs_in_group + 1, 1);
+  for (const std::uint32_t k : candidates.waiting) {
+    candidates.are_added[k / PlainPair::pairs_in_group] = 0;
+  }
 }
 
 /// Entries of BlockSystem::vertex at the ends of a chain's edges.
@@ -307,8 +311,6 @@ void append_plain(const BlockSystem &system, const ChainFinder &finder, const Ed
   const std::uint32_t higher = pair.higher.value;
   candidates.plain.push_back(
       {static_cast<std::uint32_t>(candidates.pairs.size() - 1),
-       pair.lower,
-       pair.higher,
        static_cast<std::uint32_t>(candidates.chain_vertices.size()),
        {static_cast<std::uint8_t>(lower_chain.count), static_cast<std::uint8_t>(higher_chain.count),
         finder.is_deformable(lower, higher),
@@ -396,10 +398,14 @@ Candidates make_candidates(const BlockSystem &system,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
                            ContactHistory &history, double skin) {
   Candidates candidates;
+  for (const JointLaw &law : parameters.joints.laws) {
+    candidates.laws.push_back(law.constants());
+  }
   candidates.pairs.reserve(pairs.size());
   candidates.plain.reserve(pairs.size());
   candidates.chain_vertices.reserve(6 * pairs.size()); // about three ends of edges for each of two blocks
-  history.ranges.reserve(pairs.size());
+  history.overlaps.reserve(pairs.size());
+  history.plain.reserve(pairs.size());
   // Several regions of a pair keep their order: both sides of a border wrote them in the same one.
   const auto record_key = [](const RegionRecord &r) { return std::pair(r.lower, r.higher); };
   std::stable_sort(memory.begin(), memory.end(), [&](const RegionRecord &a, const RegionRecord &b) {
@@ -407,7 +413,8 @@ Candidates make_candidates(const BlockSystem &system,
   });
   history.regions.clear();
   history.ranges.clear();
-  history.by_faces.clear();
+  history.overlaps.clear();
+  history.plain.clear();
   auto record = memory.begin();
   ChainFinder finder(system, skin);
   for (const auto &[lower, higher] : pairs) {
@@ -427,9 +434,9 @@ Candidates make_candidates(const BlockSystem &system,
     while (record != memory.end() && record_key(*record) < key) {
       ++record;
     }
-    const auto begin = static_cast<std::uint32_t>(history.regions.size());
+    const std::size_t begin = history.regions.size();
     for (; record != memory.end() && record_key(*record) == key; ++record) {
-      const auto known = history.regions.begin() + begin;
+      const auto known = history.regions.begin() + static_cast<std::ptrdiff_t>(begin);
       if (std::none_of(known, history.regions.end(),
                        [&](const RegionMemory &m) { return m.is_same_region(record->memory); })) {
         history.regions.push_back(record->memory);
@@ -438,10 +445,21 @@ Candidates make_candidates(const BlockSystem &system,
     if (candidate.is_mixed && history.regions.size() > begin && history.regions[begin].law >= 0) {
       take_law(system, parameters, history.regions[begin].law, candidates.pairs.back());
     }
-    history.ranges.push_back({begin, static_cast<std::uint32_t>(history.regions.size()) - begin});
+    const std::size_t count = history.regions.size() - begin;
+    history.ranges.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)});
+    const bool has_plain = is_plain && count > 0;
+    history.overlaps.push_back(has_plain ? PlainOverlap::corners : PlainOverlap::none);
+    history.plain.push_back(has_plain ? history.regions[begin] : RegionState{});
+    if (is_plain) {
+      history.regions.resize(begin);
+      history.ranges.back() = {};
+    }
   }
 
   order_evaluation(system, candidates);
+  if (candidates.general.empty()) {
+    history.ranges = {};
+  }
   find_waiting(system, candidates);
   list_contacts_of_blocks(system, candidates);
   return candidates;

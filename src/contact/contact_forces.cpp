@@ -22,7 +22,7 @@ constexpr std::size_t ahead = 16;
 
 void fetch_pair(const Candidates &candidates, const ContactHistory &history, std::uint32_t pair) {
   prefetch(&candidates.pairs[pair], sizeof(CandidatePair));
-  prefetch(history.regions.data() + history.ranges[pair].begin, offsetof(RegionMemory, position));
+  prefetch(&history.plain[pair], sizeof(RegionState));
 }
 
 /// Visit the numbers of the bits that are set, the least first.
@@ -124,15 +124,15 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   const std::size_t width = batch_->width();
   const PlainPair *plains = scene.candidates.plain.data();
   const CandidatePair *pairs = scene.candidates.pairs.data();
-  const RegionRange *ranges = scene.history.ranges.data();
-  const RegionMemory *regions = scene.history.regions.data();
+  const PlainOverlap *overlaps = scene.history.overlaps.data();
+  const RegionState *known = scene.history.plain.data();
   for (std::size_t i = 0; i < width; ++i) {
     const PlainPair &plain = plains[entries[std::min(i, entries.size() - 1)]];
-    const RegionRange &old = ranges[plain.pair];
+    const bool is_known = overlaps[plain.pair] != PlainOverlap::none;
     lanes.pair[i] = &plain;
     lanes.constants[i] = pairs + plain.pair;
-    lanes.memory[i] = old.count == 0 ? &PlainLanes::no_memory : regions + old.begin;
-    if (plain.is_mixed && old.count > 0 && lanes.memory[i]->law != lanes.constants[i]->law) {
+    lanes.memory[i] = is_known ? known + plain.pair : &PlainLanes::no_memory;
+    if (plain.is_mixed && is_known && lanes.memory[i]->law != lanes.constants[i]->law) {
       own_[i] = constants_of(scene.system, parameters_, *lanes.constants[i], lanes.memory[i]->law);
       lanes.constants[i] = &own_[i];
     }
@@ -142,20 +142,24 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
     for_bits(which & given, [&](std::size_t i) { to.push_back(entries[i]); });
   };
   unsigned touching = 0;
+  unsigned meeting = 0;
   unsigned by_faces = 0;
   if (way == Way::corners) {
     const PlainBatch::Corners found = batch_->evaluate_corners(scene, lanes);
+    meeting = found.meeting;
     leave(~(found.touching | found.apart), others_);
     touching = found.touching & given;
   } else {
     const PlainBatch::Faces found = batch_->evaluate(scene, lanes);
     touching = found.touching & given;
+    meeting = found.meeting;
     by_faces = ~found.with_corners;
     if (way == Way::faces_as_before) { // those that may be one corner of each now are looked at as such
       leave(found.with_corners, meeting_);
       touching &= by_faces;
     }
   }
+  report_.evaluations -= std::popcount(~meeting & given); // they were thought to meet, and are looked at once
   if (touching != 0 && is_again_) {
     store_again(lanes, touching);
   } else if (touching != 0) {
@@ -163,14 +167,15 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   }
 }
 
-PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching) {
+PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching, unsigned by_faces) {
   PlainResults results;
-  grow(next_.regions, num_forces_ + lanes.count);
   results.has_details = details_ == Details::now;
   if (results.has_details) {
     grow(forces_, num_forces_ + lanes.count);
   }
   results.has_dyads = lanes.pair[0]->kind.is_deformable;
+  unsigned wanted = 0;
+  bool has_mixed = false;
   for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
@@ -178,35 +183,33 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
       births_.push_back(plain.pair);
       return;
     }
-    results.wanted |= 1U << i;
-    ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
+    wanted |= 1U << i;
+    has_mixed = has_mixed || plain.is_mixed;
     results.sums[i] = &sums_.open(plain.pair, is_born);
-    results.memory[i] = &next_.regions[num_forces_];
+    results.memory[i] = &next_.plain[plain.pair];
+    next_.overlaps[plain.pair] = (by_faces >> i & 1U) != 0 ? PlainOverlap::faces : PlainOverlap::corners;
     if (results.has_details) {
+      ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
       results.details[i] = &forces_[num_forces_];
+      ++num_forces_;
     }
     if (results.has_dyads) {
       results.dyads[i] = &sums_.dyads(plain.pair);
     }
-    ++num_forces_;
   });
+  results.wanted = wanted;
+  results.has_mixed = has_mixed;
   return results;
 }
 
 void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching,
                                 unsigned by_faces) {
-  const PlainResults results = open_regions(lanes, touching);
+  const PlainResults results = open_regions(lanes, touching, by_faces);
   const unsigned too_deep = batch_->store(results);
-  for_bits(results.wanted, [&](std::size_t i) {
+  for_bits(results.has_details || results.has_mixed ? results.wanted : 0U, [&](std::size_t i) {
     const std::uint32_t pair = lanes.pair[i]->pair;
-    next_.by_faces[pair] = static_cast<std::uint8_t>(by_faces >> i & 1U);
-    RegionMemory &memory = *results.memory[i];
-    memory.position = {};
-    memory.dilation = {};
-    memory.lower_stretch = 0;
-    memory.higher_stretch = 0;
     if (lanes.pair[i]->is_mixed) {
-      memory.law = lanes.constants[i]->law;
+      results.memory[i]->law = lanes.constants[i]->law;
     }
     if (results.has_details) {
       note_details(lanes, i, forces_[ranges_[pair].begin]);
@@ -227,7 +230,7 @@ void ContactForces::note_details(const PlainLanes &lanes, std::size_t lane, Regi
 void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
   PlainResults results;
   results.has_details = true;
-  std::array<RegionMemory, most_lanes> known;
+  std::array<RegionState, most_lanes> known;
   for (std::size_t i = 0; i < lanes.count; ++i) {
     const PlainPair &plain = *lanes.pair[i];
     // The general way, which mixed pairs are born by, finds details at once.
@@ -253,8 +256,8 @@ void ContactForces::for_batches(const Candidates &candidates, const ContactHisto
       fetch_pair(candidates, history, plain[entries[k]].pair);
     }
     end = begin + 1;
-    while (end < std::min(entries.size(), begin + width) &&
-           plain[entries[begin]].is_like(plain[entries[end]])) {
+    const std::size_t most = std::min(entries.size(), begin + width);
+    while (end < most && plain[entries[begin]].is_like(plain[entries[end]])) {
       ++end;
     }
     visit(entries.subspan(begin, end - begin));
@@ -285,21 +288,26 @@ void ContactForces::evaluate_known(const PlainScene &scene) {
 }
 
 // The history that the evaluation began with is kept in next_, the velocities in motions_.
-void ContactForces::find_details(const BlockSystem &system, const Candidates &candidates) {
+void ContactForces::find_details(const BlockSystem &system, const Candidates &candidates,
+                                 const ContactHistory &history) {
   if (has_details_) {
     return;
   }
   has_details_ = true;
-  forces_.reserve(num_forces_);
-  grow(forces_, num_forces_);
   meeting_.clear();
   faces_.clear();
   for (std::size_t k = 0; k < candidates.plain.size(); ++k) {
     const PlainPair &plain = candidates.plain[k];
-    if (ranges_[plain.pair].count > 0) {
-      (next_.by_faces[plain.pair] != 0 ? faces_ : meeting_).push_back(static_cast<std::uint32_t>(k));
+    const PlainOverlap overlap = history.overlaps[plain.pair];
+    if (overlap == PlainOverlap::none) {
+      ranges_[plain.pair] = {};
+    } else if (!(plain.is_mixed && !next_.has_plain(plain.pair))) { // mixed ones are born with details
+      ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_++), 1};
+      (overlap == PlainOverlap::faces ? faces_ : meeting_).push_back(static_cast<std::uint32_t>(k));
     }
   }
+  forces_.reserve(num_forces_);
+  grow(forces_, num_forces_);
   is_again_ = true;
   evaluate_known({system, candidates, next_, motions_, deforming_, parameters_.damping_ratio,
                   parameters_.stiffness_damping});
@@ -313,22 +321,31 @@ void ContactForces::find_meeting(const Candidates &candidates, const ContactHist
   meeting_.resize(last - first);
   faces_.resize(last - first);
   strangers_.resize(last - first);
-  std::array<std::uint32_t *, 3> end{strangers_.data(), meeting_.data(), faces_.data()};
+  std::uint32_t *strangers = strangers_.data();
+  std::uint32_t *corners = meeting_.data();
+  std::uint32_t *faces = faces_.data();
   const BlockMotion *motions = motions_.data();
   for (std::size_t k = first; k < last; ++k) {
     const PlainPair &plain = candidates.plain[k];
-    const bool is_known = history.ranges[plain.pair].count > 0;
-    std::uint32_t *&to = end[is_known ? 1U + history.by_faces[plain.pair] : 0U];
-    *to = static_cast<std::uint32_t>(k);
-    to += motions[plain.lower.value].box.meets(motions[plain.higher.value].box) ? 1 : 0;
+    const auto entry = static_cast<std::uint32_t>(k);
+    const PlainOverlap overlap = history.overlaps[plain.pair];
+    if (overlap == PlainOverlap::corners) { // that known boxes part is rare, and the lanes will see it
+      *corners++ = entry;
+    } else if (overlap == PlainOverlap::faces) {
+      *faces++ = entry;
+    } else {
+      *strangers = entry;
+      const CandidatePair &pair = candidates.pairs[plain.pair];
+      strangers += motions[pair.lower.value].box.meets(motions[pair.higher.value].box) ? 1 : 0;
+    }
   }
   const auto cut = [&](std::vector<std::uint32_t> &list, const std::uint32_t *list_end) {
     list.resize(static_cast<std::size_t>(list_end - list.data()));
     report_.evaluations += std::ssize(list);
   };
-  cut(strangers_, end[0]);
-  cut(meeting_, end[1]);
-  cut(faces_, end[2]);
+  cut(strangers_, strangers);
+  cut(meeting_, corners);
+  cut(faces_, faces);
 }
 
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
@@ -342,15 +359,18 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
                          parameters_.damping_ratio,
                          parameters_.stiffness_damping};
   for (std::size_t begin = first, end = first; begin < last; begin = end) {
-    while (end < last && candidates.plain[end].group() == candidates.plain[begin].group()) {
-      ++end;
-    }
+    const std::uint32_t group = candidates.plain[begin].group();
+    const auto from = candidates.plain.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto most =
+        static_cast<std::ptrdiff_t>(std::min<std::size_t>(PlainPair::pairs_in_group, last - begin));
+    end = static_cast<std::size_t>(
+        std::partition_point(from, from + most, [&](const PlainPair &p) { return p.group() == group; }) -
+        candidates.plain.begin());
     find_meeting(candidates, history, begin, end);
     evaluate_known(scene);
     evaluate_corners_first(scene, strangers_);
-    sums_.close_group(system, candidates, candidates.plain[begin].group());
+    sums_.close_group(system, candidates, group);
   }
-  next_.regions.resize(num_forces_);
   const PlainBatch::Extremes seen = batch_->take_extremes();
   report_.normals_undefined += seen.normals_undefined;
   report_.max_overlap = std::max(report_.max_overlap, seen.max_overlap);
@@ -363,11 +383,20 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
 void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidates &candidates,
                                       std::uint32_t number, std::span<RegionMemory> old) {
   const std::size_t begin = num_forces_;
+  const std::size_t first_known = next_.regions.size();
   first_of_pair_ = begin;
   dyads_.clear();
   find_regions(system, candidates, number, old);
-  ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(num_forces_ - begin)};
-  if (const std::size_t count = num_forces_ - begin; count > 0) {
+  const std::size_t count = num_forces_ - begin; // of memories as well
+  ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)};
+  if (!candidates.pairs[number].is_plain) {
+    next_.ranges[number] = {static_cast<std::uint32_t>(first_known), static_cast<std::uint32_t>(count)};
+  } else if (count > 0) {
+    next_.overlaps[number] = PlainOverlap::corners;
+    next_.plain[number] = next_.regions.back();
+    next_.regions.pop_back();
+  }
+  if (count > 0) {
     sums_.keep(number, std::span(forces_).subspan(begin, count),
                std::span(dyads_).first(std::min(count, dyads_.size())));
   }
@@ -380,8 +409,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
     if (system.box[pair.lower.value].meets(system.box[pair.higher.value]) || history.has_bonds(k) ||
         history.is_dilated(k)) {
       ++report_.evaluations;
-      evaluate_any_pair(system, candidates, k,
-                        std::span(history.regions).subspan(history.ranges[k].begin, history.ranges[k].count));
+      evaluate_any_pair(system, candidates, k, history.of_other(k));
     }
   }
 }
@@ -400,12 +428,18 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   }
   num_forces_ = 0;
   dilation_works_.clear();
-  ranges_.assign(candidates.pairs.size(), {});
-  history.by_faces.resize(candidates.pairs.size());
-  next_.by_faces.assign(candidates.pairs.size(), 0);
+  ranges_.resize(candidates.pairs.size());
+  if (details == Details::now) {
+    ranges_.assign(candidates.pairs.size(), {});
+  }
+  next_.overlaps.assign(candidates.pairs.size(), PlainOverlap::none);
+  next_.plain.resize(candidates.pairs.size());
+  next_.ranges.assign(candidates.general.empty() ? 0 : candidates.pairs.size(), {});
+  next_.regions.clear();
+  for (const std::uint32_t pair : candidates.general) {
+    ranges_[pair] = {};
+  }
   sums_.start(system, candidates, keep);
-  // Most candidates touch: to grow by doubling would take more memory than to have room for all.
-  next_.regions.reserve(candidates.pairs.size());
   report_ = {};
   evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);
   evaluate_general_pairs(system, candidates, history,
@@ -418,7 +452,6 @@ ForceReport ContactForces::evaluate_border(const BlockSystem &system, const Cand
   evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).subspan(candidates.num_interior_general));
-  next_.ranges = ranges_;
   std::swap(history, next_);
   return report_;
 }

@@ -108,15 +108,17 @@ double ContactForces::consistent_slip(const BlockSystem &system, const Candidate
                                       double guess) const {
   const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
   const double extent = force.extent_end - force.extent_begin;
-  const double normal_force = pair.half_stiffness * force.normal_force;
-  const double tan_friction =
-      law.is_barton_bandis && extent > 0.0 ? law.tan_friction_at(normal_force / extent) : pair.tan_friction;
-  const double stiffness = pair.tangential_stiffness * std::max(known.longest, extent);
+  const LawConstants constants = law.constants();
+  const double normal_force = constants.half_stiffness * force.normal_force;
+  const double tan_friction = law.is_barton_bandis && extent > 0.0
+                                  ? law.tan_friction_at(normal_force / extent)
+                                  : constants.tan_friction;
+  const double stiffness = constants.tangential_stiffness * std::max(known.longest, extent);
   const Vec2 slide = slide_at(system, pair, force.point, motions_[pair.lower.value].increment,
                               motions_[pair.higher.value].increment);
   const double trial = known.shear + stiffness * dot(slide, perp(force.normal));
-  const double by_opening = 2.0 * pair.half_stiffness * extent * law.tan_dilation * tan_friction;
-  const double excess = std::abs(trial) - (normal_force * tan_friction + pair.cohesion * extent);
+  const double by_opening = 2.0 * constants.half_stiffness * extent * law.tan_dilation * tan_friction;
+  const double excess = std::abs(trial) - (normal_force * tan_friction + constants.cohesion * extent);
   return std::max(0.0, (excess + by_opening * guess) / (stiffness + by_opening));
 }
 

@@ -159,10 +159,11 @@ double put_in_situ_shear(const BlockSystem &system, const Candidates &candidates
     if (std::abs(wanted) > force.cap * (1.0 + rounding) && std::abs(wanted) > rounding * normal_force) {
       most_cut = std::max(most_cut, 1.0 - force.cap / std::abs(wanted));
     }
-    if (!(force.cap > 0.0) || !(history.regions[k].longest > 0.0)) {
+    RegionState &memory = history.state(force.pair, forces.number_in_pair(k));
+    if (!(force.cap > 0.0) || !(memory.longest > 0.0)) {
       continue;
     }
-    history.regions[k].shear = shear;
+    memory.shear = shear;
     forces.set_shear(k, shear, force.point - system.trial_centroid[pair.lower.value],
                      force.point - system.trial_centroid[pair.higher.value]);
   }

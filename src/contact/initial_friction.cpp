@@ -41,16 +41,18 @@ Vec2 acceleration_at(const BlockSystem &system, std::size_t row, Vec2 arm) {
 
 InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
                            ContactHistory &history)
-    : forces_(forces), history_(history), contact_counts_(system.num_rows(), 0.0) {
+    : forces_(forces), contact_counts_(system.num_rows(), 0.0) {
   regions_.reserve(forces.regions().size());
   for (std::size_t k = 0; k < forces.regions().size(); ++k) {
     const RegionForce &force = forces.regions()[k];
     // A region without extent along its tangent (faces that coincide up to rounding) has no spring yet.
-    if (!(force.cap > 0.0) || !(history.regions[k].longest > 0.0)) {
+    RegionState &memory = history.state(force.pair, forces.number_in_pair(k));
+    if (!(force.cap > 0.0) || !(memory.longest > 0.0)) {
       continue;
     }
     Region region;
     region.number = k;
+    region.memory = &memory;
     region.tangent = perp(force.normal);
     region.lower = candidates.pairs[force.pair].lower.value;
     region.higher = candidates.pairs[force.pair].higher.value;
@@ -71,7 +73,7 @@ InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidat
     }
     if (std::abs(sliding) > rounding) {
       set_shear(region, std::copysign(region.cap, sliding));
-      history_.regions[k].state = ContactState::slip;
+      memory.state = ContactState::slip;
     } else {
       regions_.push_back(region);
     }
@@ -85,11 +87,11 @@ double InitialStick::tangential_acceleration(const BlockSystem &system, const Re
 }
 
 double InitialStick::corrected(const Region &region, double change) const {
-  return std::clamp(history_.regions[region.number].shear + change, -region.cap, region.cap);
+  return std::clamp(region.memory->shear + change, -region.cap, region.cap);
 }
 
 void InitialStick::set_shear(const Region &region, double shear) {
-  history_.regions[region.number].shear = shear;
+  region.memory->shear = shear;
   forces_.set_shear(region.number, shear, region.arm_lower, region.arm_higher);
 }
 
@@ -98,7 +100,7 @@ double InitialStick::residual(const BlockSystem &system) const {
   for (const Region &region : regions_) {
     const double yield = region.yield_lower + region.yield_higher;
     const double wanted = corrected(region, tangential_acceleration(system, region) / yield);
-    largest = std::max(largest, std::abs(wanted - history_.regions[region.number].shear) * yield);
+    largest = std::max(largest, std::abs(wanted - region.memory->shear) * yield);
   }
   return largest;
 }

@@ -63,7 +63,7 @@ struct LaneConstants {
   [[nodiscard]] bool has_dashpots() const { return damping_ratio > 0.0 || stiffness_damping > 0.0; }
 };
 
-/// RegionForce and RegionMemory, one in each lane.
+/// RegionForce and RegionState, one in each lane.
 class LaneRegions {
 public:
   using Torques = std::array<Lanes, 2>; ///< on the lower and the higher block
@@ -145,7 +145,7 @@ private:
   std::int64_t normals_undefined_ = 0;
   // Take what lanes write that no one asks.
   RegionSums unwanted_sums_;
-  RegionMemory unwanted_memory_;
+  RegionState unwanted_memory_;
   RegionDetails unwanted_details_;
   RegionDyads unwanted_dyads_;
 };
@@ -257,7 +257,7 @@ inline void LaneRegions::find_dyads(const LaneVec &centroid, double sign,
   }
 }
 
-/// RegionMemory's law, the only one a pair can have, and state in the place of one number.
+/// RegionState's law, the only one a pair can have, and state in the place of one number.
 constexpr double only_law_and(ContactState state) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(state) << 32U | 0xffffffffU);
 }
@@ -279,13 +279,12 @@ inline unsigned LaneRegions::store(const PlainResults &results) {
                 shear_torque_[1]);
   store_by_lane(sums, offsetof(RegionSums, damping_force), damping_force_.x, damping_force_.y,
                 damping_torque_[0], damping_torque_[1]);
-  static_assert(offsetof(RegionMemory, law) == offsetof(RegionMemory, shear) + 3 * sizeof(double) &&
-                offsetof(RegionMemory, state) == offsetof(RegionMemory, law) + sizeof(std::int32_t) &&
-                offsetof(RegionMemory, position) == offsetof(RegionMemory, law) + sizeof(double) &&
-                std::endian::native == std::endian::little);
+  static_assert(offsetof(RegionState, law) == 3 * sizeof(double) &&
+                offsetof(RegionState, state) == offsetof(RegionState, law) + sizeof(std::int32_t) &&
+                sizeof(RegionState) == 4 * sizeof(double) && std::endian::native == std::endian::little);
   const Places memory = places(results.memory, unwanted_memory_);
   store_by_lane(
-      memory, offsetof(RegionMemory, shear), elastic_, longest_, slip_,
+      memory, offsetof(RegionState, shear), elastic_, longest_, slip_,
       select(slips_, Lanes(only_law_and(ContactState::slip)), Lanes(only_law_and(ContactState::stick))));
   const Mask wanted = Mask::from(results.wanted);
   max_overlap_ = select(wanted, max(max_overlap_, overlap_), max_overlap_);

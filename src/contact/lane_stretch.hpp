@@ -54,6 +54,10 @@ struct LaneStretch {
   }
 };
 
+[[gnu::always_inline]] inline Mask boxes_meet(const LaneSide &a, const LaneSide &b) {
+  return (a.low.x <= b.high.x) & (b.low.x <= a.high.x) & (a.low.y <= b.high.y) & (b.low.y <= a.high.y);
+}
+
 using LaneStretches = std::array<LaneStretch, most_plain_edges>;
 
 template <std::size_t lines> using PerLine = std::array<Lanes, lines>;

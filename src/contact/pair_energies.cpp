@@ -46,8 +46,9 @@ std::vector<double> find_energies(const BlockSystem &system, const Candidates &c
   std::vector<const PlainPair *> others;
   const auto is_simple = [&](BlockIndex row) { return system.num_vertices(row.value) <= most_corner_edges; };
   for (const PlainPair &plain : candidates.plain) {
-    if (!plain.kind.is_deformable && is_simple(plain.lower) && is_simple(plain.higher) &&
-        system.box[plain.lower.value].meets(system.box[plain.higher.value])) {
+    const CandidatePair &pair = candidates.pairs[plain.pair];
+    if (!plain.kind.is_deformable && is_simple(pair.lower) && is_simple(pair.higher) &&
+        system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
       (plain.kind.may_be_corners ? corners : others).push_back(&plain);
     }
   }

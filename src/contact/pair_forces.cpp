@@ -120,16 +120,17 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
     return;
   }
   const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
+  const LawConstants constants = law.constants();
   const double tan_friction =
-      law.is_barton_bandis ? law.tan_friction_at(force.normal_force / extent) : pair.tan_friction;
-  force.cap = force.normal_force * tan_friction + pair.cohesion * extent;
+      law.is_barton_bandis ? law.tan_friction_at(force.normal_force / extent) : constants.tan_friction;
+  force.cap = force.normal_force * tan_friction + constants.cohesion * extent;
   memory.state = force.cap > 0.0 ? ContactState::stick : ContactState::slip;
   if (force.cap <= 0.0) {
     memory.shear = 0.0;
     return;
   }
   const Vec2 tangent = perp(force.normal);
-  const double stiffness = pair.tangential_stiffness * memory.longest;
+  const double stiffness = constants.tangential_stiffness * memory.longest;
   if (bonds.released) {
     memory.shear += bonds.shear; // stretched to this configuration already
   } else if (!force.born) {
@@ -181,7 +182,8 @@ void ContactForces::add_normal_dashpot(const CandidatePair &pair, const Relative
     facing_[i] = std::max(0.0, facing_of(piece, i < region.middle, n));
     facing_pressure += facing_[i] * 0.5 * piece.length * (piece.depth_begin + piece.depth_end);
   }
-  const double share = std::min(1.0, force.normal_force / pair.half_stiffness / facing_pressure);
+  const double half_stiffness = parameters_.constants(pair.law).half_stiffness;
+  const double share = std::min(1.0, force.normal_force / half_stiffness / facing_pressure);
 
   double total = 0.0;
   Vec2 moment;
@@ -193,7 +195,7 @@ void ContactForces::add_normal_dashpot(const CandidatePair &pair, const Relative
     const Vec2 begin = piece.begin - force.origin;
     const Vec2 tangent = perp(piece.normal);
     const double rate = pair.damping * facing_[i];
-    const double releasable = share * facing_[i] * pair.half_stiffness;
+    const double releasable = share * facing_[i] * half_stiffness;
     const double closing = closing_at_origin + dot(closing_gradient, begin);
     const double closing_end = closing + piece.length * dot(closing_gradient, tangent);
     const std::array<double, 2> depth = overlap_.depth_floor(piece);
@@ -301,9 +303,10 @@ void ContactForces::find_regions(const BlockSystem &system, const Candidates &ca
 
 void ContactForces::load_region(const BlockSystem &system, const CandidatePair &pair, const Region &region,
                                 const BondShare &bonds, RegionMemory &memory, RegionForce &force) {
-  force.force = pair.half_stiffness * force.force;
-  force.dyad = pair.half_stiffness * force.dyad;
-  force.normal_force *= pair.half_stiffness;
+  const double half_stiffness = parameters_.constants(pair.law).half_stiffness;
+  force.force = half_stiffness * force.force;
+  force.dyad = half_stiffness * force.dyad;
+  force.normal_force *= half_stiffness;
   if (force.normal_undefined) {
     memory.shear = 0.0;
     memory.state = ContactState::slip;

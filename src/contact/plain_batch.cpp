@@ -6,7 +6,7 @@
 
 namespace gcpdda {
 
-const RegionMemory PlainLanes::no_memory{.slip = -1.0, .position = {}, .dilation = {}};
+const RegionState PlainLanes::no_memory{.slip = -1.0};
 
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions) {
   std::unique_ptr<PlainBatch> batch;

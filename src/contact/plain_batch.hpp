@@ -30,16 +30,17 @@ struct PlainLanes {
   std::size_t count = 0;
   std::array<const PlainPair *, most_lanes> pair;
   std::array<const CandidatePair *, most_lanes> constants;
-  std::array<const RegionMemory *, most_lanes> memory; ///< no_memory where there is none
+  std::array<const RegionState *, most_lanes> memory; ///< no_memory where there is none
 
-  static const RegionMemory no_memory; ///< has a slip below 0
+  static const RegionState no_memory; ///< has a slip below 0
 };
 
 /// Where results go, by lane.
 struct PlainResults {
   unsigned wanted = 0; ///< bits of the lanes someone asks for, which touch; other places are not looked at
   std::array<RegionSums *, most_lanes> sums;
-  std::array<RegionMemory *, most_lanes> memory;
+  std::array<RegionState *, most_lanes> memory;
+  bool has_mixed = false; ///< some pair's law is among the results
   bool has_details = false;
   std::array<RegionDetails *, most_lanes> details;
   bool has_dyads = false; ///< the blocks deform
@@ -59,12 +60,14 @@ public:
   /// What evaluate() says of each lane, by bits.
   struct Faces {
     unsigned touching = 0;
+    unsigned meeting = 0;      ///< the boxes do
     unsigned with_corners = 0; ///< a corner of each block is in the other one: what evaluate_corners() needs
   };
   virtual Faces evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;
   /// What evaluate_corners() can say of each lane, by bits.
   struct Corners {
     unsigned touching = 0;
+    unsigned meeting = 0;
     unsigned apart = 0;
   };
   /// The same, where PlainPair::may_be_corners, for those that overlap with one corner of each block, which

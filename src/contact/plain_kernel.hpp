@@ -76,8 +76,9 @@ struct LaneBatch::Pairs {
     const std::size_t higher_chain = first.kind.lower_edges + std::size_t{1};
     for (std::size_t i = 0; i < num_lanes; ++i) {
       const PlainPair &plain = *lanes.pair[i];
-      lower.row[i] = plain.lower.value;
-      higher.row[i] = plain.higher.value;
+      const CandidatePair &pair = candidates.pairs[plain.pair];
+      lower.row[i] = pair.lower.value;
+      higher.row[i] = pair.higher.value;
       lower.chain[i] = chains + plain.chain;
       higher.chain[i] = chains + plain.chain + higher_chain;
     }
@@ -120,8 +121,9 @@ inline bool LaneBatch::find_motions(const BlockSystem &system, std::size_t first
 
 inline LaneConstants LaneBatch::load_constants(const PlainScene &scene, const Pairs &pairs) {
   // Each with what stands behind it.
+  const LawConstants *laws = scene.candidates.laws.data();
   const FourLanes strength =
-      load_by_lane([&](std::size_t i) { return &pairs.lanes.constants[i]->half_stiffness; });
+      load_by_lane([&](std::size_t i) { return &laws[pairs.lanes.constants[i]->law].half_stiffness; });
   const FourLanes dashpot = load_by_lane([&](std::size_t i) { return &pairs.lanes.constants[i]->damping; });
   const FourLanes known = load_by_lane([&](std::size_t i) { return &pairs.lanes.memory[i]->shear; });
   return {strength[0],
@@ -262,8 +264,10 @@ inline PlainBatch::Faces LaneBatch::evaluate(const PlainScene &scene, const Plai
   cut_edges(lower_, higher_, on_lower_);
   cut_edges(higher_, lower_, on_higher_);
   integrate();
-  const Faces result{regions_.touches.by_lane(),
-                     (has_corner(lower_, higher_) & has_corner(higher_, lower_)).by_lane()};
+  const Mask meets = boxes_meet(lower_, higher_);
+  regions_.touches = regions_.touches & meets;
+  const Faces result{regions_.touches.by_lane(), meets.by_lane(),
+                     (meets & has_corner(lower_, higher_) & has_corner(higher_, lower_)).by_lane()};
   if (result.touching == 0) {
     return result;
   }
@@ -354,13 +358,16 @@ PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const P
     load_deformed_slopes(scene, pairs.higher, corners.last_higher, corners.higher);
   }
   CornerOverlap<edges> &overlap = corners.overlap;
-  const Mask valid = overlap.find(corners.lower, corners.higher);
+  const Mask meets = boxes_meet(corners.lower, corners.higher);
+  const Mask valid = meets & overlap.find(corners.lower, corners.higher);
   Corners result;
+  result.meeting = meets.by_lane();
+  result.apart = (!meets).by_lane();
   if ((!valid).any()) {
     corners.lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.kind.lower_edges);
     corners.higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.kind.higher_edges);
     const Mask apart = are_apart<edges>(corners.lower, corners.higher);
-    result.apart = (apart & !valid).by_lane();
+    result.apart |= (apart & !valid).by_lane();
     if (!valid.any()) {
       return result;
     }

@@ -81,10 +81,6 @@ void take_law(const BlockSystem &system, const ContactParameters &parameters, st
   const BlockProperties &a = system.properties[pair.lower.value];
   const BlockProperties &b = system.properties[pair.higher.value];
   pair.law = law;
-  pair.half_stiffness = 0.5 * values.normal_stiffness;
-  pair.tangential_stiffness = values.tangential_ratio * values.normal_stiffness;
-  pair.tan_friction = values.has_bonds ? values.residual_tan_friction : values.tan_friction;
-  pair.cohesion = values.has_bonds ? values.residual_cohesion : values.cohesion;
   // A fixed or driven block counts as infinitely heavy and sets no length.
   const bool a_fixed = a.keeps_its_velocity();
   const bool b_fixed = b.keeps_its_velocity();

@@ -52,7 +52,7 @@ double mean_stiffness(const Simulation &simulation, std::size_t number, const Bl
                       const BlockView &second) {
   const CandidatePair &pair = simulation.candidates().pairs[number];
   const ContactParameters &parameters = simulation.contacts().parameters();
-  const std::span<const RegionMemory> known = simulation.history().of_pair(number);
+  const std::vector<RegionMemory> known = simulation.history().of_pair(number);
   Overlap overlap;
   overlap.find(first, second, parameters.potential);
   double weights = 0.0;
@@ -68,7 +68,7 @@ double mean_stiffness(const Simulation &simulation, std::size_t number, const Bl
     weights += weight;
     weighted += weight * 0.5 * parameters.joints.laws[static_cast<std::size_t>(law)].normal_stiffness;
   }
-  return weights > 0.0 ? weighted / weights : pair.half_stiffness;
+  return weights > 0.0 ? weighted / weights : parameters.constants(pair.law).half_stiffness;
 }
 
 /// Share of the pair's energy that is in the regions for which `counts` holds.
@@ -88,7 +88,7 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
                       const BlockView &second) {
   const CandidatePair &pair = simulation.candidates().pairs[number];
   const ContactParameters &parameters = simulation.contacts().parameters();
-  const std::span<const RegionMemory> known = simulation.history().of_pair(number);
+  const std::vector<RegionMemory> known = simulation.history().of_pair(number);
   Overlap overlap;
   ClosedPair closed;
   double sum = 0.0;
@@ -102,7 +102,7 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
       continue;
     }
     const Region *own = region_of(simulation.blocks(), pair, overlap, memory);
-    sum += constants_of(simulation.blocks(), parameters, pair, memory.law).half_stiffness *
+    sum += parameters.constants(memory.law >= 0 ? memory.law : pair.law).half_stiffness *
            overlap_energy(closed.lower(), closed.higher()) *
            energy_share(overlap, [&](const Region &region) { return &region == own; });
   }
@@ -114,14 +114,17 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
       return memory.is_dilated() && region.faces == RegionFaces{memory.lower_stretch, memory.higher_stretch};
     });
   };
-  const double half_stiffness =
-      pair.is_mixed ? mean_stiffness(simulation, number, first, second) : pair.half_stiffness;
+  const double half_stiffness = pair.is_mixed ? mean_stiffness(simulation, number, first, second)
+                                              : parameters.constants(pair.law).half_stiffness;
   return sum + half_stiffness * overlap_energy(first, second) * energy_share(overlap, is_fresh);
 }
 
 void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
   const BlockSystem &blocks = simulation.blocks();
   const std::vector<double> known = find_energies(blocks, simulation.candidates());
+  const auto half_stiffness_of = [&](const CandidatePair &pair) {
+    return simulation.contacts().parameters().constants(pair.law).half_stiffness;
+  };
   for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
     const CandidatePair &pair = simulation.candidates().pairs[k];
     const std::size_t a = pair.lower.value;
@@ -132,7 +135,7 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
     }
     const bool is_known = !std::isnan(known[k]) && !is_dilated;
     if (is_known && !pair.is_mixed) {
-      sum.add(share * pair.half_stiffness * known[k]);
+      sum.add(share * half_stiffness_of(pair) * known[k]);
       continue;
     }
     const BlockView first = view_of(blocks, a);
@@ -141,7 +144,7 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
       sum.add(share * dilated_energy(simulation, k, first, second));
     } else {
       const double half_stiffness =
-          pair.is_mixed ? mean_stiffness(simulation, k, first, second) : pair.half_stiffness;
+          pair.is_mixed ? mean_stiffness(simulation, k, first, second) : half_stiffness_of(pair);
       sum.add(share * half_stiffness * (is_known ? known[k] : overlap_energy(first, second)));
     }
   }
@@ -156,21 +159,20 @@ void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
   const std::vector<TrialIncrement> increments =
       moment == Moment::middle ? trial_increments(simulation.blocks()) : std::vector<TrialIncrement>();
   const std::span<const RegionForce> forces = simulation.contacts().regions();
-  CandidatePair own; // of a mixed pair
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const RegionForce &force = forces[k];
     const CandidatePair &pair = simulation.candidates().pairs[force.pair];
-    const RegionMemory &memory = simulation.history().regions[k];
+    const ContactHistory &history = simulation.history();
+    const std::size_t number = simulation.contacts().number_in_pair(k);
+    const RegionState &memory = history.state(force.pair, number);
     if (!simulation.counts_here(pair)) {
       continue;
     }
-    if (memory.law >= 0) {
-      own = constants_of(simulation.blocks(), parameters, pair, memory.law);
-    }
-    const CandidatePair &constants = memory.law >= 0 ? own : pair;
-    if (memory.is_bond()) {
+    const LawConstants constants = parameters.constants(memory.law >= 0 ? memory.law : pair.law);
+    const RegionMemory *bond = force.bonded ? &history.of_other(force.pair)[number] : nullptr;
+    if (bond != nullptr) {
       sum.add(2.0 * constants.half_stiffness *
-              bond_energy(simulation.blocks(), pair, memory, moment == Moment::middle));
+              bond_energy(simulation.blocks(), pair, *bond, moment == Moment::middle));
     }
     if (memory.shear == 0.0) {
       continue;
@@ -179,8 +181,8 @@ void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
     double next = memory.shear;
     if (moment == Moment::middle && memory.state != ContactState::slip) {
       next += stiffness *
-              (memory.is_bond()
-                   ? opening_of(simulation.blocks(), pair, memory, Configuration::trial).slide - memory.slip
+              (bond != nullptr
+                   ? opening_of(simulation.blocks(), pair, *bond, Configuration::trial).slide - memory.slip
                    : coming_slide(simulation.blocks(), pair, force, increments));
     }
     sum.add(0.5 * memory.shear * next / stiffness);

@@ -53,6 +53,8 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(simulation.candidates().block_contacts);
   add(simulation.candidates().plain);
   add(simulation.candidates().chain_vertices);
+  add(simulation.history().overlaps);
+  add(simulation.history().plain);
   add(simulation.history().regions);
   bytes += blocks.num_rows() * sizeof(BlockMotion);
   // At the start, when the sums of all regions are kept.

@@ -185,8 +185,7 @@ void SimulationContacts::append(std::int64_t first, std::int64_t last, std::vect
     const CandidatePair &pair = simulation_.candidates().pairs[number];
     std::int32_t position = 0;
     for (const RegionForce &force : contacts.of_pair(number)) {
-      const auto region = static_cast<std::size_t>(&force - contacts.regions().data());
-      const RegionMemory &memory = simulation_.history().regions[region];
+      const RegionState &memory = simulation_.history().state(number, static_cast<std::size_t>(position));
       const Vec2 tangent = perp(force.normal);
       ContactRow row;
       row.lower = blocks.properties[pair.lower.value].id.value;

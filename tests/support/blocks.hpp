@@ -4,6 +4,7 @@
 
 #include "gcpdda/contact/contact_forces.hpp"
 #include "gcpdda/model/block_system.hpp"
+#include "support/memories.hpp"
 #include "support/shapes.hpp"
 
 #include <limits>
@@ -116,7 +117,7 @@ struct ContactBench {
     system.trial[row] += by;
     return evaluate();
   }
-  [[nodiscard]] const RegionMemory &memory() const { return history.regions.front(); }
+  [[nodiscard]] RegionMemory memory() const { return memories(history).front(); }
 
   ForceReport report;
   Seen seen;

@@ -152,8 +152,8 @@ TEST(MakeCandidates, ContactsOfABlockAscendByPartner) {
   const Candidates candidates =
       make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, {}, history, testing::infinite_skin);
   ASSERT_EQ(candidates.contact_begin.size(), system.num_owned + 1);
-  EXPECT_EQ(history.ranges.size(), pairs.size());
-  EXPECT_TRUE(history.regions.empty()) << "nothing remembered";
+  EXPECT_EQ(history.overlaps.size(), pairs.size());
+  EXPECT_TRUE(testing::memories(history).empty()) << "nothing remembered";
   std::size_t ends = 0;
   for (std::uint32_t row = 0; row < system.num_owned; ++row) {
     BlockId last{-1};
@@ -206,15 +206,17 @@ TEST(MakeCandidates, MemoryIsMatchedByIds) {
   ContactHistory history;
   history.regions.resize(3); // leftovers of an older list must not shine through
   history.regions[1].shear = 77.0;
+  history.overlaps.assign(3, PlainOverlap::faces);
+  history.plain.resize(3);
   make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, memory, history, testing::infinite_skin);
-  ASSERT_EQ(history.ranges.size(), pairs.size());
+  ASSERT_EQ(history.overlaps.size(), pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     ASSERT_EQ(history.of_pair(k).size(), k % 2 == 0 ? 1U : 0U);
     if (k % 2 == 0) {
       const RegionMemory expected =
           mark(system.properties[pairs[k].first.value].id, system.properties[pairs[k].second.value].id)
               .memory;
-      const RegionMemory &found = history.of_pair(k).front();
+      const RegionMemory found = history.of_pair(k).front();
       EXPECT_EQ(found.shear, expected.shear);
       EXPECT_EQ(found.longest, expected.longest);
       EXPECT_EQ(found.slip, expected.slip);
@@ -232,10 +234,11 @@ TEST(MakeCandidates, ConstantsOfAPair) {
   const Candidates candidates =
       make_candidates(system, pairs, parameters, {}, history, testing::infinite_skin);
   const CandidatePair &mobile = candidates.pairs[0];
-  EXPECT_EQ(mobile.half_stiffness, 2e6);
-  EXPECT_EQ(mobile.tangential_stiffness, 1e6);
-  EXPECT_EQ(mobile.tan_friction, 0.7);
-  EXPECT_EQ(mobile.cohesion, 50.0);
+  const LawConstants &law = candidates.laws.at(static_cast<std::size_t>(mobile.law));
+  EXPECT_EQ(law.half_stiffness, 2e6);
+  EXPECT_EQ(law.tangential_stiffness, 1e6);
+  EXPECT_EQ(law.tan_friction, 0.7);
+  EXPECT_EQ(law.cohesion, 50.0);
   // A few roundings of products and a root.
   const double reduced = 2000.0 * 9000.0 / 11000.0;
   EXPECT_NEAR(mobile.mass, reduced, 1e-12 * reduced);

@@ -136,7 +136,7 @@ TEST(Friction, MemoryDiesWithTheRegion) {
     const RigidDof away = boxes_meet ? RigidDof{{1.2, 0.0}, 0.0} : RigidDof{{0.0, 0.5}, 0.0};
     EXPECT_FALSE(bench.move(0, away).touching);
     EXPECT_EQ(bench.report.evaluations, boxes_meet ? 1 : 0);
-    EXPECT_TRUE(bench.history.regions.empty());
+    EXPECT_TRUE(testing::memories(bench.history).empty());
     EXPECT_EQ(bench.move(0, -1.0 * away).shear, 0.0) << "touches again, as new";
   }
 }

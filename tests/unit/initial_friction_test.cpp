@@ -74,8 +74,8 @@ TEST(InitialFriction, StopsTheContactPointOfAFlatBlock) {
     const double expected = g * std::sin(angle) / (1.0 / block.mass + arm * arm / block.inertia);
     // The normal is level to about epsilon/d.
     EXPECT_NEAR(-force.force.x, expected, 1e-11 * expected);
-    EXPECT_NEAR(run.history().regions[0].shear, force.shear, 0.0);
-    EXPECT_EQ(run.history().regions[0].state, ContactState::stick);
+    EXPECT_NEAR(memories(run.history())[0].shear, force.shear, 0.0);
+    EXPECT_EQ(memories(run.history())[0].state, ContactState::stick);
     EXPECT_FALSE(starts_at_zero(run));
   }
 }
@@ -213,7 +213,7 @@ TEST(InitialFriction, SlidingBlockStartsOnTheCapAgainstItsMotion) {
     const RegionForce &force = run.contacts().regions()[0];
     const double cap = force.normal_force * std::tan(30.0 * degree);
     EXPECT_NEAR(force.force.x, -std::copysign(cap, speed), 1e-11 * cap);
-    EXPECT_EQ(run.history().regions[0].state, ContactState::slip);
+    EXPECT_EQ(memories(run.history())[0].state, ContactState::slip);
   }
 }
 
@@ -225,7 +225,7 @@ TEST(InitialFriction, CommonMotionIsNoSliding) {
                   block_toml("upper", rectangle({0.0, 0.999}, {1.0, 2.0}), "velocity = [7.3, -2.1, 0.0]"));
   const Simulation run = started(toml);
   ASSERT_TRUE(!run.contacts().regions().empty());
-  EXPECT_EQ(run.history().regions[0].state, ContactState::stick);
+  EXPECT_EQ(memories(run.history())[0].state, ContactState::stick);
   EXPECT_NEAR(run.contacts().regions()[0].shear, 0.0, 1e-11 * density * g) << "both fall the same";
 }
 
@@ -235,7 +235,7 @@ TEST(InitialFriction, ZeroLeavesZero) {
     const Simulation run = started(incline(slope, 30.0 * degree, flat_block(slope, velocity)),
                                    {"run.initial_friction=zero", "run.contact_damping=0"});
     EXPECT_EQ(run.contacts().regions()[0].shear, 0.0);
-    EXPECT_EQ(run.history().regions[0].shear, 0.0);
+    EXPECT_EQ(memories(run.history())[0].shear, 0.0);
     EXPECT_NEAR(run.blocks().acceleration[0].u.x, g * std::sin(slope), 1e-11 * g);
   }
 }

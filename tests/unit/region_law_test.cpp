@@ -83,11 +83,11 @@ TEST(RegionLaw, IsKeptAsLongAsTheRegionLives) {
   };
   for (int k = 0; k <= 20; ++k) { // clockwise, on to the right face
     put(-0.025 * std::numbers::pi * k, 1e-3);
-    ASSERT_EQ(bench.history.regions.size(), 1U);
+    ASSERT_EQ(testing::memories(bench.history).size(), 1U);
     EXPECT_EQ(bench.memory().law, smooth) << k;
   }
   put(-0.5 * std::numbers::pi, -1e-3);
-  EXPECT_TRUE(bench.history.regions.empty());
+  EXPECT_TRUE(testing::memories(bench.history).empty());
   put(-0.5 * std::numbers::pi, 1e-3);
   EXPECT_EQ(bench.memory().law, rough);
 }

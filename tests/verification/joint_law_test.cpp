@@ -6,6 +6,7 @@
 #include "gcpdda/contact/bonds.hpp"
 #include "gcpdda/simulation/energy_ledger.hpp"
 #include "support/blocks.hpp"
+#include "support/memories.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -94,7 +95,7 @@ TEST(DirectShear, PeakAndResidual) {
                cohesion * length + seen.normal_peak * std::tan(40.0 * degree), seen.peak, 1e-3);
   expect_value("direct shear: residual, c_r l + N tan(phi_r)",
                5e4 * length + seen.normal * std::tan(20.0 * degree), seen.residual, 1e-3);
-  ASSERT_EQ(simulation.history().regions.size(), 1U) << "the bond is gone";
+  ASSERT_EQ(memories(simulation.history()).size(), 1U) << "the bond is gone";
 }
 
 /// Two feet of a quarter of the length each, a gap between them.
@@ -168,7 +169,7 @@ TEST(DirectShear, DilationAtConstantHeightRaisesThePressure) {
       sheared(dilation_of(dilation_deg), 30.0, 0.8,
               "velocity_table = [[0, 0, 0, 0], [0.1, 0, -0.01, 0], [0.2, 0, 0, 0], [0.3, 4e-3, 0, 0]]");
   const Shear seen = shear_of(simulation);
-  const double slip = simulation.history().regions.at(0).slip;
+  const double slip = memories(simulation.history()).at(0).slip;
   EXPECT_GT(slip, 5e-4);
   const double driven = 4e-3 * (0.05 + 0.5); // m
   expect_value("direct shear, dilation: slip and stretch of the spring make the way driven, m", driven,
@@ -207,7 +208,7 @@ Slide slide_down(double psi_deg, const Setting &setting, double sunk = 0.0) {
     step(simulation);
     const RigidDof &v = velocity_of(simulation, 1);
     if (!simulation.history().regions.empty()) {
-      seen.slip = simulation.history().regions[0].slip;
+      seen.slip = memories(simulation.history())[0].slip;
     }
     if (seen.slip < 0.009) {
       seen.acceleration = v.u.x / simulation.time();
@@ -342,7 +343,7 @@ TEST(Overhang, StrongHoldsAndWeakBreaksOff) {
   std::vector<std::int64_t> bonded;
   for (std::size_t k = 0; k < simulation.contacts().regions().size(); ++k) {
     const CandidatePair &pair = simulation.candidates().pairs[simulation.contacts().regions()[k].pair];
-    if (simulation.history().regions[k].is_bond() && simulation.blocks().is_fixed(pair.lower.value)) {
+    if (simulation.contacts().regions()[k].bonded && simulation.blocks().is_fixed(pair.lower.value)) {
       bonded.push_back(simulation.blocks().properties[pair.higher.value].id.value);
     }
   }

@@ -27,7 +27,8 @@ double joint_overlaps(const Simulation &simulation, int rows, bool right) {
     const std::int64_t b = simulation.blocks().properties[pair.higher.value].id.value;
     const auto at = std::find(column.begin(), column.end(), a == 0 ? b : a);
     if (at != column.end() && (a == 0 || (at + 1 < column.end() && *(at + 1) == b))) {
-      sum += force.normal_force / (2.0 * pair.half_stiffness * (force.extent_end - force.extent_begin));
+      const double stiffness = 2.0 * simulation.contacts().parameters().constants(pair.law).half_stiffness;
+      sum += force.normal_force / (stiffness * (force.extent_end - force.extent_begin));
     }
   }
   return sum;

@@ -1,6 +1,7 @@
 // C4: the pull-out load of a symmetric roof wedge between two abutments (Crawford and Bray).
 
 #include "problem.hpp"
+#include "support/memories.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -68,7 +69,7 @@ double pull_out_load(double ratio) {
     peak = std::max(peak, load);
   }
   EXPECT_FALSE(simulation.fault().has_value());
-  EXPECT_EQ(simulation.history().regions[0].state, ContactState::slip);
+  EXPECT_EQ(memories(simulation.history())[0].state, ContactState::slip);
   return peak / pressing;
 }
 

@@ -3,6 +3,7 @@
 #include "problem.hpp"
 
 #include "gcpdda/simulation/energy_ledger.hpp"
+#include "support/memories.hpp"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +47,7 @@ TEST(Sticking, EnergyOfATangentialOscillationIsBounded) {
     }
   }
   ASSERT_FALSE(simulation.fault().has_value());
-  expect_below("B6 distance slid in 100000 steps, m", 0.0, simulation.history().regions[0].slip);
+  expect_below("B6 distance slid in 100000 steps, m", 0.0, memories(simulation.history())[0].slip);
   // Round-off of the sum of the work of 1e5 steps.
   expect_below("B6 energy lost in friction over the energy supplied", 1e-8, std::abs(lost) / supplied);
   expect_below("B6 energy error over the energy supplied, steps 0 to 10000", 0.05, first / supplied);

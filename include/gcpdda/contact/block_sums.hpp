@@ -41,8 +41,7 @@ public:
   /// Place for what the only region of a plain pair of the group at hand does.
   RegionSums &open(std::uint32_t pair, bool born) {
     const std::uint32_t slot = pair % PlainPair::pairs_in_group;
-    touched_[slot / 64] |= std::uint64_t{1} << slot % 64;
-    born_[slot / 64] |= std::uint64_t{born} << slot % 64;
+    seen_[slot] = static_cast<std::uint8_t>(born ? touches | is_born : touches);
     return group_[slot];
   }
   RegionDyads &dyads(std::uint32_t pair) { return group_dyads_[pair % PlainPair::pairs_in_group]; }
@@ -75,7 +74,9 @@ private:
     RegionSums sums;
     bool born = false;
   };
-  using Group = std::array<std::uint64_t, PlainPair::pairs_in_group / 64>; ///< a bit a pair
+  // What is seen of a pair, by bits.
+  static constexpr std::uint8_t touches = 1;
+  static constexpr std::uint8_t is_born = 2;
 
   /// When a row gets what a group does: not at all where it is not owned.
   enum class When { at_once, later, never };
@@ -85,6 +86,13 @@ private:
     }
     return keep_ == Keep::all || is_added_[row.value] == 0 ? When::later : When::at_once;
   }
+  /// visit(number, its region, was it born) for the pairs of the group at hand that touch.
+  template <class Visit> void for_touched(std::uint32_t group, Visit &&visit) const;
+  /// Of blocks none of which waits (Candidates::are_added).
+  void add_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
+  /// Of any others: some get it later.
+  void sort_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
+  /// If the row is owned and deforms.
   void add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads);
 
   Keep keep_ = Keep::all;
@@ -97,8 +105,7 @@ private:
   // Of the group at hand, by pair.
   std::vector<RegionSums> group_;
   std::vector<RegionDyads> group_dyads_; ///< if some block deforms
-  Group touched_{};
-  Group born_{};
+  std::array<std::uint8_t, PlainPair::pairs_in_group> seen_{};
   std::vector<RegionRange> kept_range_; ///< of kept_, by pair
   std::vector<KeptRegion> kept_;
   std::vector<RegionDyads> kept_dyads_;

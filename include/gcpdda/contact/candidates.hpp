@@ -14,18 +14,15 @@ namespace gcpdda {
 
 /// Two blocks that may touch before the next refresh, with what stays constant for the pair.
 struct CandidatePair {
-  BlockIndex lower;  ///< row of the block with the lower id
-  BlockIndex higher; ///< row of the block with the higher id
-  std::int32_t law = 0;
-  double half_stiffness = 0.0;       ///< p_n/H = k_n/2, Pa/m
-  double tangential_stiffness = 0.0; ///< per length of contact, Pa/m
-  double tan_friction = 0.0;
-  double cohesion = 0.0;        ///< Pa
+  // The lanes read these with what stands behind them.
   double damping = 0.0;         ///< c'/2 of the normal dashpot, Pa s/m
   double mass = 0.0;            ///< m_A m_B/(m_A + m_B), kg per metre
   double allowed_overlap = 0.0; ///< half the narrowest width: deeper than this the force reverses, m
-  bool is_convex = true;        ///< both blocks are: one region at most
-  /// Its regions may take different laws, see region_law.hpp; the constants are those of one of them.
+  BlockIndex lower;             ///< row of the block with the lower id
+  BlockIndex higher;            ///< row of the block with the higher id
+  std::int32_t law = 0;
+  bool is_convex = true; ///< both blocks are: one region at most
+  /// Its regions may take different laws, see region_law.hpp; law and damping are those of one of them.
   bool is_mixed = false;
   bool is_plain = false; ///< listed in Candidates::plain
 };
@@ -35,8 +32,6 @@ struct CandidatePair {
 /// alone, so that no bit of a run depends on when the neighbourhood is refreshed.
 struct PlainPair {
   std::uint32_t pair = 0;
-  BlockIndex lower;
-  BlockIndex higher;
   std::uint32_t chain = 0; ///< Candidates::chain_vertices from here on: the ends of the lower block's edges,
                            ///< one more than edges, then those of the higher one's
   /// Pairs that have these in common may share an evaluation.
@@ -71,6 +66,7 @@ struct Candidates {
   /// id.
   std::vector<std::uint32_t> contact_begin;
   std::vector<BlockContact> block_contacts;
+  std::vector<LawConstants> laws; ///< by CandidatePair::law
   // In the order in which they are evaluated: first those without a ghost, whose number stands beside.
   std::vector<PlainPair> plain; ///< by groups, in each those of like numbers of edges together
   std::size_t num_interior_plain = 0;
@@ -80,7 +76,8 @@ struct Candidates {
   /// By owned row: all of its pairs are plain, without a ghost and of one law, and come in the order of the
   /// other blocks' ids; see BlockSums.
   std::vector<std::uint8_t> is_added;
-  std::vector<std::uint32_t> waiting; ///< numbers of the pairs of the others, in order
+  std::vector<std::uint32_t> waiting;  ///< numbers of the pairs of the others, in order
+  std::vector<std::uint8_t> are_added; ///< by PlainPair::group: none of its pairs is one of these
 };
 
 /// Most edges of one block of a plain pair.
@@ -98,6 +95,9 @@ struct ContactParameters {
   double stiffness_damping = 0.0; ///< beta, s: dashpots of beta times the springs besides those of xi
 
   [[nodiscard]] bool has_dashpots() const { return damping_ratio > 0.0 || stiffness_damping > 0.0; }
+  [[nodiscard]] LawConstants constants(std::int32_t law) const {
+    return joints.laws[static_cast<std::size_t>(law)].constants();
+  }
 };
 
 /// Box of every row at t_n; a mobile block's is inflated by half the skin.

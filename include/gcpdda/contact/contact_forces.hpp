@@ -140,11 +140,14 @@ public:
 
   /// The details of all regions, if they were not found with the last evaluation: as long as trial
   /// configuration and candidates are those of it.
-  void find_details(const BlockSystem &system, const Candidates &candidates);
+  void find_details(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history);
 
-  /// All touching regions, those of a pair together, which must have been found with their details; region i
-  /// is that of history.regions[i].
+  /// All touching regions, those of a pair together, which must have been found with their details.
   [[nodiscard]] std::span<const RegionForce> regions() const { return {forces_.data(), num_forces_}; }
+  /// Which of its pair's regions that is, in the order of ContactHistory.
+  [[nodiscard]] std::size_t number_in_pair(std::size_t region) const {
+    return region - ranges_[forces_[region].pair].begin;
+  }
   /// Those of one pair.
   [[nodiscard]] std::span<const RegionForce> of_pair(std::size_t pair) const {
     return {forces_.data() + ranges_[pair].begin, ranges_[pair].count};
@@ -190,7 +193,7 @@ private:
   void evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries);
   void evaluate_known(const PlainScene &scene);
   /// Places for the lanes that touch.
-  PlainResults open_regions(const PlainLanes &lanes, unsigned touching);
+  PlainResults open_regions(const PlainLanes &lanes, unsigned touching, unsigned by_faces);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, unsigned by_faces);
   /// What lanes do not know of them.
@@ -261,9 +264,10 @@ private:
   std::size_t num_forces_ = 0;
   Details details_ = Details::now; ///< asked for with the evaluation
   bool has_details_ = true;
-  bool is_again_ = false;           ///< find_details() is at work
-  std::vector<RegionRange> ranges_; ///< of forces_, one a pair
-  ForceReport report_;              ///< of what has been evaluated so far
+  bool is_again_ = false; ///< find_details() is at work
+  std::vector<RegionRange>
+      ranges_;         ///< of forces_, one a pair; without details only of those that are not plain
+  ForceReport report_; ///< of what has been evaluated so far
   ContactHistory next_;
   std::vector<BlockMotion> motions_;      ///< one a row
   std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation

@@ -36,6 +36,7 @@ public:
 private:
   struct Region {
     std::size_t number = 0; ///< of the region
+    RegionState *memory = nullptr;
     Vec2 tangent;
     Vec2 arm_lower;
     Vec2 arm_higher;
@@ -51,7 +52,6 @@ private:
   void set_shear(const Region &region, double shear);
 
   ContactForces &forces_;
-  ContactHistory &history_;
   std::vector<Region> regions_;
   std::vector<double> contact_counts_;
 };

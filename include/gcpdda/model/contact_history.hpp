@@ -13,15 +13,18 @@ namespace gcpdda {
 
 enum class ContactState : std::uint8_t { stick = 1, slip = 2, bonded = 3 };
 
-/// Memory of one contact region, alive from its first evaluation with an overlap to its last, or of one bond,
-/// alive until it breaks.
-struct RegionMemory {
+/// All that is remembered of a contact region of two convex blocks, alive from its first evaluation with an
+/// overlap to its last. Four numbers: the lanes read and write them so (src/contact/lane_region.hpp).
+struct RegionState {
   double shear = 0.0;    ///< F_t: along -t_r on the lower block, along t_r on the higher one, N/m
   double longest = 0.0;  ///< largest extent along t_r so far, m: the tangential stiffness never falls
   double slip = 0.0;     ///< accumulated sliding distance, m
   std::int32_t law = -1; ///< that the region was born with; -1: the only one its pair can have
   ContactState state = ContactState::stick;
-  // All that a step needs of two convex blocks stands above.
+};
+
+/// Of any region, or of one bond, alive until it breaks.
+struct RegionMemory : RegionState {
   Vec2 position; ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
   Vec2 dilation; ///< what slip has opened, in axes that turn with the mean of both blocks, m
   std::int32_t lower_stretch = 0;  ///< stretches of the outlines between re-entrant vertices that face each
@@ -50,23 +53,50 @@ struct RegionRange {
   std::uint32_t count = 0;
 };
 
-/// Contact memory by candidate pair. Only living regions are listed, at most one of two convex blocks, and
-/// behind them the bonds.
-struct ContactHistory {
-  std::vector<RegionRange> ranges; ///< one a pair
-  std::vector<RegionMemory> regions;
-  /// Whether a pair overlapped otherwise than with one corner of each block, and hardly will so in the next
-  /// step. Saves work and changes no result: it is forgotten where that is easier. One a pair, or none.
-  std::vector<std::uint8_t> by_faces;
+/// How a plain pair (contact/candidates.hpp) overlaps: with one corner of each block, or otherwise and hardly
+/// so in the next step. Which of the two saves work and changes no result: `corners` where it is not known.
+enum class PlainOverlap : std::uint8_t { none = 0, corners = 1, faces = 2 };
 
-  [[nodiscard]] std::span<const RegionMemory> of_pair(std::size_t pair) const {
-    return {regions.data() + ranges[pair].begin, ranges[pair].count};
+/// Contact memory by candidate pair. Only living regions are listed: at most one of two convex blocks, and
+/// behind those of a pair its bonds.
+struct ContactHistory {
+  // One a pair. A step writes these of plain pairs, and nothing else.
+  std::vector<PlainOverlap> overlaps; ///< `none` of the other pairs
+  std::vector<RegionState> plain;     ///< the region of a plain pair that overlaps
+  // Of the other pairs.
+  std::vector<RegionRange> ranges; ///< of `regions`, one a pair; empty if all pairs are plain
+  std::vector<RegionMemory> regions;
+
+  [[nodiscard]] bool has_plain(std::size_t pair) const { return overlaps[pair] != PlainOverlap::none; }
+  /// Of a pair that is not plain.
+  [[nodiscard]] std::span<const RegionMemory> of_other(std::size_t pair) const {
+    return ranges.empty() ? std::span<const RegionMemory>()
+                          : std::span(regions).subspan(ranges[pair].begin, ranges[pair].count);
+  }
+  [[nodiscard]] std::span<RegionMemory> of_other(std::size_t pair) {
+    return ranges.empty() ? std::span<RegionMemory>()
+                          : std::span(regions).subspan(ranges[pair].begin, ranges[pair].count);
+  }
+  [[nodiscard]] std::vector<RegionMemory> of_pair(std::size_t pair) const {
+    if (has_plain(pair)) {
+      return {RegionMemory{plain[pair], {}, {}, 0, 0}};
+    }
+    const std::span<const RegionMemory> known = of_other(pair);
+    return {known.begin(), known.end()};
+  }
+  /// Region or bond `number` of a pair.
+  [[nodiscard]] RegionState &state(std::size_t pair, std::size_t number) {
+    return has_plain(pair) ? plain[pair] : regions[ranges[pair].begin + number];
+  }
+  [[nodiscard]] const RegionState &state(std::size_t pair, std::size_t number) const {
+    return has_plain(pair) ? plain[pair] : regions[ranges[pair].begin + number];
   }
   [[nodiscard]] bool has_bonds(std::size_t pair) const {
-    return ranges[pair].count > 0 && of_pair(pair).back().is_bond();
+    const std::span<const RegionMemory> known = of_other(pair);
+    return !known.empty() && known.back().is_bond();
   }
   [[nodiscard]] bool is_dilated(std::size_t pair) const {
-    const std::span<const RegionMemory> known = of_pair(pair);
+    const std::span<const RegionMemory> known = of_other(pair);
     return std::any_of(known.begin(), known.end(), [](const RegionMemory &m) { return m.is_dilated(); });
   }
 };

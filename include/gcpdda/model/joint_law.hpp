@@ -11,6 +11,15 @@
 
 namespace gcpdda {
 
+/// What a law gives to all contacts that have it, where nothing is bonded. Four numbers: the lanes read them
+/// so.
+struct LawConstants {
+  double half_stiffness = 0.0;       ///< p_n/H = k_n/2, Pa/m
+  double tangential_stiffness = 0.0; ///< per length of contact, Pa/m
+  double tan_friction = 0.0;
+  double cohesion = 0.0; ///< Pa
+};
+
 /// Contact law of a family of joints.
 struct JointLaw {
   std::string name;
@@ -42,6 +51,10 @@ struct JointLaw {
   /// The same constants for every contact at all times.
   [[nodiscard]] bool is_constant() const { return !has_bonds && !is_barton_bandis && dilation_limit == 0.0; }
   [[nodiscard]] bool dilates() const { return tan_dilation > 0.0; }
+  [[nodiscard]] LawConstants constants() const {
+    return {0.5 * normal_stiffness, tangential_ratio * normal_stiffness,
+            has_bonds ? residual_tan_friction : tan_friction, has_bonds ? residual_cohesion : cohesion};
+  }
   /// By how much slip opens the joint, from a fresh one, m.
   [[nodiscard]] double dilation_at(double slip) const {
     return tan_dilation * std::min(slip, dilation_limit);

@@ -142,7 +142,7 @@ public:
   [[nodiscard]] const ContactHistory &history() const { return history_; }
   /// With all details.
   [[nodiscard]] const ContactForces &contacts() const {
-    contacts_.find_details(blocks_, candidates_);
+    contacts_.find_details(blocks_, candidates_, history_);
     return contacts_;
   }
   [[nodiscard]] const BlockForces &forces() const { return forces_; }
