@@ -87,6 +87,8 @@ void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, 
 }
 
 void ContactForces::find_motions(const BlockSystem &system, std::size_t first, std::size_t last) {
+  motions_.resize(system.num_rows());
+  deforming_.resize(system.deformation.size());
   const std::size_t width = batch_->width();
   for (std::size_t row = first; row < last; ++row) {
     while (row + width <= last && last <= system.first_fixed() &&
@@ -418,9 +420,6 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
                                       ContactHistory &history, Details details, Keep keep) {
   details_ = details;
   has_details_ = details == Details::now;
-  motions_.resize(system.num_rows());
-  deforming_.resize(system.deformation.size());
-  find_motions(system, 0, system.num_owned);
   find_motions(system, system.first_fixed(), system.num_rows());
   if (details == Details::now) { // for as many regions as the last time, and some more
     const std::size_t all = candidates.pairs.size();

@@ -54,9 +54,14 @@ struct DeformableLanes {
 /// @return bit i is set where row i is such a one
 using StepDeformables = unsigned (*)(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step);
 
+/// Of row first + i in bit i.
+struct FreeStep {
+  unsigned broken = 0;   ///< not finite afterwards, and kept as it was
+  unsigned restless = 0; ///< its most_motion() is above FreeRows::calm
+};
+
 /// Does to rows [first, first + width) what advance_free_rows() says.
-/// @return bit i is set where row first + i is not finite afterwards, and kept as it was
-using StepFreeRows = unsigned (*)(BlockSystem &system, std::size_t first, const FreeRows &rows,
+using StepFreeRows = FreeStep (*)(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                   const Scheme &scheme, double time_step);
 
 /// Does to rows [first, first + width) what gather_free_deformables() says.

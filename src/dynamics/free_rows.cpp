@@ -38,14 +38,18 @@ std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, s
 
 std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
                               double time_step, std::size_t first, std::size_t last,
-                              std::optional<std::size_t> &broken, Instructions instructions) {
+                              std::optional<std::size_t> &broken, std::vector<RowRange> &restless,
+                              Instructions instructions) {
   const BlockLanes lanes = block_lanes(instructions);
   for (; first + lanes.width <= last && are_free_and_rigid(system, first, first + lanes.width);
        first += lanes.width) {
-    const unsigned bad = lanes.step_free_rows(system, first, rows, scheme, time_step);
-    if (bad != 0) {
-      const std::size_t row = first + static_cast<std::size_t>(std::countr_zero(bad));
+    const FreeStep step = lanes.step_free_rows(system, first, rows, scheme, time_step);
+    if (step.broken != 0) {
+      const std::size_t row = first + static_cast<std::size_t>(std::countr_zero(step.broken));
       broken = std::min(row, broken.value_or(row));
+    }
+    if (step.restless != 0) {
+      restless.push_back({first, first + lanes.width});
     }
   }
   return first;

@@ -8,7 +8,18 @@
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-inline unsigned step_free_rows(BlockSystem &system, std::size_t first, const FreeRows &rows,
+/// The same as of one row (integrate.hpp).
+[[gnu::always_inline]] inline Lanes most_motion(const LaneRigid &moved, const LaneRigid &velocity,
+                                                const LaneRigid &acceleration, const Lanes &radius,
+                                                double dt) {
+  const auto most = [&](const LaneRigid &q) __attribute__((always_inline)) {
+    return abs(q.u.x) + abs(q.u.y) + radius * abs(q.r);
+  };
+  constexpr double rounding = 1.0 + 1e-12;
+  return Lanes(rounding) * (most(moved) + Lanes(dt) * (most(velocity) + Lanes(dt) * most(acceleration)));
+}
+
+inline FreeStep step_free_rows(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                const Scheme &scheme, double dt) {
   const LaneLedger before = LaneLedger::load(&system.ledger[first]);
   LaneLedger ledger = before;
@@ -39,10 +50,16 @@ inline unsigned step_free_rows(BlockSystem &system, std::size_t first, const Fre
   const LaneRigid v_new = velocity_of(scheme, dt, v, a, a_new);
   const LaneRigid trace = Lanes(0.0) * d_new + Lanes(0.0) * v_new; // where a_new leaves its own
   const Mask sound = (trace.u.x + trace.u.y + trace.r) == 0.0;
-  select(sound, a_new, a).store(system.acceleration[first]);
-  select(sound, d_new, d).store(system.displacement[first]);
-  select(sound, v_new, v).store(system.velocity[first]);
-  return (!sound).by_lane();
+  const LaneRigid acceleration = select(sound, a_new, a);
+  const LaneRigid displacement = select(sound, d_new, d);
+  const LaneRigid velocity = select(sound, v_new, v);
+  acceleration.store(system.acceleration[first]);
+  displacement.store(system.displacement[first]);
+  velocity.store(system.velocity[first]);
+  const Lanes radius = Lanes::of([&](std::size_t i) { return properties[i].radius; });
+  const LaneRigid moved = displacement - LaneRigid::load(system.refreshed[first]);
+  return {(!sound).by_lane(),
+          (!(most_motion(moved, velocity, acceleration, radius, dt) <= rows.calm)).by_lane()};
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -125,6 +125,7 @@ void Simulation::find_initial_state() {
     find_initial_friction();
   }
   accelerate_owned();
+  restless_ = {{0, blocks_.num_owned}};
   report();
   counters_.evaluations = 0; // these are of steps
   counters_.block_steps = 0;

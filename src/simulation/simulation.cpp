@@ -144,7 +144,8 @@ Diagnostics Simulation::warnings() const {
 void Simulation::predict_own() {
   {
     const auto scope = phases_.measure(Phase::predict);
-    predict(blocks_, scheme_, plan_.time_step);
+    predict(blocks_, scheme_, plan_.time_step,
+            [&](std::size_t first, std::size_t last) { contacts_.find_motions(blocks_, first, last); });
     prescribe_trials();
   }
   const auto scope = phases_.measure(Phase::ghosts);
@@ -163,6 +164,7 @@ void Simulation::prescribe_trials() {
     if (const auto row = owned_row(blocks_, block)) {
       blocks_.trial[*row] = motion.displacement(when);
       pose(blocks_, *row, *row + 1);
+      contacts_.find_motions(blocks_, *row, *row + 1);
     }
   }
 }
@@ -224,6 +226,7 @@ void Simulation::move_blocks() {
   const BodyForces body{gravity(), ground_acceleration()};
   const double dt = plan_.time_step;
   std::optional<std::size_t> broken;
+  restless_.clear();
   for (std::size_t first = move_free_blocks(0, body, broken); first < blocks_.num_owned;) {
     const std::size_t last = std::min(blocks_.num_owned, first + rows_at_once);
     gather_forces(first, last, body);
@@ -234,6 +237,7 @@ void Simulation::move_blocks() {
         broken = std::min(*row, broken.value_or(*row));
       }
     }
+    restless_.push_back({first, last});
     first = move_free_blocks(last, body, broken);
   }
   if (broken) {
@@ -249,7 +253,7 @@ std::size_t Simulation::move_free_blocks(std::size_t first, const BodyForces &bo
   }
   const auto scope = phases_.measure(Phase::update);
   return advance_free_rows(blocks_, free_rows(body), scheme_, plan_.time_step, first, blocks_.num_owned,
-                           broken);
+                           broken, restless_);
 }
 
 bool Simulation::has_free_rows() const {
@@ -257,8 +261,14 @@ bool Simulation::has_free_rows() const {
 }
 
 FreeRows Simulation::free_rows(const BodyForces &body) {
-  return {contacts_.sums().of_blocks(),    forces_.rigid,   body.gravity, body.shaking, local_damping_,
-          contacts_.sums().of_gradients(), forces_.gradient};
+  return {contacts_.sums().of_blocks(),
+          forces_.rigid,
+          body.gravity,
+          body.shaking,
+          local_damping_,
+          calm_motion(),
+          contacts_.sums().of_gradients(),
+          forces_.gradient};
 }
 
 // The works of the ledger go by the trapezoid over increments of x*: half with the forces of the last
@@ -356,22 +366,25 @@ void Simulation::report() {
   }
 }
 
+double Simulation::calm_motion() const {
+  return std::min(0.5 * skin_, most_motion_in_step());
+}
+
 double Simulation::own_status() {
-  const double most =
-      0.25 * thinnest_; // two blocks that close by half their width in a step skip the force that parts them
-  const double calm = std::min(0.5 * skin_, most);
   double status = 0.0;
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    const BlockProperties &block = blocks_.properties[row];
-    if (most_motion(blocks_, row, plan_.time_step) <= calm) { // as of nearly all, and without a root
-      continue;
-    }
-    const double ahead = motion_bound(blocks_, row, plan_.time_step);
-    if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
-      status = needs_refresh;
-    }
-    if (ahead > most && num_blocks() > 1) {
-      keep_first(local_fault_, {Fault::Cause::too_fast, block.id, {}, ahead, most});
+  for (const RowRange &rows : restless_) {
+    for (std::size_t row = rows.first; row < rows.last; ++row) {
+      if (most_motion(blocks_, row, plan_.time_step) <= calm_motion()) { // as of nearly all, without a root
+        continue;
+      }
+      const double ahead = motion_bound(blocks_, row, plan_.time_step);
+      if (moved_since_refresh(blocks_, row) + ahead > 0.5 * skin_) {
+        status = needs_refresh;
+      }
+      if (ahead > most_motion_in_step() && num_blocks() > 1) {
+        keep_first(local_fault_,
+                   {Fault::Cause::too_fast, blocks_.properties[row].id, {}, ahead, most_motion_in_step()});
+      }
     }
   }
   return local_fault_ ? failed : stop_asked_ ? asked_to_stop : status;

@@ -257,9 +257,12 @@ struct FreeBlocks {
   }
 
   std::size_t step(Instructions instructions, std::optional<std::size_t> &broken) {
-    return advance_free_rows(system, {contacts, forces, {0.3, -9.81}, {0.7, 0.1}, 0.6}, usual_scheme(),
-                             time_step, 0, num_free, broken, instructions);
+    return advance_free_rows(system, {contacts, forces, {0.3, -9.81}, {0.7, 0.1}, 0.6, calm}, usual_scheme(),
+                             time_step, 0, num_free, broken, restless, instructions);
   }
+
+  double calm = std::numeric_limits<double>::infinity();
+  std::vector<RowRange> restless;
 };
 
 TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
@@ -286,6 +289,29 @@ TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
         EXPECT_EQ(wider.forces[row], portable.forces[row]);
         expect_same(wider.system.ledger[row], portable.system.ledger[row]);
       }
+    }
+  }
+}
+
+TEST(FreeRows, AreLookedAtWhereTheyMoveMuch) {
+  for (const Instructions instructions : {Instructions::portable, Instructions::avx2, Instructions::widest}) {
+    FreeBlocks blocks;
+    blocks.contacts.assign(num_free, {});
+    blocks.system.displacement.assign(num_free, {});
+    constexpr std::size_t far = 5;
+    blocks.system.displacement[far].r = 0.5; // of a block with a radius of 1 m or so
+    blocks.calm = 0.1;
+    std::optional<std::size_t> broken;
+    const std::size_t end = blocks.step(instructions, broken);
+    std::vector<bool> is_listed(num_free);
+    for (const RowRange &rows : blocks.restless) {
+      std::fill(is_listed.begin() + static_cast<std::ptrdiff_t>(rows.first),
+                is_listed.begin() + static_cast<std::ptrdiff_t>(rows.last), true);
+    }
+    EXPECT_TRUE(is_listed[far]);
+    EXPECT_FALSE(is_listed[end - 1]);
+    for (std::size_t row = 0; row < end; ++row) {
+      EXPECT_TRUE(is_listed[row] || most_motion(blocks.system, row, time_step) <= blocks.calm) << row;
     }
   }
 }

@@ -124,9 +124,13 @@ public:
   /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory,
   /// which moves on to this configuration. Sums of all regions are kept.
   ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history) {
+    find_motions(system, 0, system.num_owned);
     evaluate_interior(system, candidates, history, Details::now, Keep::all);
     return evaluate_border(system, candidates, history);
   }
+  /// How rows [first, last) move, from their trial configurations and velocities: once these are known, and
+  /// of all owned rows before what follows.
+  void find_motions(const BlockSystem &system, std::size_t first, std::size_t last);
   /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
   void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                          Details details, Keep keep);
@@ -177,7 +181,6 @@ private:
                          std::span<RegionMemory> old);
   void find_regions(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                     std::span<RegionMemory> old);
-  void find_motions(const BlockSystem &system, std::size_t first, std::size_t last);
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
   /// Entries [first, last) of Candidates::plain.

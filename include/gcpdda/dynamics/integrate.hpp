@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -43,7 +45,10 @@ private:
 
 /// Trial configuration of rows [0, num_owned); the one before becomes trial_previous. Vertices are posed. The
 /// angles r of a deformable row, of displacement and trial, are those of F's rotation, unwrapped.
-void predict(BlockSystem &system, const Scheme &scheme, double time_step);
+///
+/// @param then  is told of rows [first, last) as soon as they are posed and still in the cache
+void predict(BlockSystem &system, const Scheme &scheme, double time_step,
+             const std::function<void(std::size_t first, std::size_t last)> &then = {});
 
 /// As pose() of rows [first, last), all of which have been posed before; quadrilaterals several at a time.
 void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last);
@@ -109,6 +114,12 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
 
+/// Rows [first, last).
+struct RowRange {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
 /// What acts on free rows: those without point loads, fixed points, viscous sides, bolts and water, which
 /// heed forces.
 struct FreeRows {
@@ -117,6 +128,7 @@ struct FreeRows {
   Vec2 gravity;
   Vec2 shaking; ///< acceleration of the ground
   double local_damping = 0.0;
+  double calm = std::numeric_limits<double>::infinity(); ///< most_motion() that needs no closer look, m
   // Of deformable rows, by entry of BlockSystem::deformation.
   std::span<const BlockGradientSum> gradients{}; ///< about their trial centroids
   std::span<Mat2> gradient_forces{};             ///< out: on F
@@ -136,10 +148,11 @@ std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, s
 ///
 /// @param broken  the first row whose new state is not finite, which keeps its old one, if it comes before
 ///                what stands here
+/// @param restless  those of more than FreeRows::calm are appended
 /// @return the first row that is left
 std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
                               double time_step, std::size_t first, std::size_t last,
-                              std::optional<std::size_t> &broken,
+                              std::optional<std::size_t> &broken, std::vector<RowRange> &restless,
                               Instructions instructions = Instructions::widest);
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its

@@ -273,6 +273,10 @@ private:
   void gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);
   void report();
+  /// Two blocks that close by half their width in a step skip the force that parts them, m.
+  [[nodiscard]] double most_motion_in_step() const { return 0.25 * thinnest_; }
+  /// Blocks of which most_motion() is no more need no closer look, m.
+  [[nodiscard]] double calm_motion() const;
   [[nodiscard]] double own_status();
   void count();
   void agree_on_fault();
@@ -288,7 +292,8 @@ private:
   ContactHistory history_;
   mutable ContactForces contacts_; ///< details are found when somebody asks
   Bolts bolts_;
-  BlockForces forces_; ///< at the last evaluation
+  BlockForces forces_;             ///< at the last evaluation
+  std::vector<RowRange> restless_; ///< owned rows whose motion in the last step has to be looked at
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
   GroundMotion ground_;
