@@ -120,26 +120,10 @@ void reserve_rows(BlockSystem &system, std::size_t rows, std::size_t vertices) {
 }
 
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
-  std::apply([&](auto... field) { ((to.*field).push_back((from.*field)[row]), ...); },
-             BlockSystem::row_fields());
-  const auto append_list = [&](auto begins, auto... fields) {
-    const auto begin = static_cast<std::ptrdiff_t>((from.*begins)[row]);
-    const auto end = static_cast<std::ptrdiff_t>((from.*begins)[row + 1]);
-    ((to.*fields).insert((to.*fields).end(), (from.*fields).begin() + begin, (from.*fields).begin() + end),
-     ...);
-  };
-  std::apply([&](auto... list) { (std::apply(append_list, list), ...); }, BlockSystem::lists());
-  append_edge_joints(to, from.edge_joints(row));
-  close_lists(to);
+  append_rows(to, from, row, row + 1);
 }
 
 void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, std::size_t last) {
-  if (!from.edge_joint.empty() || !to.edge_joint.empty()) {
-    for (std::size_t row = first; row < last; ++row) {
-      append_row(to, from, row);
-    }
-    return;
-  }
   const auto append = [](auto &to_field, const auto &from_field, std::size_t begin, std::size_t end) {
     to_field.insert(to_field.end(), from_field.begin() + static_cast<std::ptrdiff_t>(begin),
                     from_field.begin() + static_cast<std::ptrdiff_t>(end));
@@ -155,6 +139,13 @@ void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, st
     }
   };
   std::apply([&](auto... list) { (std::apply(append_lists, list), ...); }, BlockSystem::lists());
+  const bool has_edge_joints = std::any_of(from.properties.begin() + static_cast<std::ptrdiff_t>(first),
+                                           from.properties.begin() + static_cast<std::ptrdiff_t>(last),
+                                           [](const BlockProperties &p) { return p.has_edge_joints; });
+  const std::span<const std::int32_t> joints(from.edge_joint);
+  append_edge_joints(to, has_edge_joints ? joints.subspan(from.vertex_begin[first],
+                                                          from.vertex_begin[last] - from.vertex_begin[first])
+                                         : joints.first(0));
 }
 
 void keep_rows(BlockSystem &system, std::size_t count) {

@@ -59,7 +59,7 @@ std::int64_t state_bytes(const Simulation &simulation) {
   bytes += blocks.num_rows() * sizeof(BlockMotion);
   // At the start, when the sums of all regions are kept.
   bytes += simulation.contacts().regions().size() *
-           (sizeof(RegionForce) + sizeof(RegionSums) + sizeof(RegionMemory) +
+           (sizeof(RegionForce) + sizeof(RegionSums) + sizeof(RegionState) +
             (blocks.deformation.empty() ? 0 : sizeof(RegionDyads)));
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);

@@ -68,9 +68,7 @@ RegionRecord Simulation::record_of(std::size_t pair, const RegionMemory &region)
 std::vector<RegionRecord> Simulation::remembered_contacts() const {
   std::vector<RegionRecord> memory;
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    for (const RegionMemory &region : history_.of_pair(k)) {
-      memory.push_back(record_of(k, region));
-    }
+    history_.for_pair(k, [&](const RegionMemory &region) { memory.push_back(record_of(k, region)); });
   }
   return memory;
 }
@@ -79,9 +77,7 @@ std::vector<RegionRecord> Simulation::contacts_that_count_here() const {
   std::vector<RegionRecord> memory;
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
     if (counts_here(candidates_.pairs[k])) {
-      for (const RegionMemory &region : history_.of_pair(k)) {
-        memory.push_back(record_of(k, region));
-      }
+      history_.for_pair(k, [&](const RegionMemory &region) { memory.push_back(record_of(k, region)); });
     }
   }
   return memory;

@@ -268,8 +268,8 @@ private:
   Details details_ = Details::now; ///< asked for with the evaluation
   bool has_details_ = true;
   bool is_again_ = false; ///< find_details() is at work
-  std::vector<RegionRange>
-      ranges_;         ///< of forces_, one a pair; without details only of those that are not plain
+  /// Of forces_, one a pair; without details only of those that are not plain.
+  std::vector<RegionRange> ranges_;
   ForceReport report_; ///< of what has been evaluated so far
   ContactHistory next_;
   std::vector<BlockMotion> motions_;      ///< one a row

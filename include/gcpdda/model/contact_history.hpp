@@ -77,12 +77,18 @@ struct ContactHistory {
     return ranges.empty() ? std::span<RegionMemory>()
                           : std::span(regions).subspan(ranges[pair].begin, ranges[pair].count);
   }
-  [[nodiscard]] std::vector<RegionMemory> of_pair(std::size_t pair) const {
+  /// visit(memory) for the regions and bonds of a pair.
+  template <class Visit> void for_pair(std::size_t pair, Visit &&visit) const {
     if (has_plain(pair)) {
-      return {RegionMemory{plain[pair], {}, {}, 0, 0}};
+      visit(RegionMemory{plain[pair], {}, {}, 0, 0});
+    } else {
+      std::ranges::for_each(of_other(pair), visit);
     }
-    const std::span<const RegionMemory> known = of_other(pair);
-    return {known.begin(), known.end()};
+  }
+  [[nodiscard]] std::vector<RegionMemory> of_pair(std::size_t pair) const {
+    std::vector<RegionMemory> known;
+    for_pair(pair, [&](const RegionMemory &memory) { known.push_back(memory); });
+    return known;
   }
   /// Region or bond `number` of a pair.
   [[nodiscard]] RegionState &state(std::size_t pair, std::size_t number) {
