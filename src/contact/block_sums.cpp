@@ -114,7 +114,7 @@ void BlockSums::start(const BlockSystem &system, const Candidates &candidates, K
 }
 
 inline void BlockSums::add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads) {
-  if (row.value < sums_.size() && system.is_deformable(row.value)) {
+  if (system.is_deformable(row.value)) {
     BlockGradientSum &sum = gradients_[system.deformation_begin[row.value]];
     sum.force += dyads.force;
     sum.shear += dyads.shear;
@@ -138,32 +138,51 @@ template <class Visit> void BlockSums::for_touched(std::uint32_t group, Visit &&
 
 // Pairs of one lower block follow one another, and its sum stays in registers meanwhile: what it gets as the
 // higher block of others has been added before.
+template <bool some_wait>
 void BlockSums::add_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
-  const auto num_owned = static_cast<std::uint32_t>(sums_.size());
   const CandidatePair *pairs = candidates.pairs.data();
+  BlockContactSum *const sums = sums_.data(); // by themselves, or each store might have changed them
+  const std::uint8_t *const is_added = is_added_.data();
+  const std::size_t num_owned = is_added_.size();
+  const bool all_wait = keep_ == Keep::all;
+  const auto time_of = [=](BlockIndex row) {
+    if (row.value >= num_owned) {
+      return When::never;
+    }
+    return some_wait && (all_wait || is_added[row.value] == 0) ? When::later : When::at_once;
+  };
   BlockContactSum none;
   BlockContactSum *lower = &none;
   SumAtHand at_lower(none);
   double largest_squared = largest_squared_;
-  for_touched(group, [&](std::uint32_t number, const RegionSums &region, bool) {
+  for_touched(group, [&](std::uint32_t number, const RegionSums &region, bool born) {
     const CandidatePair &pair = pairs[number];
-    BlockContactSum *next = pair.lower.value < num_owned ? &sums_[pair.lower.value] : &none;
+    const When lower_time = time_of(pair.lower);
+    const When higher_time = time_of(pair.higher);
+    BlockContactSum *next = lower_time == When::at_once ? &sums[pair.lower.value] : &none;
     if (next != lower) {
       at_lower.store(*lower);
       at_lower = SumAtHand(*next);
       lower = next;
     }
     at_lower.add(region, 0);
-    if (pair.higher.value < num_owned) {
-      add_region(region, 1, sums_[pair.higher.value]);
+    if (higher_time == When::at_once) {
+      add_region(region, 1, sums[pair.higher.value]);
     }
     if (has_dyads_) {
       const RegionDyads &dyads = group_dyads_[number % PlainPair::pairs_in_group];
-      add_dyads(system, pair.lower, dyads[0]);
-      add_dyads(system, pair.higher, dyads[1]);
+      each_side([&](auto k) {
+        if ((k == 0 ? lower_time : higher_time) == When::at_once) {
+          add_dyads(system, k == 0 ? pair.lower : pair.higher, dyads[k]);
+        }
+      });
     }
-    largest_squared = std::max(largest_squared, squared(region.force));
-    ++count_.touching; // without a ghost, it counts here and does not cross
+    if (some_wait && (lower_time == When::later || higher_time == When::later)) {
+      keep_plain(number, region, born);
+    } else { // without a ghost, it counts here and does not cross
+      largest_squared = std::max(largest_squared, squared(region.force));
+      ++count_.touching;
+    }
   });
   at_lower.store(*lower);
   largest_squared_ = largest_squared;
@@ -171,38 +190,19 @@ void BlockSums::add_group(const BlockSystem &system, const Candidates &candidate
 
 void BlockSums::close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
   if (keep_ != Keep::all && candidates.are_added[group] != 0) {
-    add_group(system, candidates, group);
+    add_group<false>(system, candidates, group);
   } else {
-    sort_group(system, candidates, group);
+    add_group<true>(system, candidates, group);
   }
   seen_.fill(0);
 }
 
-void BlockSums::sort_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
-  for_touched(group, [&](std::uint32_t number, const RegionSums &region, bool born) {
-    const CandidatePair &pair = candidates.pairs[number];
-    const std::array<BlockIndex, 2> rows{pair.lower, pair.higher};
-    const std::array<When, 2> times{when(pair.lower), when(pair.higher)};
-    const std::size_t slot = number % PlainPair::pairs_in_group;
-    if (times[0] == When::later || times[1] == When::later) {
-      kept_range_[number] = {static_cast<std::uint32_t>(kept_.size()), 1};
-      kept_.push_back({region, born});
-      if (has_dyads_) {
-        kept_dyads_.push_back(group_dyads_[slot]);
-      }
-    } else {
-      count_ += counted(system, pair, born);
-      largest_squared_ = std::max(largest_squared_, squared(region.force));
-    }
-    each_side([&](auto k) {
-      if (times[k] == When::at_once) {
-        add_region(region, k, sums_[rows[k].value]);
-        if (has_dyads_) {
-          add_dyads(system, rows[k], group_dyads_[slot][k]);
-        }
-      }
-    });
-  });
+void BlockSums::keep_plain(std::uint32_t pair, const RegionSums &region, bool born) {
+  kept_range_[pair] = {static_cast<std::uint32_t>(kept_.size()), 1};
+  kept_.push_back({region, born});
+  if (has_dyads_) {
+    kept_dyads_.push_back(group_dyads_[pair % PlainPair::pairs_in_group]);
+  }
 }
 
 void BlockSums::keep(std::uint32_t pair, std::span<const RegionForce> regions,

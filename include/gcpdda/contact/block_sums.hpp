@@ -88,11 +88,11 @@ private:
   }
   /// visit(number, its region, was it born) for the pairs of the group at hand that touch.
   template <class Visit> void for_touched(std::uint32_t group, Visit &&visit) const;
-  /// Of blocks none of which waits (Candidates::are_added).
+  /// @tparam some_wait  blocks of the group may wait (Candidates::are_added)
+  template <bool some_wait>
   void add_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
-  /// Of any others: some get it later.
-  void sort_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
-  /// If the row is owned and deforms.
+  /// The only region of a pair of the group at hand.
+  void keep_plain(std::uint32_t pair, const RegionSums &region, bool born);
   void add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads);
 
   Keep keep_ = Keep::all;
