@@ -321,6 +321,42 @@ void append_plain(const BlockSystem &system, const ChainFinder &finder, const Ed
   append_chain(system, higher, higher_chain, candidates.chain_vertices);
 }
 
+/// None yet, with room for so many pairs.
+Candidates with_room(std::size_t pairs, const JointLaws &joints) {
+  Candidates candidates;
+  for (const JointLaw &law : joints.laws) {
+    candidates.laws.push_back(law.constants());
+  }
+  candidates.pairs.reserve(pairs);
+  candidates.plain.reserve(pairs);
+  candidates.chain_vertices.reserve(6 * pairs); // about three ends of edges for each of two blocks
+  return candidates;
+}
+
+/// With room for so many pairs.
+void forget_all(std::size_t pairs, ContactHistory &history) {
+  history.overlaps.clear();
+  history.plain.clear();
+  history.ranges.clear();
+  history.regions.clear();
+  history.overlaps.reserve(pairs);
+  history.plain.reserve(pairs);
+}
+
+/// Of a pair whose regions are the last ones of all, from `begin` on: those of a plain pair move to its own
+/// place.
+void append_places(bool is_plain, std::size_t begin, ContactHistory &history) {
+  const std::size_t count = history.regions.size() - begin;
+  const bool has_plain = is_plain && count > 0;
+  history.overlaps.push_back(has_plain ? PlainOverlap::corners : PlainOverlap::none);
+  history.plain.push_back(has_plain ? history.regions[begin] : RegionState{});
+  history.ranges.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)});
+  if (is_plain) {
+    history.regions.resize(begin);
+    history.ranges.back() = {};
+  }
+}
+
 /// Pairs ascend by (lower, higher): a block meets all lower partners, by id, before all higher ones, by id.
 void list_contacts_of_blocks(const BlockSystem &system, Candidates &candidates) {
   candidates.contact_begin.assign(system.num_owned + 1, 0);
@@ -397,24 +433,13 @@ Candidates make_candidates(const BlockSystem &system,
                            std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
                            ContactHistory &history, double skin) {
-  Candidates candidates;
-  for (const JointLaw &law : parameters.joints.laws) {
-    candidates.laws.push_back(law.constants());
-  }
-  candidates.pairs.reserve(pairs.size());
-  candidates.plain.reserve(pairs.size());
-  candidates.chain_vertices.reserve(6 * pairs.size()); // about three ends of edges for each of two blocks
-  history.overlaps.reserve(pairs.size());
-  history.plain.reserve(pairs.size());
+  Candidates candidates = with_room(pairs.size(), parameters.joints);
   // Several regions of a pair keep their order: both sides of a border wrote them in the same one.
   const auto record_key = [](const RegionRecord &r) { return std::pair(r.lower, r.higher); };
   std::stable_sort(memory.begin(), memory.end(), [&](const RegionRecord &a, const RegionRecord &b) {
     return record_key(a) < record_key(b);
   });
-  history.regions.clear();
-  history.ranges.clear();
-  history.overlaps.clear();
-  history.plain.clear();
+  forget_all(pairs.size(), history);
   auto record = memory.begin();
   ChainFinder finder(system, skin);
   for (const auto &[lower, higher] : pairs) {
@@ -445,15 +470,7 @@ Candidates make_candidates(const BlockSystem &system,
     if (candidate.is_mixed && history.regions.size() > begin && history.regions[begin].law >= 0) {
       take_law(system, parameters, history.regions[begin].law, candidates.pairs.back());
     }
-    const std::size_t count = history.regions.size() - begin;
-    history.ranges.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)});
-    const bool has_plain = is_plain && count > 0;
-    history.overlaps.push_back(has_plain ? PlainOverlap::corners : PlainOverlap::none);
-    history.plain.push_back(has_plain ? history.regions[begin] : RegionState{});
-    if (is_plain) {
-      history.regions.resize(begin);
-      history.ranges.back() = {};
-    }
+    append_places(is_plain, begin, history);
   }
 
   order_evaluation(system, candidates);
