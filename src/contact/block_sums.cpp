@@ -142,14 +142,9 @@ template <bool some_wait>
 void BlockSums::add_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
   const CandidatePair *pairs = candidates.pairs.data();
   BlockContactSum *const sums = sums_.data(); // by themselves, or each store might have changed them
-  const std::uint8_t *const is_added = is_added_.data();
-  const std::size_t num_owned = is_added_.size();
-  const bool all_wait = keep_ == Keep::all;
-  const auto time_of = [=](BlockIndex row) {
-    if (row.value >= num_owned) {
-      return When::never;
-    }
-    return some_wait && (all_wait || is_added[row.value] == 0) ? When::later : When::at_once;
+  const std::size_t num_owned = sums_.size();
+  const auto time_of = [&](BlockIndex row) {
+    return some_wait ? when(row) : row.value < num_owned ? When::at_once : When::never;
   };
   BlockContactSum none;
   BlockContactSum *lower = &none;

@@ -40,7 +40,7 @@ struct PlainResults {
   unsigned wanted = 0; ///< bits of the lanes someone asks for, which touch; other places are not looked at
   std::array<RegionSums *, most_lanes> sums;
   std::array<RegionState *, most_lanes> memory;
-  bool has_mixed = false; ///< some pair's law is among the results
+  bool has_mixed = false; ///< some pair has a choice of laws: its memory keeps its own
   bool has_details = false;
   std::array<RegionDetails *, most_lanes> details;
   bool has_dyads = false; ///< the blocks deform

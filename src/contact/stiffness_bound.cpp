@@ -1,4 +1,4 @@
-#include "gcpdda/contact/candidates.hpp"
+#include "gcpdda/contact/stiffness_bound.hpp"
 
 #include <algorithm>
 

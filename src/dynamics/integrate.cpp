@@ -107,7 +107,7 @@ void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last) {
 void predict(BlockSystem &system, const Scheme &scheme, double time_step,
              const std::function<void(std::size_t first, std::size_t last)> &then) {
   constexpr std::size_t rows_at_once = 64; // they are posed from the cache
-  pose(system, 0, 0);                       // lists have their lengths
+  pose(system, 0, 0);                      // lists have their lengths
   const double by_velocity = scheme.trial_velocity * time_step;
   const double by_acceleration = scheme.trial_acceleration * time_step * time_step;
   for (std::size_t first = 0; first < system.num_owned; first += rows_at_once) {

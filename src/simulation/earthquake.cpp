@@ -1,6 +1,7 @@
 // The ground motion of a Simulation and the sides through which it comes and goes
 // (dynamics/ground_motion.hpp, dynamics/viscous_sides.hpp).
 
+#include "gcpdda/contact/stiffness_bound.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/viscous_sides.hpp"
 #include "gcpdda/io/record_file.hpp"

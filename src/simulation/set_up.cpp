@@ -8,6 +8,7 @@
 
 #include "driven_paths.hpp"
 
+#include "gcpdda/contact/stiffness_bound.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/frequency_bound.hpp"
 #include "gcpdda/geometry/holds_point.hpp"

@@ -2,6 +2,7 @@
 // by a restart into a later stage, so that both have the same bits.
 
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/contact/stiffness_bound.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/frequency_bound.hpp"
 #include "gcpdda/geometry/holds_point.hpp"

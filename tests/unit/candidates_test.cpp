@@ -1,5 +1,7 @@
 #include "gcpdda/contact/candidates.hpp"
 
+#include "gcpdda/contact/stiffness_bound.hpp"
+
 #include "support/blocks.hpp"
 #include "support/scenes.hpp"
 

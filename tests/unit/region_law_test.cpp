@@ -2,6 +2,7 @@
 
 #include "gcpdda/contact/region_law.hpp"
 
+#include "gcpdda/contact/stiffness_bound.hpp"
 #include "gcpdda/io/scene_reader.hpp"
 #include "gcpdda/parallel/packing.hpp"
 #include "support/blocks.hpp"

@@ -131,7 +131,7 @@ void expect_strength_of_bonds(const std::string &kind, const Sides &sides, doubl
   ASSERT_FALSE(pulled.fault().has_value());
   // A step opens the joint by 2e-7 m, 1.3e-3 of what breaks it.
   expect_value(kind + ": largest pull, tension times length", 1.5e5 * bonded_length, pull, 3e-3);
-  EXPECT_TRUE(pulled.history().regions.empty()) << kind << ": all bonds are gone";
+  EXPECT_TRUE(memories(pulled.history()).empty()) << kind << ": all bonds are gone";
 }
 
 TEST(DirectShear, BondsOfADeformableBlock) {
@@ -207,8 +207,8 @@ Slide slide_down(double psi_deg, const Setting &setting, double sunk = 0.0) {
   while (!simulation.finished()) {
     step(simulation);
     const RigidDof &v = velocity_of(simulation, 1);
-    if (!simulation.history().regions.empty()) {
-      seen.slip = memories(simulation.history())[0].slip;
+    if (const std::vector<RegionMemory> known = memories(simulation.history()); !known.empty()) {
+      seen.slip = known.front().slip;
     }
     if (seen.slip < 0.009) {
       seen.acceleration = v.u.x / simulation.time();
@@ -405,7 +405,7 @@ TEST(Bond, DoesNoNetWorkOnAClosedPath) {
     ASSERT_NEAR(norm(sum), 0.0, 1e-8) << "momentum";
     ASSERT_NEAR(moment, 0.0, 1e-7) << "moment of momentum: forces of 3e5 N/m at arms of 5 m, rounded";
   }
-  ASSERT_TRUE(pair.history.regions.back().is_bond());
+  ASSERT_TRUE(memories(pair.history).back().is_bond());
   expect_below("bond: net work on a closed path over all work", 1e-6, std::abs(net) / total);
 }
 

@@ -117,16 +117,4 @@ Candidates make_candidates(const BlockSystem &system,
                            const ContactParameters &parameters, std::vector<RegionRecord> memory,
                            ContactHistory &history, double skin);
 
-/// Largest normal stiffness (Pa/m) and tangential stiffness that a block of this material with these laws of
-/// edges (none: all by the materials) can meet.
-struct StiffnessBound {
-  double normal = 0.0;
-  double tangential = 0.0;
-};
-StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material,
-                               std::span<const std::int32_t> edge_joint = {});
-
-/// Largest normal stiffness of all laws, Pa/m.
-double stiffest_joint(const JointLaws &joints);
-
 } // namespace gcpdda
