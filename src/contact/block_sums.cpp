@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <type_traits>
 
 namespace gcpdda {
@@ -102,12 +101,10 @@ void BlockSums::start(const BlockSystem &system, const Candidates &candidates, K
       kept_range_[pair] = {};
     }
   }
+  num_kept_ = 0;
   kept_.clear();
   kept_dyads_.clear();
-  if (keep == Keep::all) {
-    kept_.reserve(candidates.pairs.size());
-  } else if (keep_ == Keep::all) { // what all took is not needed again
-    kept_.shrink_to_fit();
+  if (keep != Keep::all && keep_ == Keep::all) { // what all took is not needed again
     kept_dyads_.shrink_to_fit();
   }
   keep_ = keep;
@@ -193,8 +190,10 @@ void BlockSums::close_group(const BlockSystem &system, const Candidates &candida
 }
 
 void BlockSums::keep_plain(std::uint32_t pair, const RegionSums &region, bool born) {
-  kept_range_[pair] = {static_cast<std::uint32_t>(kept_.size()), 1};
-  kept_.push_back({region, born});
+  kept_range_[pair] = {num_kept_++, 1};
+  if (keep_ != Keep::all) {
+    kept_.push_back({region, born});
+  }
   if (has_dyads_) {
     kept_dyads_.push_back(group_dyads_[pair % PlainPair::pairs_in_group]);
   }
@@ -202,17 +201,20 @@ void BlockSums::keep_plain(std::uint32_t pair, const RegionSums &region, bool bo
 
 void BlockSums::keep(std::uint32_t pair, std::span<const RegionForce> regions,
                      std::span<const RegionDyads> dyads) {
-  kept_range_[pair] = {static_cast<std::uint32_t>(kept_.size()), static_cast<std::uint32_t>(regions.size())};
-  for (const RegionForce &region : regions) {
+  const auto count = static_cast<std::uint32_t>(regions.size());
+  kept_range_[pair] = {num_kept_, count};
+  num_kept_ += count;
+  for (const RegionForce &region : keep_ == Keep::all ? std::span<const RegionForce>() : regions) {
     kept_.push_back({region, region.born});
   }
   if (has_dyads_) {
     kept_dyads_.insert(kept_dyads_.end(), dyads.begin(), dyads.end());
-    kept_dyads_.resize(kept_.size());
+    kept_dyads_.resize(num_kept_);
   }
 }
 
-ContactCount BlockSums::finish(const BlockSystem &system, const Candidates &candidates) {
+ContactCount BlockSums::finish(const BlockSystem &system, const Candidates &candidates,
+                               const AllRegions &all) {
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (when(BlockIndex{static_cast<std::uint32_t>(row)}) == When::later) {
       sums_[row] = {};
@@ -222,39 +224,42 @@ ContactCount BlockSums::finish(const BlockSystem &system, const Candidates &cand
     }
   }
   ContactCount count = count_;
-  const auto add_kept = [&](std::uint32_t number) {
-    const RegionRange range = kept_range_[number];
-    if (range.count == 0) {
-      return;
-    }
-    const CandidatePair &pair = candidates.pairs[number];
+  largest_waiting_squared_ = 0.0;
+  const auto add = [&](const CandidatePair &pair, const RegionSums &region, std::size_t kept) {
+    largest_waiting_squared_ = std::max(largest_waiting_squared_, squared(region.force));
     const std::array<BlockIndex, 2> rows{pair.lower, pair.higher};
-    count += counted(system, pair, kept_[range.begin].born);
-    for (std::size_t i = range.begin; i < range.begin + range.count; ++i) {
-      for (const std::size_t k : {0U, 1U}) {
-        if (when(rows[k]) == When::later) {
-          add_region(kept_[i].sums, k, sums_[rows[k].value]);
-          if (has_dyads_) {
-            add_dyads(system, rows[k], kept_dyads_[i][k]);
-          }
+    for (const std::size_t k : {0U, 1U}) {
+      if (when(rows[k]) == When::later) {
+        add_region(region, k, sums_[rows[k].value]);
+        if (has_dyads_) {
+          add_dyads(system, rows[k], kept_dyads_[kept][k]);
         }
+      }
+    }
+  };
+  const auto add_pair = [&](std::uint32_t number, const RegionRange range, const auto &regions) {
+    if (range.count > 0) {
+      const CandidatePair &pair = candidates.pairs[number];
+      count += counted(system, pair, regions[range.begin].born);
+      for (std::uint32_t i = 0; i < range.count; ++i) {
+        add(pair, regions[range.begin + i], kept_range_[number].begin + i);
       }
     }
   };
   if (keep_ == Keep::all) {
     for (std::uint32_t pair = 0; pair < candidates.pairs.size(); ++pair) {
-      add_kept(pair);
+      add_pair(pair, all.ranges[pair], all.regions);
     }
   } else {
-    std::for_each(candidates.waiting.begin(), candidates.waiting.end(), add_kept);
+    for (const std::uint32_t pair : candidates.waiting) {
+      add_pair(pair, kept_range_[pair], kept_);
+    }
   }
   return count;
 }
 
 double BlockSums::largest_force() const {
-  return std::sqrt(std::accumulate(
-      kept_.begin(), kept_.end(), largest_squared_,
-      [](double largest, const KeptRegion &kept) { return std::max(largest, squared(kept.sums.force)); }));
+  return std::sqrt(std::max(largest_squared_, largest_waiting_squared_));
 }
 
 } // namespace gcpdda

@@ -83,7 +83,6 @@ void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, 
   force.shear_force = elastic;
   force.shear_torque = {};
   add_torques(force.shear_torque, force.shear_force);
-  sums_.kept(force.pair, number) = force;
 }
 
 void ContactForces::find_motions(const BlockSystem &system, std::size_t first, std::size_t last) {

@@ -39,28 +39,30 @@ Vec2 acceleration_at(const BlockSystem &system, std::size_t row, Vec2 arm) {
 
 } // namespace
 
+InitialStick::Yields InitialStick::yields_of(const BlockSystem &system, const Region &region) {
+  return {yield_of(system, region.lower, region.arm_lower, region.tangent),
+          yield_of(system, region.higher, region.arm_higher, region.tangent)};
+}
+
+double InitialStick::tangential_acceleration(const BlockSystem &system, const Region &region) {
+  return dot(acceleration_at(system, region.lower, region.arm_lower) -
+                 acceleration_at(system, region.higher, region.arm_higher),
+             region.tangent);
+}
+
+double InitialStick::corrected(const Region &region, double change) {
+  return std::clamp(region.memory->shear + change, -region.cap, region.cap);
+}
+
 InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
                            ContactHistory &history)
-    : forces_(forces), contact_counts_(system.num_rows(), 0.0) {
-  regions_.reserve(forces.regions().size());
+    : forces_(forces), candidates_(candidates), history_(history), contact_counts_(system.num_rows(), 0.0) {
   for (std::size_t k = 0; k < forces.regions().size(); ++k) {
-    const RegionForce &force = forces.regions()[k];
+    const Region region = region_of(system, k);
     // A region without extent along its tangent (faces that coincide up to rounding) has no spring yet.
-    RegionState &memory = history.state(force.pair, forces.number_in_pair(k));
-    if (!(force.cap > 0.0) || !(memory.longest > 0.0)) {
+    if (!(region.cap > 0.0) || !(region.memory->longest > 0.0)) {
       continue;
     }
-    Region region;
-    region.number = k;
-    region.memory = &memory;
-    region.tangent = perp(force.normal);
-    region.lower = candidates.pairs[force.pair].lower.value;
-    region.higher = candidates.pairs[force.pair].higher.value;
-    region.arm_lower = force.point - system.trial_centroid[region.lower];
-    region.arm_higher = force.point - system.trial_centroid[region.higher];
-    region.cap = force.cap;
-    region.yield_lower = yield_of(system, region.lower, region.arm_lower, region.tangent);
-    region.yield_higher = yield_of(system, region.higher, region.arm_higher, region.tangent);
     contact_counts_[region.lower] += 1.0;
     contact_counts_[region.higher] += 1.0;
     const Vec2 lower_velocity = velocity_at(system, region.lower, region.arm_lower);
@@ -68,26 +70,29 @@ InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidat
     const double sliding = dot(lower_velocity - higher_velocity, region.tangent);
     const double rounding =
         16.0 * std::numeric_limits<double>::epsilon() * (norm(lower_velocity) + norm(higher_velocity));
-    if (std::abs(sliding) > rounding && force.bonded) {
+    if (std::abs(sliding) > rounding && forces.regions()[k].bonded) {
       continue; // its spring starts unstretched
     }
     if (std::abs(sliding) > rounding) {
       set_shear(region, std::copysign(region.cap, sliding));
-      memory.state = ContactState::slip;
+      region.memory->state = ContactState::slip;
     } else {
-      regions_.push_back(region);
+      sticking_.push_back(static_cast<std::uint32_t>(k));
     }
   }
 }
 
-double InitialStick::tangential_acceleration(const BlockSystem &system, const Region &region) const {
-  return dot(acceleration_at(system, region.lower, region.arm_lower) -
-                 acceleration_at(system, region.higher, region.arm_higher),
-             region.tangent);
-}
-
-double InitialStick::corrected(const Region &region, double change) const {
-  return std::clamp(region.memory->shear + change, -region.cap, region.cap);
+InitialStick::Region InitialStick::region_of(const BlockSystem &system, std::size_t number) const {
+  const RegionForce &force = forces_.regions()[number];
+  const CandidatePair &pair = candidates_.pairs[force.pair];
+  return {number,
+          &history_.state(force.pair, forces_.number_in_pair(number)),
+          perp(force.normal),
+          force.point - system.trial_centroid[pair.lower.value],
+          force.point - system.trial_centroid[pair.higher.value],
+          force.cap,
+          pair.lower.value,
+          pair.higher.value};
 }
 
 void InitialStick::set_shear(const Region &region, double shear) {
@@ -97,8 +102,10 @@ void InitialStick::set_shear(const Region &region, double shear) {
 
 double InitialStick::residual(const BlockSystem &system) const {
   double largest = 0.0;
-  for (const Region &region : regions_) {
-    const double yield = region.yield_lower + region.yield_higher;
+  for (const std::uint32_t number : sticking_) {
+    const Region region = region_of(system, number);
+    const auto [lower, higher] = yields_of(system, region);
+    const double yield = lower + higher;
     const double wanted = corrected(region, tangential_acceleration(system, region) / yield);
     largest = std::max(largest, std::abs(wanted - region.memory->shear) * yield);
   }
@@ -106,16 +113,18 @@ double InitialStick::residual(const BlockSystem &system) const {
 }
 
 void InitialStick::sweep(const BlockSystem &system) {
-  for (const Region &region : regions_) {
-    const double damped_yield = contact_counts_[region.lower] * region.yield_lower +
-                                contact_counts_[region.higher] * region.yield_higher;
+  for (const std::uint32_t number : sticking_) {
+    const Region region = region_of(system, number);
+    const auto [lower, higher] = yields_of(system, region);
+    const double damped_yield =
+        contact_counts_[region.lower] * lower + contact_counts_[region.higher] * higher;
     set_shear(region, corrected(region, tangential_acceleration(system, region) / damped_yield));
   }
 }
 
-void InitialStick::reset() {
-  for (const Region &region : regions_) {
-    set_shear(region, 0.0);
+void InitialStick::reset(const BlockSystem &system) {
+  for (const std::uint32_t number : sticking_) {
+    set_shear(region_of(system, number), 0.0);
   }
 }
 

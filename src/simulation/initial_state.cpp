@@ -152,7 +152,7 @@ void Simulation::find_initial_friction() {
     after = agreed_residual();
   }
   if (before > 0.0 && !(after < before)) {
-    stick.reset();
+    stick.reset(blocks_);
     notes_.push_back(
         {Severity::info,
          {},

@@ -57,10 +57,10 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(simulation.history().plain);
   add(simulation.history().regions);
   bytes += blocks.num_rows() * sizeof(BlockMotion);
-  // At the start, when the sums of all regions are kept.
+  // At the start, which takes all details.
   bytes += simulation.contacts().regions().size() *
-           (sizeof(RegionForce) + sizeof(RegionSums) + sizeof(RegionState) +
-            (blocks.deformation.empty() ? 0 : sizeof(RegionDyads)));
+           (sizeof(RegionForce) + sizeof(RegionState) + sizeof(RegionRange) +
+            (blocks.deformation.empty() ? 0 : sizeof(RegionDyads) + sizeof(RegionRange)));
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);
 }

@@ -211,7 +211,7 @@ void Simulation::take(const ForceReport &report) {
 // On each block in the order of its partners' ids.
 void Simulation::sum_contacts_of_blocks() {
   const auto scope = phases_.measure(Phase::forces);
-  contact_count_ = contacts_.sums().finish(blocks_, candidates_);
+  contact_count_ = contacts_.finish_sums(blocks_, candidates_);
   contacts_.add_dilation_works(candidates_, blocks_);
   bolts_.add_forces(blocks_, contacts_.sums().of_blocks());
   forces_.rigid.resize(blocks_.num_owned);

@@ -68,7 +68,7 @@ void sums(benchmark::State &state) {
   ContactForces contacts(pile.simulation.contacts().parameters());
   contacts.evaluate(pile.blocks, pile.candidates, pile.history);
   for ([[maybe_unused]] const auto _ : state) {
-    benchmark::DoNotOptimize(contacts.sums().finish(pile.blocks, pile.candidates));
+    benchmark::DoNotOptimize(contacts.finish_sums(pile.blocks, pile.candidates));
   }
   per(state, pile.candidates.pairs.size());
 }

@@ -28,8 +28,14 @@ struct ContactCount {
   ContactCount &operator+=(const ContactCount &other);
 };
 
-/// Which regions are kept until finish(): those on blocks that wait, or all, which may be changed then.
+/// Which blocks wait for finish(): those that have to, or all, whose regions may be changed before.
 enum class Keep { waiting, all };
+
+/// The regions of all pairs with their details; ranges by pair.
+struct AllRegions {
+  std::span<const RegionRange> ranges;
+  std::span<const RegionForce> regions;
+};
 
 /// One rank counts what is known of a pair.
 bool counts_here(const BlockSystem &system, BlockIndex lower);
@@ -50,14 +56,11 @@ public:
   /// All regions of some other pair.
   /// @param dyads  theirs, or none
   void keep(std::uint32_t pair, std::span<const RegionForce> regions, std::span<const RegionDyads> dyads);
-  /// What has been kept, on blocks that wait for it. May be called again after a change.
-  ContactCount finish(const BlockSystem &system, const Candidates &candidates);
+  /// What waits. May be called again after a change.
+  /// @param all  read if all blocks wait
+  ContactCount finish(const BlockSystem &system, const Candidates &candidates, const AllRegions &all);
 
-  /// Region `number` of a pair, of those that are kept.
-  RegionSums &kept(std::uint32_t pair, std::size_t number) {
-    return kept_[kept_range_[pair].begin + number].sums;
-  }
-  /// Null where no block deforms.
+  /// Of region `number` of a pair, if they are kept; null where no block deforms.
   RegionDyads *kept_dyads(std::uint32_t pair, std::size_t number) {
     return has_dyads_ ? &kept_dyads_[kept_range_[pair].begin + number] : nullptr;
   }
@@ -66,12 +69,11 @@ public:
   [[nodiscard]] std::span<BlockContactSum> of_blocks() { return sums_; }
   [[nodiscard]] std::span<const BlockContactSum> of_blocks() const { return sums_; }
   [[nodiscard]] std::span<const BlockGradientSum> of_gradients() const { return gradients_; }
-  /// Of all regions, N/m.
+  /// Of all regions, N/m; once finished.
   [[nodiscard]] double largest_force() const;
 
 private:
-  struct KeptRegion {
-    RegionSums sums;
+  struct KeptRegion : RegionSums {
     bool born = false;
   };
   // What is seen of a pair, by bits.
@@ -100,13 +102,16 @@ private:
   std::span<const std::uint8_t> is_added_; ///< Candidates::is_added
   std::vector<BlockContactSum> sums_;
   std::vector<BlockGradientSum> gradients_;
-  ContactCount count_; ///< of pairs that are not kept
-  double largest_squared_ = 0.0;
+  ContactCount count_;                   ///< of pairs that are not kept
+  double largest_squared_ = 0.0;         ///< of them
+  double largest_waiting_squared_ = 0.0; ///< of the others
   // Of the group at hand, by pair.
   std::vector<RegionSums> group_;
   std::vector<RegionDyads> group_dyads_; ///< if some block deforms
   std::array<std::uint8_t, PlainPair::pairs_in_group> seen_{};
-  std::vector<RegionRange> kept_range_; ///< of kept_, by pair
+  // Regions on blocks that wait; if all do, their dyads alone, which stand nowhere else.
+  std::vector<RegionRange> kept_range_; ///< by pair
+  std::uint32_t num_kept_ = 0;
   std::vector<KeptRegion> kept_;
   std::vector<RegionDyads> kept_dyads_;
 };

@@ -138,8 +138,11 @@ public:
   ForceReport evaluate_border(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history);
 
-  /// What the regions do to the blocks; those that wait have to be finished.
+  /// What the regions do to the blocks; of blocks that wait only once it is finished.
   [[nodiscard]] BlockSums &sums() { return sums_; }
+  ContactCount finish_sums(const BlockSystem &system, const Candidates &candidates) {
+    return sums_.finish(system, candidates, {ranges_, regions()});
+  }
   [[nodiscard]] const BlockSums &sums() const { return sums_; }
 
   /// The details of all regions, if they were not found with the last evaluation: as long as trial

@@ -17,13 +17,14 @@ namespace gcpdda {
 
 class InitialStick {
 public:
-  /// Regions with friction among the evaluated pairs; sliding ones are put on their cap at once.
+  /// Regions with friction among the evaluated pairs; sliding ones are put on their cap at once. The
+  /// arguments are to outlive it.
   InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
                ContactHistory &history);
 
   /// Frictional contacts of each row; correct for owned rows, to be copied to ghosts by the caller.
   [[nodiscard]] std::vector<double> &contact_counts() { return contact_counts_; }
-  [[nodiscard]] bool empty() const { return regions_.empty(); }
+  [[nodiscard]] bool empty() const { return sticking_.empty(); }
 
   /// Largest change of relative tangential acceleration (m/s2) that a full correction of one region, cut at
   /// its cap, would still make. Accelerations of owned rows and ghosts stand in the system.
@@ -31,7 +32,7 @@ public:
   /// One sweep over all sticking regions.
   void sweep(const BlockSystem &system);
   /// Back to no stick force anywhere.
-  void reset();
+  void reset(const BlockSystem &system);
 
 private:
   struct Region {
@@ -41,18 +42,26 @@ private:
     Vec2 arm_lower;
     Vec2 arm_higher;
     double cap = 0.0;
-    double yield_lower = 0.0; ///< w of the lower block, 1/kg; 0 if fixed
-    double yield_higher = 0.0;
     std::size_t lower = 0;
     std::size_t higher = 0;
   };
 
-  [[nodiscard]] double tangential_acceleration(const BlockSystem &system, const Region &region) const;
-  [[nodiscard]] double corrected(const Region &region, double change) const;
+  /// w of both blocks, 1/kg; 0 of a fixed one.
+  struct Yields {
+    double lower = 0.0;
+    double higher = 0.0;
+  };
+  static Yields yields_of(const BlockSystem &system, const Region &region);
+  static double tangential_acceleration(const BlockSystem &system, const Region &region);
+  static double corrected(const Region &region, double change);
+  /// Made from its details each time: there are as many as contacts.
+  [[nodiscard]] Region region_of(const BlockSystem &system, std::size_t number) const;
   void set_shear(const Region &region, double shear);
 
   ContactForces &forces_;
-  std::vector<Region> regions_;
+  const Candidates &candidates_;
+  ContactHistory &history_;
+  std::vector<std::uint32_t> sticking_; ///< numbers of regions
   std::vector<double> contact_counts_;
 };
 
