@@ -30,9 +30,10 @@ inline void gather_deformables(BlockSystem &system, std::size_t first, const Fre
   const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
     return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
   };
+  const LaneAppliedTwice applied = apply_to_free(system, first, rows, LaneMasses(&system.properties[first]));
   const LaneLedger before = LaneLedger::load(&system.ledger[first]);
   LaneLedger ledger = before;
-  LaneRigid force = gather_free_forces(system, first, rows, ledger);
+  LaneRigid force = gather_free_forces(first, rows, applied.now, ledger);
 
   const LaneMat to_reference = LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
   const auto on_gradient = [&](Mat2 BlockGradientSum::*field) __attribute__((always_inline)) {
@@ -48,9 +49,8 @@ inline void gather_deformables(BlockSystem &system, std::size_t first, const Fre
   const LaneMat trial = load(&Deformation::trial);
   if (rows.local_damping != 0.0) {
     const Lanes share = rows.local_damping;
-    const LaneVec f = force.u + before.anchor_force.u;
     const LaneVec v = LaneVec::of([&](std::size_t i) { return &system.velocity[first + i].u; });
-    const LaneVec taken = share * LaneVec{lane_against(f.x, v.x), lane_against(f.y, v.y)};
+    const LaneVec taken = share * LaneVec{lane_against(force.u.x, v.x), lane_against(force.u.y, v.y)};
     const LaneMat taken_gradient =
         lane_damping(trial, gradient - load(&Deformation::internal) + load(&Deformation::anchor_force),
                      load(&Deformation::rate), share);
@@ -61,7 +61,7 @@ inline void gather_deformables(BlockSystem &system, std::size_t first, const Fre
   }
   force.store(rows.forces[first]);
 
-  add_works(before, half_increments(system, first), ledger);
+  add_works(before, applied, half_increments(system, first), ledger);
   const LaneMat stretch = trial - load(&Deformation::trial_previous);
   const auto half_work = [&](const LaneMat &f) __attribute__((always_inline)) {
     return Lanes(0.5) * contract(f, stretch);

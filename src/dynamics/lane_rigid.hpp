@@ -21,30 +21,28 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
 inline FreeStep step_free_rows(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                const Scheme &scheme, double dt) {
+  const LaneMasses of(&system.properties[first]);
+  const LaneAppliedTwice applied = apply_to_free(system, first, rows, of);
   const LaneLedger before = LaneLedger::load(&system.ledger[first]);
   LaneLedger ledger = before;
-  LaneRigid force = gather_free_forces(system, first, rows, ledger);
+  LaneRigid force = gather_free_forces(first, rows, applied.now, ledger);
 
   const LaneRigid v = LaneRigid::load(system.velocity[first]);
   if (rows.local_damping != 0.0) {
-    const LaneRigid f = force + before.anchor_force;
-    const LaneRigid taken =
-        Lanes(rows.local_damping) *
-        LaneRigid{{lane_against(f.u.x, v.u.x), lane_against(f.u.y, v.u.y)}, lane_against(f.r, v.r)};
+    const LaneRigid taken = Lanes(rows.local_damping) *
+                            LaneRigid{{lane_against(force.u.x, v.u.x), lane_against(force.u.y, v.u.y)},
+                                      lane_against(force.r, v.r)};
     force = force + taken;
     ledger.damping_force = ledger.damping_force + taken;
   }
   force.store(rows.forces[first]);
 
-  add_works(before, half_increments(system, first), ledger);
+  add_works(before, applied, half_increments(system, first), ledger);
   ledger.store(&system.ledger[first]);
 
-  const BlockProperties *properties = &system.properties[first];
-  const Lanes mass = Lanes::of([&](std::size_t i) { return properties[i].mass; });
-  const Lanes inertia = Lanes::of([&](std::size_t i) { return properties[i].inertia; });
   const LaneRigid a = LaneRigid::load(system.acceleration[first]);
   const LaneRigid d = LaneRigid::load(system.displacement[first]);
-  const LaneRigid free{(Lanes(1.0) / mass) * force.u, force.r / inertia};
+  const LaneRigid free{(Lanes(1.0) / of.mass) * force.u, force.r / of.inertia};
   const LaneRigid a_new = Lanes(1.0 / (1.0 - scheme.alpha_m)) * (free - Lanes(scheme.alpha_m) * a);
   const LaneRigid d_new = position_of(scheme, dt, d, v, a, a_new);
   const LaneRigid v_new = velocity_of(scheme, dt, v, a, a_new);
@@ -56,10 +54,9 @@ inline FreeStep step_free_rows(BlockSystem &system, std::size_t first, const Fre
   acceleration.store(system.acceleration[first]);
   displacement.store(system.displacement[first]);
   velocity.store(system.velocity[first]);
-  const Lanes radius = Lanes::of([&](std::size_t i) { return properties[i].radius; });
   const LaneRigid moved = displacement - LaneRigid::load(system.refreshed[first]);
   return {(!sound).by_lane(),
-          (!(most_motion(moved, velocity, acceleration, radius, dt) <= rows.calm)).by_lane()};
+          (!(most_motion(moved, velocity, acceleration, of.radius, dt) <= rows.calm)).by_lane()};
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -33,9 +33,8 @@ void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forc
   if (share == 0.0 || system.properties[row].keeps_its_velocity()) {
     return;
   }
-  BlockLedger &ledger = system.ledger[row];
   RigidDof &force = forces.rigid[row];
-  const RigidDof f = force + ledger.anchor_force;
+  const RigidDof f = force + system.applied[row].anchor;
   const RigidDof &v = system.velocity[row];
   RigidDof taken = share * RigidDof{{against(f.u.x, v.u.x), against(f.u.y, v.u.y)}, against(f.r, v.r)};
   if (system.is_deformable(row)) {
@@ -47,7 +46,7 @@ void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forc
     d.damping_force += taken_gradient;
   }
   force += taken;
-  ledger.damping_force += taken;
+  system.ledger[row].damping_force += taken;
 }
 
 void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double mass_damping) {

@@ -23,9 +23,8 @@ bool is_finite(const RigidDof &a) {
 
 /// Their work goes by the trapezoid over increments of x*: this half now, the other after the next predict().
 void note_anchors(BlockSystem &system, std::size_t row, const RigidDof &force) {
-  BlockLedger &ledger = system.ledger[row];
-  ledger.anchor_force = force;
-  ledger.load_work += 0.5 * work(force, system.trial[row] - system.trial_previous[row]);
+  system.applied[row].anchor = force;
+  system.ledger[row].load_work += 0.5 * work(force, system.trial[row] - system.trial_previous[row]);
 }
 
 using Dofs = std::array<double, 6>;

@@ -117,6 +117,12 @@ template <auto Member> constexpr Field<BlockSystem> of_ledger(const char *name) 
   }
   > (name);
 }
+template <auto Member> constexpr Field<BlockSystem> of_applied(const char *name) {
+  return field < BlockSystem, [](auto &system, std::size_t row) -> auto & {
+    return system.applied[row].*Member;
+  }
+  > (name);
+}
 template <auto Member> constexpr Field<BlockSystem> of_mark(const char *name) {
   return field < BlockSystem, [](auto &system, std::size_t row) -> auto & {
     return system.mark[row].*Member;
@@ -149,9 +155,9 @@ inline constexpr std::array block_fields{
     detail::of_row<&BlockSystem::trial_previous>("/block/trial_previous"),
     detail::of_ledger<&BlockLedger::shear_force>("/block/shear_force"),
     detail::of_ledger<&BlockLedger::damping_force>("/block/damping_force"),
-    detail::of_ledger<&BlockLedger::load_force>("/block/load_force"),
-    detail::of_ledger<&BlockLedger::anchor_force>("/block/anchor_force"),
-    detail::of_ledger<&BlockLedger::gravity_force>("/block/gravity_force"),
+    detail::of_applied<&AppliedForces::load>("/block/load_force"),
+    detail::of_applied<&AppliedForces::anchor>("/block/anchor_force"),
+    detail::of_applied<&AppliedForces::gravity>("/block/gravity_force"),
     detail::of_ledger<&BlockLedger::shear_work>("/block/shear_work"),
     detail::of_ledger<&BlockLedger::damping_work>("/block/damping_work"),
     detail::of_ledger<&BlockLedger::load_work>("/block/load_work"),
@@ -181,9 +187,10 @@ inline constexpr const char *region_states = "/region/state"; ///< u8
 inline constexpr const char *region_laws = "/region/law";     ///< i32
 
 // A field that is added to the state must join one of the lists above, or the words over them.
-static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 9);
+static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 10);
 static_assert(sizeof(BlockMark) == 6 * sizeof(double));
-static_assert(sizeof(BlockLedger) == 18 * sizeof(double));
+static_assert(sizeof(BlockLedger) == 10 * sizeof(double));
+static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
 static_assert(sizeof(Deformation) == (13 * 4 + 3) * sizeof(double));
 static_assert(sizeof(RegionMemory) == 9 * sizeof(double));
 

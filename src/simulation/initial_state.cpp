@@ -107,6 +107,7 @@ void Simulation::check_bonds() {
 
 void Simulation::accelerate_owned() {
   sum_contacts_of_blocks();
+  standing_.reset();
   gather_forces(0, blocks_.num_owned, {gravity(), ground_acceleration()});
   accelerate(blocks_, forces_);
   prescribe_motion();

@@ -240,6 +240,7 @@ void Simulation::move_blocks() {
     restless_.push_back({first, last});
     first = move_free_blocks(last, body, broken);
   }
+  standing_ = has_free_rows() ? std::optional(body) : std::nullopt;
   if (broken) {
     keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*broken].id, {}, 0.0, 0.0});
   }
@@ -265,6 +266,7 @@ FreeRows Simulation::free_rows(const BodyForces &body) {
           forces_.rigid,
           body.gravity,
           body.shaking,
+          standing_ == body,
           local_damping_,
           calm_motion(),
           contacts_.sums().of_gradients(),
@@ -285,6 +287,7 @@ void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyFo
     }
     BlockLedger &ledger = blocks_.ledger[row];
     const BlockLedger before = ledger;
+    const AppliedForces applied_before = blocks_.applied[row];
     const HalfWorks stretched =
         blocks_.is_deformable(row) ? half_works_on_gradient(blocks_.deformation_of(row)) : HalfWorks{};
     ledger.load_work += anchor_half_work(blocks_, row);
@@ -300,27 +303,27 @@ void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyFo
     }
     apply_mass_damping(blocks_, row, forces_, scene_.run.rayleigh.mass_damping);
     apply_local_damping(blocks_, row, forces_, local_damping_);
-    add_works(blocks_, row, before, stretched);
+    add_works(blocks_, row, before, applied_before, stretched);
   }
 }
 
 void Simulation::gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water) {
   const BlockProperties &block = blocks_.properties[row];
-  BlockLedger &ledger = blocks_.ledger[row];
+  AppliedForces &applied = blocks_.applied[row];
   if (block.keeps_its_velocity()) {
-    ledger.load_force = -1.0 * forces_.rigid[row];
+    applied.load = -1.0 * forces_.rigid[row];
     forces_.rigid[row] = {};
     return;
   }
-  ledger.gravity_force = block.heavy_mass() * body.gravity;
-  ledger.load_force = stage_.unloading.empty() ? RigidDof{} : unloading_of(block.id).rigid;
+  applied.gravity = block.heavy_mass() * body.gravity;
+  applied.load = stage_.unloading.empty() ? RigidDof{} : unloading_of(block.id).rigid;
   for (const MaterialLoad &load : blocks_.loads_of(row)) {
     const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
-    ledger.load_force += {load.force, cross(arm, load.force)};
+    applied.load += {load.force, cross(arm, load.force)};
   }
-  ledger.load_force += {water.force - block.mass * body.shaking, water.torque()};
-  forces_.rigid[row] += ledger.load_force;
-  forces_.rigid[row].u += ledger.gravity_force;
+  applied.load += {water.force - block.mass * body.shaking, water.torque()};
+  forces_.rigid[row] += applied.load;
+  forces_.rigid[row].u += applied.gravity;
 }
 
 // What works on F; the moments of the rigid part are in it.
@@ -340,7 +343,7 @@ void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   if (!bolts_.empty()) {
     forces_.gradient[blocks_.deformation_begin[row]] += bolts_.gradient_force(blocks_.deformation_begin[row]);
   }
-  for (RigidDof *force : {&ledger.shear_force, &ledger.damping_force, &ledger.load_force}) {
+  for (RigidDof *force : {&ledger.shear_force, &ledger.damping_force, &blocks_.applied[row].load}) {
     force->r = 0.0;
   }
 }

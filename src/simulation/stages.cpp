@@ -98,9 +98,9 @@ void Simulation::look_at_stage() {
     if (block.keeps_its_velocity()) {
       continue;
     }
-    const BlockLedger &ledger = blocks_.ledger[row];
+    const AppliedForces &applied = blocks_.applied[row];
     const RigidDof &v = blocks_.velocity[row];
-    const RigidDof force = forces_.rigid[row] + ledger.anchor_force;
+    const RigidDof force = forces_.rigid[row] + applied.anchor;
     const double along_x = undamped(force.u.x, v.u.x, local_damping_);
     const double along_y = undamped(force.u.y, v.u.y, local_damping_);
     const double turning =
@@ -109,7 +109,7 @@ void Simulation::look_at_stage() {
                    blocks_.deformation_of(row).anchor_force)
             : std::abs(undamped(force.r, v.r, local_damping_));
     unbalanced = std::max({unbalanced, norm(Vec2{along_x, along_y}), turning / block.radius});
-    acting = std::max({acting, block.heavy_mass() * norm(scene_.run.gravity), norm(ledger.load_force.u)});
+    acting = std::max({acting, block.heavy_mass() * norm(scene_.run.gravity), norm(applied.load.u)});
     BlockMark &mark = blocks_.mark[row];
     const RigidDof &now = blocks_.displacement[row];
     motion = std::max(motion, motion_between(block, mark.look, now));
@@ -169,10 +169,9 @@ void Simulation::book_stop() {
     if (blocks_.properties[row].keeps_its_velocity()) {
       continue;
     }
-    BlockLedger &ledger = blocks_.ledger[row];
     const RigidDof ahead = by_velocity * blocks_.velocity[row] + by_acceleration * blocks_.acceleration[row];
     const RigidDof behind = blocks_.displacement[row] - blocks_.trial[row];
-    RigidDof force = forces_.rigid[row] + ledger.anchor_force;
+    RigidDof force = forces_.rigid[row] + blocks_.applied[row].anchor;
     Mat2 stretch;
     double work_on_gradient = 0.0;
     if (blocks_.is_deformable(row)) {
@@ -185,8 +184,9 @@ void Simulation::book_stop() {
           contract(forces_.gradient[blocks_.deformation_begin[row]] - d.internal + d.anchor_force,
                    gradient_ahead - gradient_behind);
     }
-    ledger.damping_work += 0.5 * (work(force, ahead - behind) + work_on_gradient) -
-                           kinetic_energy_of(blocks_, row, (1.0 / dt) * (behind + ahead), stretch);
+    blocks_.ledger[row].damping_work +=
+        0.5 * (work(force, ahead - behind) + work_on_gradient) -
+        kinetic_energy_of(blocks_, row, (1.0 / dt) * (behind + ahead), stretch);
   }
 }
 
@@ -212,6 +212,7 @@ void Simulation::end_stage() {
   stage_.results = stage_results();
   stage_.end_time = time();
   stage_.ended = true;
+  standing_.reset();
   if (stage.kind == StageKind::settle) {
     unscale_masses();
     if (stage_.verdict == Verdict::settled) {

@@ -118,6 +118,7 @@ BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double r
       (system.*field)[row] = any_bits(random);
     }
     fill_with_any_bits(system.ledger[row], random);
+    fill_with_any_bits(system.applied[row], random);
     fill_with_any_bits(system.mark[row], random);
   }
   return system;

@@ -202,7 +202,8 @@ BlockSystem filled_system() {
     system.trial[row] = dof();
     system.trial_previous[row] = dof();
     system.refreshed[row] = dof();
-    system.ledger[row] = {dof(), dof(), dof(), dof(), dof().u, number(), number(), number(), number()};
+    system.ledger[row] = {dof(), dof(), number(), number(), number(), number()};
+    system.applied[row] = {dof(), dof().u, dof()};
     system.properties[row].material = static_cast<std::int32_t>(row) + 4;
   }
   Deformation &d = system.deformation[0];
@@ -249,6 +250,7 @@ void expect_same_row(const BlockSystem &a, std::size_t i, const BlockSystem &b, 
     EXPECT_EQ((a.*field)[i], (b.*field)[j]);
   }
   expect_same_bytes(std::span(&a.ledger[i], 1), std::span(&b.ledger[j], 1));
+  expect_same_bytes(std::span(&a.applied[i], 1), std::span(&b.applied[j], 1));
   const auto expect_same_list = [&](auto begins, auto... fields) {
     const auto slice = [&](const BlockSystem &system, auto field, std::size_t row) {
       return std::span(system.*field)

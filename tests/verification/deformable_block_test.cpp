@@ -346,9 +346,9 @@ Swing swing(BlockKind kind, double time_step, const Scheme &scheme = usual_schem
   int crossings = 0;
   for (int k = 0; k < static_cast<int>(20.6 * exact / time_step); ++k) {
     predict(run.system, scheme, time_step);
-    const BlockLedger &ledger = run.system.ledger[0];
     // The other half of what solve_and_update notes.
-    result.work += 0.5 * work(ledger.anchor_force, run.system.trial[0] - run.system.trial_previous[0]);
+    result.work +=
+        0.5 * work(run.system.applied[0].anchor, run.system.trial[0] - run.system.trial_previous[0]);
     if (kind == BlockKind::deformable) {
       const Deformation &d = run.system.deformation[0];
       result.work += 0.5 * contract(d.anchor_force, d.trial - d.trial_previous);
@@ -420,7 +420,7 @@ TEST(Anchors, TwoHoldABlockUnderGravity) {
       ASSERT_FALSE(solve_and_update(run.system, forces, run.scheme, run.time_step, run.elasticity));
     }
     const double load = run.system.properties[0].mass * gravity;
-    EXPECT_NEAR(run.system.ledger[0].anchor_force.u.y, load, 1e-6 * load);
+    EXPECT_NEAR(run.system.applied[0].anchor.u.y, load, 1e-6 * load);
     for (const Anchor &anchor : run.system.anchor) {
       const double settled = 0.5 * load / anchor.stiffness;
       EXPECT_NEAR(moved(run.system, anchor).y, -settled, 1e-3 * settled);

@@ -127,6 +127,8 @@ struct FreeRows {
   std::span<RigidDof> forces;                ///< out, by row: in all
   Vec2 gravity;
   Vec2 shaking; ///< acceleration of the ground
+  /// AppliedForces of all free rows are what gravity and shaking make of them now: they need not be read.
+  bool are_applied = false;
   double local_damping = 0.0;
   double calm = std::numeric_limits<double>::infinity(); ///< most_motion() that needs no closer look, m
   // Of deformable rows, by entry of BlockSystem::deformation.

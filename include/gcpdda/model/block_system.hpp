@@ -132,18 +132,24 @@ struct BlockGradientSum {
   Mat2 damping;
 };
 
-/// What the energy ledger carries for one block: forces of the last evaluation and their work so far over
-/// increments of the trial configuration.
+/// What the energy ledger carries for one block: forces of the last evaluation and their work so far, and
+/// that of AppliedForces, over increments of the trial configuration.
 struct BlockLedger {
   RigidDof shear_force;   ///< elastic part of friction
   RigidDof damping_force; ///< dashpots and local damping
-  RigidDof load_force;    ///< point loads; of a driven block what drives it
-  RigidDof anchor_force;  ///< fixed points; a deformable block's turning part stands in its Deformation
-  Vec2 gravity_force;
   double shear_work = 0.0;
   double damping_work = 0.0;
   double load_work = 0.0;
   double gravity_work = 0.0;
+};
+
+/// What acted on a block besides its contacts in the last evaluation. Apart from the ledger: that of most
+/// blocks is the same in every step.
+struct AppliedForces {
+  RigidDof load; ///< point loads, water, shaking; of a driven block what drives it
+  Vec2 gravity;
+  RigidDof anchor; ///< fixed points and viscous sides; a deformable block's turning part stands in its
+                   ///< Deformation
 };
 
 /// Where a block was (x - x_0) when a stage began and when its motion was last looked at.
@@ -171,6 +177,7 @@ struct BlockSystem {
   std::vector<RigidDof> trial_previous; ///< x*_{n-1} - x_0
   std::vector<RigidDof> refreshed;      ///< x - x_0 at the last refresh of the neighbourhood
   std::vector<BlockLedger> ledger;
+  std::vector<AppliedForces> applied;
   std::vector<BlockMark> mark;
 
   // Shape in the block's own axes, flat; row i owns [vertex_begin[i], vertex_begin[i + 1]). Edge k runs from
@@ -252,7 +259,8 @@ struct BlockSystem {
   static constexpr auto row_fields() {
     return std::make_tuple(&BlockSystem::properties, &BlockSystem::displacement, &BlockSystem::velocity,
                            &BlockSystem::acceleration, &BlockSystem::trial, &BlockSystem::trial_previous,
-                           &BlockSystem::refreshed, &BlockSystem::ledger, &BlockSystem::mark);
+                           &BlockSystem::refreshed, &BlockSystem::ledger, &BlockSystem::applied,
+                           &BlockSystem::mark);
   }
   /// Every field with any number of entries a row that cannot be derived: the offsets, then the fields that
   /// share them.

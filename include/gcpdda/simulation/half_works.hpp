@@ -4,8 +4,8 @@
 
 namespace gcpdda {
 
-/// Half the work of the forces a block's ledger holds, over the last increment of its trial configuration
-/// (J/m): what the trapezoid takes from one end.
+/// Half the work of the forces of a block's last evaluation, over the last increment of its trial
+/// configuration (J/m): what the trapezoid takes from one end.
 struct HalfWorks {
   double shear = 0.0;
   double damping = 0.0;
@@ -22,9 +22,10 @@ inline HalfWorks half_works_on_gradient(const Deformation &d) {
 
 inline HalfWorks half_works(const BlockSystem &system, std::size_t row) {
   const BlockLedger &ledger = system.ledger[row];
+  const AppliedForces &applied = system.applied[row];
   const RigidDof increment = system.trial[row] - system.trial_previous[row];
   HalfWorks half{0.5 * work(ledger.shear_force, increment), 0.5 * work(ledger.damping_force, increment),
-                 0.5 * work(ledger.load_force, increment), 0.5 * dot(ledger.gravity_force, increment.u)};
+                 0.5 * work(applied.load, increment), 0.5 * dot(applied.gravity, increment.u)};
   if (system.is_deformable(row)) {
     const HalfWorks stretched = half_works_on_gradient(system.deformation_of(row));
     half.shear += stretched.shear;
@@ -34,18 +35,20 @@ inline HalfWorks half_works(const BlockSystem &system, std::size_t row) {
   return half;
 }
 
-/// Onto the works of the ledger: what goes by the trapezoid, half with forces before and half with those the
-/// ledger holds now.
+/// Onto the works of the ledger: what goes by the trapezoid, half with forces before and half with those of
+/// now.
 /// @param before  the row's ledger then
+/// @param applied_before  what else acted on it then
 /// @param stretched  half the works of the forces then on F; nothing of a rigid row
 inline void add_works(BlockSystem &system, std::size_t row, const BlockLedger &before,
-                      const HalfWorks &stretched) {
+                      const AppliedForces &applied_before, const HalfWorks &stretched) {
   BlockLedger &ledger = system.ledger[row];
+  const AppliedForces &applied = system.applied[row];
   const RigidDof half_increment = 0.5 * (system.trial[row] - system.trial_previous[row]);
   ledger.shear_work += work(before.shear_force + ledger.shear_force, half_increment);
   ledger.damping_work += work(before.damping_force + ledger.damping_force, half_increment);
-  ledger.load_work += work(before.load_force + ledger.load_force, half_increment);
-  ledger.gravity_work += dot(before.gravity_force + ledger.gravity_force, half_increment.u);
+  ledger.load_work += work(applied_before.load + applied.load, half_increment);
+  ledger.gravity_work += dot(applied_before.gravity + applied.gravity, half_increment.u);
   if (system.is_deformable(row)) {
     const HalfWorks now = half_works_on_gradient(system.deformation_of(row));
     ledger.shear_work += stretched.shear + now.shear;
@@ -59,7 +62,7 @@ inline double anchor_half_work(const BlockSystem &system, std::size_t row) {
   if (system.anchors_of(row).empty() && system.dashpot_of(row) == nullptr) {
     return 0.0;
   }
-  double half = 0.5 * work(system.ledger[row].anchor_force, system.trial[row] - system.trial_previous[row]);
+  double half = 0.5 * work(system.applied[row].anchor, system.trial[row] - system.trial_previous[row]);
   if (system.is_deformable(row)) {
     const Deformation &d = system.deformation_of(row);
     half += 0.5 * contract(d.anchor_force, d.trial - d.trial_previous);

@@ -264,6 +264,8 @@ private:
   struct BodyForces {
     Vec2 gravity;
     Vec2 shaking; ///< acceleration of the ground
+
+    friend bool operator==(const BodyForces &, const BodyForces &) = default;
   };
   /// May there be any?
   [[nodiscard]] bool has_free_rows() const;
@@ -292,7 +294,9 @@ private:
   ContactHistory history_;
   mutable ContactForces contacts_; ///< details are found when somebody asks
   Bolts bolts_;
-  BlockForces forces_;             ///< at the last evaluation
+  BlockForces forces_; ///< at the last evaluation
+  /// What free blocks' AppliedForces follow from, if nothing has touched them or their masses since.
+  std::optional<BodyForces> standing_;
   std::vector<RowRange> restless_; ///< owned rows whose motion in the last step has to be looked at
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
