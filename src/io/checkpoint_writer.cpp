@@ -100,6 +100,7 @@ private:
   void dataset(const char *name, RowRange rows, const std::vector<T> &values, hsize_t columns = 1) {
     sum_.add(name, rows.first * static_cast<std::int64_t>(columns), std::span<const T>(values));
     file_.dataset(name, rows, values, columns);
+    file_.start_to_sync();
   }
 
   /// The root's values.

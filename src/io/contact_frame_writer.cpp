@@ -186,6 +186,7 @@ bool write_regions(CollectiveFile &file, ContactStrips &strips, const std::vecto
     as_counted = as_counted && std::ssize(strips.rows()) == count;
     tables.write(first, as_counted ? strips.rows() : std::vector<const ContactRow *>());
     first += count;
+    file.start_to_sync();
   }
   return as_counted;
 }

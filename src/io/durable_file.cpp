@@ -81,6 +81,17 @@ void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t
   }
 }
 
+void start_to_sync(const std::filesystem::path &path) {
+  if (num_passing != 0) {
+    return;
+  }
+  const int descriptor = ::open(unfinished_name(path).c_str(), O_RDONLY);
+  if (descriptor >= 0) {
+    ::sync_file_range(descriptor, 0, 0, SYNC_FILE_RANGE_WRITE);
+    ::close(descriptor);
+  }
+}
+
 void sync_file(const std::filesystem::path &path) {
   if (num_passing == 0) {
     call_on(path, O_RDONLY, "sync", {EINVAL}, ::fsync); // EINVAL: a file system without a disk

@@ -14,6 +14,10 @@ std::filesystem::path unfinished_name(const std::filesystem::path &path);
 /// there.
 void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t end);
 
+/// What has been written to the unfinished file so far begins to go to the disk, so that publish() need not
+/// wait for all of it. Only a hint: nothing fails.
+void start_to_sync(const std::filesystem::path &path);
+
 /// Syncs the unfinished file to the disk and gives it its final name. Throws FileError.
 void publish(const std::filesystem::path &path);
 

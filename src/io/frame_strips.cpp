@@ -4,10 +4,6 @@
 
 namespace gcpdda {
 
-std::int64_t usual_ids_per_strip(int num_ranks) {
-  return num_ranks > 1 ? 65536 : 32768;
-}
-
 int Strips::size() const {
   const std::int64_t longest_slab = (num_blocks + num_ranks - 1) / num_ranks;
   return static_cast<int>((longest_slab + ids_per_strip - 1) / ids_per_strip);

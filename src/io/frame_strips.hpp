@@ -26,9 +26,9 @@ struct Strips {
   [[nodiscard]] IdRange of(int rank, int number) const;
 };
 
-/// Short enough for a cache, 7 MB of quadrilaterals; on several ranks longer, because they wait for each
-/// other at each write.
-std::int64_t usual_ids_per_strip(int num_ranks);
+/// Short enough for a cache, 4 MB of quadrilaterals, and for the disk to get a strip while the next one is
+/// made.
+constexpr std::int64_t usual_ids_per_strip = 16384;
 
 /// Rows of a frame on their way to the ranks that write them.
 class FrameStrips {

@@ -211,8 +211,7 @@ int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block) {
 FrameWriter::FrameWriter(const Communicator &communicator, std::filesystem::path directory,
                          std::int64_t num_blocks, std::int64_t ids_per_strip)
     : communicator_(communicator), directory_(std::move(directory)), behind_(std::make_unique<WriteBehind>()),
-      num_blocks_(num_blocks),
-      ids_per_strip_(ids_per_strip > 0 ? ids_per_strip : usual_ids_per_strip(communicator.size())) {
+      num_blocks_(num_blocks), ids_per_strip_(ids_per_strip > 0 ? ids_per_strip : usual_ids_per_strip) {
   on_root(communicator_, [this] { make_directory(directory_ / "frames"); });
 }
 
@@ -310,6 +309,7 @@ bool FrameWriter::write_strips(CollectiveFile &file, const FrameSource &source) 
     } else {
       tables.write(0, 0, {}, 0);
     }
+    file.start_to_sync();
   }
   return as_expected;
 }

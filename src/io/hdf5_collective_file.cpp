@@ -244,6 +244,10 @@ void CollectiveFile::link(const std::string &name, const std::string &file) {
   });
 }
 
+void CollectiveFile::start_to_sync() {
+  gcpdda::start_to_sync(path_);
+}
+
 void CollectiveFile::complete() {
   agree_on_writes();
   on_all_ranks(communicator_, [&] {

@@ -33,7 +33,8 @@ struct RowRange {
 /// Rows in rank order: where mine begin, and how many there are in all. Collective.
 RowRange rows_in_rank_order(const Communicator &communicator, std::int64_t count);
 
-/// An HDF5 file written by all ranks together; every member is collective. It grows under a temporary name;
+/// An HDF5 file written by all ranks together; every member is collective that does not say
+/// otherwise. It grows under a temporary name;
 /// unless completed it vanishes with the object. What it holds does not depend on the number of ranks.
 class CollectiveFile {
 public:
@@ -75,6 +76,8 @@ public:
   void attribute(const std::string &object, const std::string &name, const std::string &ascii);
   /// `name` here stands for `name` in the file `file` of the same folder.
   void link(const std::string &name, const std::string &file);
+  /// What has been written so far may go to the disk while the rest is made. Not collective.
+  void start_to_sync();
   /// Close. No table lives any more; the file still has its temporary name and waits to be published.
   void complete();
   /// The same, then sync and rename.
