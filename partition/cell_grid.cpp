@@ -16,13 +16,6 @@ std::int32_t cells_along(double length, double cell_size) {
   return std::max(1, static_cast<std::int32_t>(std::ceil(length / cell_size * (1.0 - 1e-12))));
 }
 
-std::int64_t clamped(double place, std::int32_t count) {
-  if (!(place >= 0.0)) { // NaN too
-    return 0;
-  }
-  return place < count ? static_cast<std::int64_t>(place) : count - 1;
-}
-
 } // namespace
 
 CellGrid CellGrid::over(const Aabb &region, std::int64_t num_cells) {
@@ -64,11 +57,6 @@ Aabb box_without_strays(std::span<const Vec2> points) {
   const auto [left, right] = range(&Vec2::x);
   const auto [low, high] = range(&Vec2::y);
   return {{left, low}, {right, high}};
-}
-
-std::int64_t CellGrid::cell_of(Vec2 point) const {
-  const Vec2 place = (1.0 / cell_size) * (point - origin);
-  return clamped(place.y, rows) * columns + clamped(place.x, columns);
 }
 
 } // namespace gcpdda

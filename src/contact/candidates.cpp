@@ -384,10 +384,17 @@ void list_contacts_of_blocks(const BlockSystem &system, Candidates &candidates) 
 } // namespace
 
 std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin) {
-  std::vector<Aabb> boxes(system.num_rows());
-  for (std::size_t row = 0; row < system.num_rows(); ++row) {
-    const std::vector<Vec2> vertices = current_vertices(system, row);
-    boxes[row] = bounding_box(vertices).inflated(system.is_fixed(row) ? 0.0 : 0.5 * skin);
+  return reach_boxes(system, skin, 0, system.num_rows());
+}
+
+std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin, std::size_t first, std::size_t last) {
+  std::vector<Aabb> boxes;
+  boxes.reserve(last - first);
+  std::vector<Vec2> vertices;
+  for (std::size_t row = first; row < last; ++row) {
+    vertices.clear();
+    append_current_vertices(system, row, vertices);
+    boxes.push_back(bounding_box(vertices).inflated(system.is_fixed(row) ? 0.0 : 0.5 * skin));
   }
   return boxes;
 }

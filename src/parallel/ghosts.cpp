@@ -90,11 +90,11 @@ public:
 private:
   // Cells are clamped to the grid, which is monotone: two boxes that meet share a cell.
   template <class Visit> void for_cells(const Aabb &box, Visit &&visit) const {
-    const std::int64_t low = grid_.cell_of(box.low);
-    const std::int64_t high = grid_.cell_of(box.high);
-    for (std::int64_t j = low / grid_.columns; j <= high / grid_.columns; ++j) {
-      for (std::int64_t i = low % grid_.columns; i <= high % grid_.columns; ++i) {
-        visit(j * grid_.columns + i);
+    const CellGrid::Place low = grid_.place_of(box.low);
+    const CellGrid::Place high = grid_.place_of(box.high);
+    for (std::int64_t row = low.row; row <= high.row; ++row) {
+      for (std::int64_t column = low.column; column <= high.column; ++column) {
+        visit(row * grid_.columns + column);
       }
     }
   }

@@ -21,6 +21,7 @@ void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, c
   } else {
     std::vector<std::pair<std::int64_t, std::size_t>>
         order; // id and row, arrived ones behind all of the system
+    order.reserve(staying.size() + arrived.num_rows());
     for (const std::size_t row : staying) {
       order.emplace_back(system.properties[row].id.value, row);
     }
@@ -31,8 +32,9 @@ void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, c
     std::sort(first_arrived, order.end());
     std::inplace_merge(order.begin(), first_arrived, order.end());
     BlockSystem sorted;
-    reserve_rows(sorted, order.size() + fixed.num_rows(),
-                 system.reference_vertex.size() + arrived.reference_vertex.size());
+    const std::size_t ghosts = system.num_ghosts + system.num_ghosts / 8 + 16; // about as many will come
+    reserve_rows(sorted, order.size() + ghosts + fixed.num_rows(),
+                 system.reference_vertex.size() + arrived.reference_vertex.size() + 4 * ghosts);
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) { // rows that stay together
       const std::size_t first = order[begin].second;
       const bool is_new = first >= system.num_rows();

@@ -84,11 +84,17 @@ void Simulation::refresh(std::vector<RegionRecord> memory) {
 
   // A joint is remembered until it is open by twice that; only one of its blocks may be inflated.
   const double reach_skin = skin_ + 4.0 * dilation;
-  ghosts_.rebuild(blocks_, reach_boxes(blocks_, reach_skin), bolts_.partners(communicator_, blocks_));
+  std::vector<Aabb> boxes = reach_boxes(blocks_, reach_skin);
+  ghosts_.rebuild(blocks_, boxes, bolts_.partners(communicator_, blocks_));
+  const std::vector<Aabb> ghost_boxes =
+      reach_boxes(blocks_, reach_skin, blocks_.num_owned, blocks_.first_fixed());
+  boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(blocks_.num_owned), ghost_boxes.begin(),
+               ghost_boxes.end());
   candidates_ = {}; // the old and the new list together would be the largest thing in memory
-  candidates_ = make_candidates(blocks_, find_pairs(blocks_, reach_boxes(blocks_, reach_skin)),
-                                contacts_.parameters(), std::move(memory), history_, skin_);
-  pose(blocks_, 0, blocks_.num_rows());
+  candidates_ = make_candidates(blocks_, find_pairs(blocks_, boxes), contacts_.parameters(),
+                                std::move(memory), history_, skin_);
+  pose(blocks_, blocks_.first_fixed(), blocks_.num_rows());
+  pose_in_lanes(blocks_, 0, blocks_.num_mobile());
   bolts_.connect(blocks_);
   stale_ = false;
   if (step_count_ > 0) {

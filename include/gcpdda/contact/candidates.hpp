@@ -100,8 +100,9 @@ struct ContactParameters {
   }
 };
 
-/// Box of every row at t_n; a mobile block's is inflated by half the skin.
+/// Box of every row at t_n, or of rows [first, last); a mobile block's is inflated by half the skin.
 std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin);
+std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin, std::size_t first, std::size_t last);
 
 /// All pairs with at least one owned block whose boxes meet and of which one can be moved, by a background
 /// grid, as (row, row) with the lower id first, sorted by ids.

@@ -25,7 +25,26 @@ struct CellGrid {
   /// A grid over `region` with about `num_cells` cells (at least 1 each way).
   static CellGrid over(const Aabb &region, std::int64_t num_cells);
   [[nodiscard]] std::int64_t num_cells() const { return std::int64_t{columns} * rows; }
-  [[nodiscard]] std::int64_t cell_of(Vec2 point) const;
+  struct Place {
+    std::int64_t column = 0;
+    std::int64_t row = 0;
+  };
+  [[nodiscard]] Place place_of(Vec2 point) const {
+    const Vec2 place = (1.0 / cell_size) * (point - origin);
+    return {clamped(place.x, columns), clamped(place.y, rows)};
+  }
+  [[nodiscard]] std::int64_t cell_of(Vec2 point) const {
+    const Place place = place_of(point);
+    return place.row * columns + place.column;
+  }
+
+private:
+  static std::int64_t clamped(double place, std::int32_t count) {
+    if (!(place >= 0.0)) { // NaN too
+      return 0;
+    }
+    return place < count ? static_cast<std::int64_t>(place) : count - 1;
+  }
 };
 
 /// Box of the points but for the outermost few of each side (one in a thousand, none of less than twenty): a
