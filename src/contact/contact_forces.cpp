@@ -89,10 +89,15 @@ void ContactForces::find_motions(const BlockSystem &system, std::size_t first, s
   motions_.resize(system.num_rows());
   deforming_.resize(system.deformation.size());
   const std::size_t width = batch_->width();
+  const auto in_lanes = [&](std::size_t row) { // did they?
+    const std::size_t deformable = system.deformation_begin[row + width] - system.deformation_begin[row];
+    if (deformable == width) {
+      batch_->find_deforming_motions(system, row, motions_, deforming_);
+    }
+    return deformable == width || (deformable == 0 && batch_->find_motions(system, row, motions_));
+  };
   for (std::size_t row = first; row < last; ++row) {
-    while (row + width <= last && last <= system.first_fixed() &&
-           system.deformation_begin[row] == system.deformation_begin[row + width] &&
-           batch_->find_motions(system, row, motions_)) {
+    while (row + width <= last && last <= system.first_fixed() && in_lanes(row)) {
       row += width;
     }
     if (row == last) {

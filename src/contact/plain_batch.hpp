@@ -57,6 +57,10 @@ public:
   /// @return false, and nothing is written, where one turns by more than a series reaches
   virtual bool find_motions(const BlockSystem &system, std::size_t first,
                             std::span<BlockMotion> motions) const = 0;
+  /// The same of deformable rows.
+  virtual void find_deforming_motions(const BlockSystem &system, std::size_t first,
+                                      std::span<BlockMotion> motions,
+                                      std::span<DeformingBlock> deforming) const = 0;
   /// What evaluate() says of each lane, by bits.
   struct Faces {
     unsigned touching = 0;

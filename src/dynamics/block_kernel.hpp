@@ -5,11 +5,12 @@
 #include "lane_deformable.hpp"
 #include "lane_gather.hpp"
 #include "lane_pose.hpp"
+#include "lane_predict.hpp"
 #include "lane_rigid.hpp"
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-constexpr BlockLanes blocks{num_lanes,        pose_rigid_quads, pose_deformable_quads,
-                            step_deformables, step_free_rows,   gather_deformables};
+constexpr BlockLanes blocks{num_lanes,      pose_rigid_quads,   pose_deformable_quads, step_deformables,
+                            step_free_rows, gather_deformables, predict_deformables};
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -47,6 +47,7 @@ struct DeformableLanes {
   std::array<Vec2, most_lanes> force;          ///< N/m
   std::array<Mat2, most_lanes> gradient_force; ///< on F, N
   std::array<Mat2, most_lanes> viscous;        ///< out: what beta K adds to the elastic force, N
+  std::array<double, most_lanes> most_motion;  ///< out: of the new state, m
 };
 
 /// Advances the rows and notes their elastic force. A row whose new state is not finite or turned inside out
@@ -73,6 +74,11 @@ using RowsAtOnce = std::span<const std::size_t>;
 /// pose() of rigid or of deformable rows with four vertices, whose trial_centroid is known.
 using PoseQuads = void (*)(BlockSystem &system, const RowsAtOnce &rows);
 
+/// Deformable rows [first, first + width) at x + by_velocity x' + by_acceleration x''; the trial
+/// configuration before becomes trial_previous.
+using PredictDeformables = void (*)(BlockSystem &system, std::size_t first, double by_velocity,
+                                    double by_acceleration);
+
 struct BlockLanes {
   std::size_t width; ///< what is done at a time
   PoseQuads pose_rigid_quads;
@@ -80,6 +86,7 @@ struct BlockLanes {
   StepDeformables step_deformables;
   StepFreeRows step_free_rows;
   GatherDeformables gather_deformables;
+  PredictDeformables predict_deformables;
 };
 
 /// All instructions give the same bits.

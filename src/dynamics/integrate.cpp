@@ -110,9 +110,21 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step,
   pose(system, 0, 0);                      // lists have their lengths
   const double by_velocity = scheme.trial_velocity * time_step;
   const double by_acceleration = scheme.trial_acceleration * time_step * time_step;
+  const BlockLanes lanes = block_lanes(Instructions::widest);
+  const auto are_deformable = [&](std::size_t row, std::size_t last) {
+    return row + lanes.width <= last &&
+           system.deformation_begin[row + lanes.width] - system.deformation_begin[row] == lanes.width;
+  };
   for (std::size_t first = 0; first < system.num_owned; first += rows_at_once) {
     const std::size_t last = std::min(system.num_owned, first + rows_at_once);
     for (std::size_t i = first; i < last; ++i) {
+      while (are_deformable(i, last)) {
+        lanes.predict_deformables(system, i, by_velocity, by_acceleration);
+        i += lanes.width;
+      }
+      if (i == last) {
+        break;
+      }
       system.trial_previous[i] = system.trial[i];
       system.trial[i] = system.displacement[i] +
                         (by_velocity * system.velocity[i] + by_acceleration * system.acceleration[i]);
@@ -151,10 +163,15 @@ void accelerate(BlockSystem &system, const BlockForces &forces) {
 
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                             const Scheme &scheme, double time_step, Elasticity elasticity,
-                                            std::size_t first, std::size_t last) {
+                                            std::size_t first, std::size_t last, double calm,
+                                            std::vector<RowRange> *restless) {
   std::optional<std::size_t> broken =
-      step_by_own_matrices(system, forces, scheme, time_step, elasticity, first, last);
+      step_by_own_matrices(system, forces, scheme, time_step, elasticity, first, last, calm, restless);
   for (std::size_t i = first; i < last; ++i) {
+    const bool is_looked_at = system.has_matrix(i) && system.is_deformable(i); // in the lanes that stepped it
+    if (restless != nullptr && !is_looked_at) {
+      restless->push_back({i, i + 1});
+    }
     if (system.has_matrix(i)) {
       continue;
     }

@@ -134,6 +134,26 @@ inline Lanes lane_angle_between(const LaneMat &from, const LaneMat &to) {
   });
 }
 
+/// most_motion() of the row in each lane.
+inline Lanes lane_most_motion(const BlockSystem &system, const std::array<std::size_t, num_lanes> &row,
+                              double dt) {
+  const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
+    return LaneMat::of([&](std::size_t i) { return &(system.deformation_of(row[i]).*field); });
+  };
+  const auto load_u = [&](const std::vector<RigidDof> &field) __attribute__((always_inline)) {
+    return LaneVec::of([&](std::size_t i) { return &field[row[i]].u; });
+  };
+  const Lanes radius = Lanes::of([&](std::size_t i) { return system.properties[row[i]].radius; });
+  const auto most = [&](const LaneVec &u, const LaneMat &f) __attribute__((always_inline)) {
+    return abs(u.x) + abs(u.y) + radius * (abs(f.xx()) + abs(f.xy()) + abs(f.yx()) + abs(f.yy()));
+  };
+  return Lanes(rounding_of_most_motion) *
+         (most(load_u(system.displacement) - load_u(system.refreshed),
+               load(&Deformation::gradient) - load(&Deformation::refreshed)) +
+          Lanes(dt) * (most(load_u(system.velocity), load(&Deformation::rate)) +
+                       Lanes(dt) * most(load_u(system.acceleration), load(&Deformation::acceleration))));
+}
+
 /// One RigidDof for each lane.
 [[gnu::always_inline]] inline void store_dofs(const std::array<RigidDof *, num_lanes> &to, const LaneVec &u,
                                               const Lanes &r) {
@@ -263,6 +283,10 @@ inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, co
   store_dofs(velocity, v_new, spin);
   store_dofs(acceleration_dof, a_new, spin_rate);
   store_by_lane(viscous_force, 0, viscous.xx(), viscous.xy(), viscous.yx(), viscous.yy());
+  const Lanes most_motion = lane_most_motion(system, row, dt);
+  for (std::size_t i = 0; i < lanes.count; ++i) {
+    lanes.most_motion[i] = most_motion[i];
+  }
   return broken;
 }
 

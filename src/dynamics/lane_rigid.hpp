@@ -15,8 +15,8 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
   const auto most = [&](const LaneRigid &q) __attribute__((always_inline)) {
     return abs(q.u.x) + abs(q.u.y) + radius * abs(q.r);
   };
-  constexpr double rounding = 1.0 + 1e-12;
-  return Lanes(rounding) * (most(moved) + Lanes(dt) * (most(velocity) + Lanes(dt) * most(acceleration)));
+  return Lanes(rounding_of_most_motion) *
+         (most(moved) + Lanes(dt) * (most(velocity) + Lanes(dt) * most(acceleration)));
 }
 
 inline FreeStep step_free_rows(BlockSystem &system, std::size_t first, const FreeRows &rows,

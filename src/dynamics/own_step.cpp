@@ -143,8 +143,10 @@ void note_viscous(BlockSystem &system, std::size_t row, const Mat2 &viscous) {
 /// Deformable rows on their way to the lanes.
 class DeformableSteps {
 public:
-  DeformableSteps(BlockSystem &system, const OwnStep &step, Instructions instructions)
-      : system_(system), step_(step), block_lanes_(block_lanes(instructions)) {}
+  DeformableSteps(BlockSystem &system, const OwnStep &step, double calm, std::vector<RowRange> *restless,
+                  Instructions instructions)
+      : system_(system), step_(step), calm_(calm), restless_(restless),
+        block_lanes_(block_lanes(instructions)) {}
 
   void add(std::size_t row, Vec2 force, const Mat2 &gradient_force) {
     const std::size_t i = lanes_.count++;
@@ -168,6 +170,9 @@ public:
     const unsigned broken = block_lanes_.step_deformables(system_, lanes_, step_);
     for (std::size_t i = 0; i < lanes_.count; ++i) {
       const std::size_t row = lanes_.row[i];
+      if (restless_ != nullptr && !(lanes_.most_motion[i] <= calm_)) {
+        restless_->push_back({row, row + 1});
+      }
       if ((broken >> i & 1U) != 0) {
         broken_ = std::min(row, broken_.value_or(row));
         continue;
@@ -186,6 +191,8 @@ public:
 private:
   BlockSystem &system_;
   const OwnStep &step_;
+  double calm_;
+  std::vector<RowRange> *restless_; ///< if anybody asks
   const BlockLanes block_lanes_;
   DeformableLanes lanes_;
   std::array<std::optional<OwnSprings>, most_lanes> springs_;
@@ -196,8 +203,8 @@ private:
 
 std::optional<std::size_t> step_by_own_matrices(BlockSystem &system, const BlockForces &forces,
                                                 const Scheme &scheme, double time_step, Elasticity elasticity,
-                                                std::size_t first, std::size_t last,
-                                                Instructions instructions) {
+                                                std::size_t first, std::size_t last, double calm,
+                                                std::vector<RowRange> *restless, Instructions instructions) {
   if (system.matrix.empty()) {
     return std::nullopt;
   }
@@ -207,7 +214,7 @@ std::optional<std::size_t> step_by_own_matrices(BlockSystem &system, const Block
                      forces.wave,
                      forces.stiffness_damping,
                      elasticity_of(scheme, elasticity) == Elasticity::implicit};
-  DeformableSteps deformables(system, step, instructions);
+  DeformableSteps deformables(system, step, calm, restless, instructions);
   std::optional<std::size_t> broken;
   for (std::size_t row = first; row < last; ++row) {
     if (!system.has_matrix(row)) {

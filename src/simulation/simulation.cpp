@@ -238,12 +238,11 @@ void Simulation::move_blocks() {
     gather_forces(first, last, body);
     {
       const auto scope = phases_.measure(Phase::update);
-      if (const auto row =
-              solve_and_update(blocks_, forces_, scheme_, dt, scene_.run.elasticity, first, last)) {
+      if (const auto row = solve_and_update(blocks_, forces_, scheme_, dt, scene_.run.elasticity, first, last,
+                                            calm_motion(), &restless_)) {
         broken = std::min(*row, broken.value_or(*row));
       }
     }
-    restless_.push_back({first, last});
     first = move_free_blocks(last, body, broken);
   }
   standing_ = has_free_rows() ? std::optional(body) : std::nullopt;

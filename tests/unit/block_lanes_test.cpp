@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <vector>
@@ -78,8 +79,8 @@ struct Blocks {
 
   std::optional<std::size_t> step(std::size_t first, std::size_t last, Instructions instructions,
                                   Elasticity elasticity) {
-    return step_by_own_matrices(system, forces, usual_scheme(), time_step, elasticity, first, last,
-                                instructions);
+    return step_by_own_matrices(system, forces, usual_scheme(), time_step, elasticity, first, last, 0.0,
+                                nullptr, instructions);
   }
 };
 
@@ -127,6 +128,37 @@ TEST(DeformableLanes, LeaveABrokenBlockAsItWas) {
   EXPECT_EQ(after.system.deformation_of(inside_out).internal,
             before.system.deformation_of(inside_out).internal);
   EXPECT_NE(after.system.displacement[inside_out + 2], before.system.displacement[inside_out + 2]);
+}
+
+TEST(DeformableLanes, TellWhichBlocksMoveMuch) {
+  Blocks first;
+  first.step(0, num_blocks, Instructions::portable, Elasticity::implicit);
+  std::vector<double> motions;
+  std::vector<std::size_t> deformable;
+  for (std::size_t row = 0; row < num_blocks; ++row) {
+    if (first.system.is_deformable(row)) {
+      deformable.push_back(row);
+      motions.push_back(most_motion(first.system, row, time_step));
+    }
+  }
+  std::nth_element(motions.begin(), motions.begin() + 10, motions.end());
+  const double calm = motions[10];
+  std::vector<std::size_t> wanted;
+  std::copy_if(deformable.begin(), deformable.end(), std::back_inserter(wanted),
+               [&](std::size_t row) { return most_motion(first.system, row, time_step) > calm; });
+  ASSERT_EQ(wanted.size(), deformable.size() - 11);
+  for (const Instructions instructions : {Instructions::portable, Instructions::avx2, Instructions::widest}) {
+    Blocks blocks;
+    std::vector<RowRange> restless;
+    step_by_own_matrices(blocks.system, blocks.forces, usual_scheme(), time_step, Elasticity::implicit, 0,
+                         num_blocks, calm, &restless, instructions);
+    std::vector<std::size_t> listed;
+    for (const RowRange &rows : restless) {
+      ASSERT_EQ(rows.last, rows.first + 1);
+      listed.push_back(rows.first);
+    }
+    EXPECT_EQ(listed, wanted);
+  }
 }
 
 // What the six equations of a block say, with the forces it was given and those it says it applied.
@@ -322,6 +354,43 @@ TEST(FreeRows, AreLookedAtWhereTheyMoveMuch) {
     for (std::size_t row = 0; row < end; ++row) {
       EXPECT_TRUE(is_listed[row] || most_motion(blocks.system, row, time_step) <= blocks.calm) << row;
     }
+  }
+}
+
+// Some turn by more than a series reaches.
+TEST(Predict, MovesDeformableBlocksSideBySideAsEachAlone) {
+  std::mt19937 engine(29);
+  constexpr std::size_t count = 3 * most_lanes + 3;
+  BlockSystem system;
+  for (std::size_t row = 0; row < count; ++row) {
+    SceneBlock block;
+    block.vertices = {{0.0, 0.0}, {2.0 + next(engine), 0.3}, {1.7, 1.2}, {0.0, 1.0}};
+    append_block(system, BlockId{static_cast<std::int64_t>(row)}, block, {"rock", 2500.0, 5e8, 0.3},
+                 BlockKind::deformable);
+    const double rate = next(engine) > 0.5 ? 4000.0 : 2.0;
+    Deformation &d = system.deformation.back();
+    d.gradient = Mat2::identity() + next_matrix(engine, 1e-2);
+    d.trial = d.gradient + next_matrix(engine, 1e-5);
+    d.rate = Mat2{0.0, -rate, rate, 0.0} + next_matrix(engine, 0.5);
+    d.acceleration = next_matrix(engine, 100.0);
+    for (auto *field : {&system.displacement, &system.velocity, &system.acceleration, &system.trial}) {
+      (*field)[row] = next_dofs(engine, 1.0);
+    }
+  }
+  std::vector<BlockSystem> alone(count);
+  for (std::size_t row = 0; row < count; ++row) {
+    append_row(alone[row], system, row);
+    alone[row].num_owned = 1;
+    predict(alone[row], usual_scheme(), time_step);
+  }
+  system.num_owned = count;
+  predict(system, usual_scheme(), time_step);
+  for (std::size_t row = 0; row < count; ++row) {
+    SCOPED_TRACE(row);
+    EXPECT_EQ(system.trial[row], alone[row].trial[0]);
+    EXPECT_EQ(system.trial_previous[row], alone[row].trial_previous[0]);
+    EXPECT_EQ(system.deformation[row].trial, alone[row].deformation[0].trial);
+    EXPECT_EQ(system.deformation[row].trial_previous, alone[row].deformation[0].trial_previous);
   }
 }
 

@@ -43,6 +43,12 @@ private:
   std::vector<Row> rows_;
 };
 
+/// Rows [first, last).
+struct RowRange {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
 /// Trial configuration of rows [0, num_owned); the one before becomes trial_previous. Vertices are posed. The
 /// angles r of a deformable row, of displacement and trial, are those of F's rotation, unwrapped.
 ///
@@ -89,6 +95,8 @@ inline double moved_since_refresh(const BlockSystem &system, std::size_t row) {
   return norm(moved.u) + system.properties[row].radius * turned;
 }
 
+constexpr double rounding_of_most_motion = 1.0 + 1e-12;
+
 /// No less than the sum of these two, and found without a root.
 inline double most_motion(const BlockSystem &system, std::size_t row, double time_step) {
   const double radius = system.properties[row].radius;
@@ -108,17 +116,10 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
     turning = most_turn(d.rate);
     turning_rate = most_turn(d.acceleration);
   }
-  constexpr double rounding = 1.0 + 1e-12;
-  return rounding *
+  return rounding_of_most_motion *
          (most(moved.u) + radius * turned +
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
-
-/// Rows [first, last).
-struct RowRange {
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
 
 /// What acts on free rows: those without point loads, fixed points, viscous sides, bolts and water, which
 /// heed forces.
@@ -177,10 +178,12 @@ void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &force
 /// elastic and anchor forces that were applied are noted; of the anchors' work the half over the increment of
 /// x* that ends here, the other half is the caller's after the next predict().
 ///
+/// @param restless  if given, rows are appended; of the others most_motion() is no more than `calm`
 /// @return first row whose new state is broken
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                             const Scheme &scheme, double time_step, Elasticity elasticity,
-                                            std::size_t first, std::size_t last);
+                                            std::size_t first, std::size_t last, double calm = 0.0,
+                                            std::vector<RowRange> *restless = nullptr);
 /// All owned rows.
 inline std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                                    const Scheme &scheme, double time_step,
