@@ -191,7 +191,7 @@ def main():
             counted += [(name, 100000, 20, (1, 2, 4, 8)) for name in PROBLEMS]
             counted += [("wall", 20000, 4, (1, 2, 4, 8, 16, 32, 64))]
             counted += [(name, 1000000, 4, (1, 2)) for name in PROBLEMS]
-            timed = [(name, 5000, 400) for name in PROBLEMS] + [(name, 100000, 40) for name in PROBLEMS]
+            timed = [(name, 5000, 2000) for name in PROBLEMS] + [(name, 100000, 40) for name in PROBLEMS]
         counts = count(runner, work, counted)
         write(folder / "scaling.csv", counts)
         if not quick:
