@@ -331,7 +331,8 @@ private:
     const double frame = 105.0 * static_cast<double>(simulation_.num_blocks()) +
                          24.0 * static_cast<double>(points) +
                          (contacts ? 150.0 * static_cast<double>(touching_) : 0.0) + 16e3;
-    const auto frames = static_cast<double>(plan.num_steps / plan.steps_per_output + 1);
+    const std::int64_t num_frames = plan.num_steps / plan.steps_per_output + 1;
+    const auto frames = static_cast<double>(num_frames);
     return line("memory", fmt::format("{} of state, all ranks together", bytes_text(memory))) +
            line("run time",
                 fmt::format("about {} of stepping on {} rank{} as it starts now",
