@@ -38,7 +38,7 @@ std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, s
 
 std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
                               double time_step, std::size_t first, std::size_t last,
-                              std::optional<std::size_t> &broken, std::vector<RowRange> &restless,
+                              std::optional<std::size_t> &broken, std::vector<RowSpan> &restless,
                               Instructions instructions) {
   const BlockLanes lanes = block_lanes(instructions);
   for (; first + lanes.width <= last && are_free_and_rigid(system, first, first + lanes.width);

@@ -164,7 +164,7 @@ void accelerate(BlockSystem &system, const BlockForces &forces) {
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                             const Scheme &scheme, double time_step, Elasticity elasticity,
                                             std::size_t first, std::size_t last, double calm,
-                                            std::vector<RowRange> *restless) {
+                                            std::vector<RowSpan> *restless) {
   std::optional<std::size_t> broken =
       step_by_own_matrices(system, forces, scheme, time_step, elasticity, first, last, calm, restless);
   for (std::size_t i = first; i < last; ++i) {

@@ -143,7 +143,7 @@ void note_viscous(BlockSystem &system, std::size_t row, const Mat2 &viscous) {
 /// Deformable rows on their way to the lanes.
 class DeformableSteps {
 public:
-  DeformableSteps(BlockSystem &system, const OwnStep &step, double calm, std::vector<RowRange> *restless,
+  DeformableSteps(BlockSystem &system, const OwnStep &step, double calm, std::vector<RowSpan> *restless,
                   Instructions instructions)
       : system_(system), step_(step), calm_(calm), restless_(restless),
         block_lanes_(block_lanes(instructions)) {}
@@ -192,7 +192,7 @@ private:
   BlockSystem &system_;
   const OwnStep &step_;
   double calm_;
-  std::vector<RowRange> *restless_; ///< if anybody asks
+  std::vector<RowSpan> *restless_; ///< if anybody asks
   const BlockLanes block_lanes_;
   DeformableLanes lanes_;
   std::array<std::optional<OwnSprings>, most_lanes> springs_;
@@ -204,7 +204,7 @@ private:
 std::optional<std::size_t> step_by_own_matrices(BlockSystem &system, const BlockForces &forces,
                                                 const Scheme &scheme, double time_step, Elasticity elasticity,
                                                 std::size_t first, std::size_t last, double calm,
-                                                std::vector<RowRange> *restless, Instructions instructions) {
+                                                std::vector<RowSpan> *restless, Instructions instructions) {
   if (system.matrix.empty()) {
     return std::nullopt;
   }

@@ -14,7 +14,7 @@ namespace gcpdda {
 std::optional<std::size_t> step_by_own_matrices(BlockSystem &system, const BlockForces &forces,
                                                 const Scheme &scheme, double time_step, Elasticity elasticity,
                                                 std::size_t first, std::size_t last, double calm = 0.0,
-                                                std::vector<RowRange> *restless = nullptr,
+                                                std::vector<RowSpan> *restless = nullptr,
                                                 Instructions instructions = Instructions::widest);
 
 } // namespace gcpdda

@@ -380,7 +380,7 @@ double Simulation::calm_motion() const {
 
 double Simulation::own_status() {
   double status = 0.0;
-  for (const RowRange &rows : restless_) {
+  for (const RowSpan &rows : restless_) {
     for (std::size_t row = rows.first; row < rows.last; ++row) {
       if (most_motion(blocks_, row, plan_.time_step) <= calm_motion()) { // as of nearly all, without a root
         continue;

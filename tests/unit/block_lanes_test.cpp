@@ -149,11 +149,11 @@ TEST(DeformableLanes, TellWhichBlocksMoveMuch) {
   ASSERT_EQ(wanted.size(), deformable.size() - 11);
   for (const Instructions instructions : {Instructions::portable, Instructions::avx2, Instructions::widest}) {
     Blocks blocks;
-    std::vector<RowRange> restless;
+    std::vector<RowSpan> restless;
     step_by_own_matrices(blocks.system, blocks.forces, usual_scheme(), time_step, Elasticity::implicit, 0,
                          num_blocks, calm, &restless, instructions);
     std::vector<std::size_t> listed;
-    for (const RowRange &rows : restless) {
+    for (const RowSpan &rows : restless) {
       ASSERT_EQ(rows.last, rows.first + 1);
       listed.push_back(rows.first);
     }
@@ -302,7 +302,7 @@ struct FreeBlocks {
   }
 
   double calm = std::numeric_limits<double>::infinity();
-  std::vector<RowRange> restless;
+  std::vector<RowSpan> restless;
 };
 
 TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
@@ -345,7 +345,7 @@ TEST(FreeRows, AreLookedAtWhereTheyMoveMuch) {
     std::optional<std::size_t> broken;
     const std::size_t end = blocks.step(instructions, broken);
     std::vector<bool> is_listed(num_free);
-    for (const RowRange &rows : blocks.restless) {
+    for (const RowSpan &rows : blocks.restless) {
       std::fill(is_listed.begin() + static_cast<std::ptrdiff_t>(rows.first),
                 is_listed.begin() + static_cast<std::ptrdiff_t>(rows.last), true);
     }

@@ -44,7 +44,7 @@ private:
 };
 
 /// Rows [first, last).
-struct RowRange {
+struct RowSpan {
   std::size_t first = 0;
   std::size_t last = 0;
 };
@@ -155,7 +155,7 @@ std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, s
 /// @return the first row that is left
 std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
                               double time_step, std::size_t first, std::size_t last,
-                              std::optional<std::size_t> &broken, std::vector<RowRange> &restless,
+                              std::optional<std::size_t> &broken, std::vector<RowSpan> &restless,
                               Instructions instructions = Instructions::widest);
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its
@@ -183,7 +183,7 @@ void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &force
 std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                             const Scheme &scheme, double time_step, Elasticity elasticity,
                                             std::size_t first, std::size_t last, double calm = 0.0,
-                                            std::vector<RowRange> *restless = nullptr);
+                                            std::vector<RowSpan> *restless = nullptr);
 /// All owned rows.
 inline std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
                                                    const Scheme &scheme, double time_step,

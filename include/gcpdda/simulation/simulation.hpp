@@ -297,7 +297,7 @@ private:
   BlockForces forces_; ///< at the last evaluation
   /// What free blocks' AppliedForces follow from, if nothing has touched them or their masses since.
   std::optional<BodyForces> standing_;
-  std::vector<RowRange> restless_; ///< owned rows whose motion in the last step has to be looked at
+  std::vector<RowSpan> restless_; ///< owned rows whose motion in the last step has to be looked at
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
   GroundMotion ground_;
