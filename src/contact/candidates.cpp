@@ -247,7 +247,7 @@ void order_evaluation(const BlockSystem &system, Candidates &candidates) {
   };
   const auto order = [&](const PlainPair &plain) {
     return std::tuple(has_ghost(plain.pair), plain.group(), plain.kind.is_deformable, plain.kind.lower_edges,
-                      plain.kind.higher_edges, plain.kind.may_be_corners);
+                      plain.kind.higher_edges, plain.kind.has_few_edges);
   };
   std::stable_sort(candidates.plain.begin(), candidates.plain.end(),
                    [&](const PlainPair &a, const PlainPair &b) { return order(a) < order(b); });
@@ -314,8 +314,7 @@ void append_plain(const BlockSystem &system, const ChainFinder &finder, const Ed
        static_cast<std::uint32_t>(candidates.chain_vertices.size()),
        {static_cast<std::uint8_t>(lower_chain.count), static_cast<std::uint8_t>(higher_chain.count),
         finder.is_deformable(lower, higher),
-        lower_chain.count > 1 && higher_chain.count > 1 && system.num_vertices(lower) <= most_corner_edges &&
-            system.num_vertices(higher) <= most_corner_edges},
+        system.num_vertices(lower) <= most_corner_edges && system.num_vertices(higher) <= most_corner_edges},
        pair.is_mixed});
   append_chain(system, lower, lower_chain, candidates.chain_vertices);
   append_chain(system, higher, higher_chain, candidates.chain_vertices);
@@ -345,10 +344,11 @@ void forget_all(std::size_t pairs, ContactHistory &history) {
 
 /// Of a pair whose regions are the last ones of all, from `begin` on: those of a plain pair move to its own
 /// place.
-void append_places(bool is_plain, std::size_t begin, ContactHistory &history) {
+/// @param overlap  of a plain pair: as what it is looked at first
+void append_places(bool is_plain, PlainOverlap overlap, std::size_t begin, ContactHistory &history) {
   const std::size_t count = history.regions.size() - begin;
   const bool has_plain = is_plain && count > 0;
-  history.overlaps.push_back(has_plain ? PlainOverlap::corners : PlainOverlap::none);
+  history.overlaps.push_back(has_plain ? overlap : PlainOverlap::none);
   history.plain.push_back(has_plain ? history.regions[begin] : RegionState{});
   history.ranges.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)});
   if (is_plain) {
@@ -477,7 +477,8 @@ Candidates make_candidates(const BlockSystem &system,
     if (candidate.is_mixed && history.regions.size() > begin && history.regions[begin].law >= 0) {
       take_law(system, parameters, history.regions[begin].law, candidates.pairs.back());
     }
-    append_places(is_plain, begin, history);
+    const bool may_be_corners = is_plain && candidates.plain.back().kind.may_be_corners();
+    append_places(is_plain, may_be_corners ? PlainOverlap::corners : PlainOverlap::other, begin, history);
   }
 
   order_evaluation(system, candidates);

@@ -147,33 +147,41 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   const auto leave = [&](unsigned which, std::vector<std::uint32_t> &to) {
     for_bits(which & given, [&](std::size_t i) { to.push_back(entries[i]); });
   };
-  unsigned touching = 0;
-  unsigned meeting = 0;
-  unsigned by_faces = 0;
+  const PlainPair::Kind kind = lanes.pair[0]->kind;
+  PlainBatch::Seen seen;
+  PlainOverlap overlap = PlainOverlap::other;
   if (way == Way::corners) {
-    const PlainBatch::Corners found = batch_->evaluate_corners(scene, lanes);
-    meeting = found.meeting;
-    leave(~(found.touching | found.apart), others_);
-    touching = found.touching & given;
+    seen = batch_->evaluate_corners(scene, lanes);
+    overlap = PlainOverlap::corners;
+    leave(seen.with_face, faces_);
+    leave(~(seen.touching | seen.apart | seen.with_face), left_);
+  } else if (way == Way::face) {
+    seen = batch_->evaluate_faces(scene, lanes);
+    overlap = PlainOverlap::face;
+    const unsigned to_corners = kind.may_be_corners() ? seen.with_corners : 0U;
+    leave(to_corners, corners_);
+    leave(~(seen.touching | seen.apart | to_corners), left_);
   } else {
-    const PlainBatch::Faces found = batch_->evaluate(scene, lanes);
-    touching = found.touching & given;
-    meeting = found.meeting;
-    by_faces = ~found.with_corners;
-    if (way == Way::faces_as_before) { // those that may be one corner of each now are looked at as such
-      leave(found.with_corners, meeting_);
-      touching &= by_faces;
+    seen = batch_->evaluate(scene, lanes);
+    if (way == Way::other_as_before) { // those that may not be so any more
+      const unsigned to_corners = kind.may_be_corners() ? seen.with_corners : 0U;
+      const unsigned to_faces = kind.may_be_face() ? seen.with_face : 0U;
+      leave(to_corners, corners_);
+      leave(to_faces, faces_);
+      seen.touching &= ~(to_corners | to_faces);
     }
   }
-  report_.evaluations -= std::popcount(~meeting & given); // they were thought to meet, and are looked at once
+  const unsigned touching = seen.touching & given;
+  report_.evaluations -=
+      std::popcount(~seen.meeting & given); // they were thought to meet, and are looked at once
   if (touching != 0 && is_again_) {
     store_again(lanes, touching);
   } else if (touching != 0) {
-    store_alike(scene, lanes, touching, by_faces);
+    store_alike(scene, lanes, touching, overlap);
   }
 }
 
-PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching, unsigned by_faces) {
+PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching, PlainOverlap overlap) {
   PlainResults results;
   results.has_details = details_ == Details::now;
   if (results.has_details) {
@@ -193,7 +201,7 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
     has_mixed = has_mixed || plain.is_mixed;
     results.sums[i] = &sums_.open(plain.pair, is_born);
     results.memory[i] = &next_.plain[plain.pair];
-    next_.overlaps[plain.pair] = (by_faces >> i & 1U) != 0 ? PlainOverlap::faces : PlainOverlap::corners;
+    next_.overlaps[plain.pair] = overlap;
     if (results.has_details) {
       ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
       results.details[i] = &forces_[num_forces_];
@@ -209,8 +217,8 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
 }
 
 void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching,
-                                unsigned by_faces) {
-  const PlainResults results = open_regions(lanes, touching, by_faces);
+                                PlainOverlap overlap) {
+  const PlainResults results = open_regions(lanes, touching, overlap);
   const unsigned too_deep = batch_->store(results);
   for_bits(results.has_details || results.has_mixed ? results.wanted : 0U, [&](std::size_t i) {
     const std::uint32_t pair = lanes.pair[i]->pair;
@@ -270,27 +278,38 @@ void ContactForces::for_batches(const Candidates &candidates, const ContactHisto
   }
 }
 
-// First those that may touch with one corner of each block; those that do not are left to the general lanes.
-void ContactForces::evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries) {
-  others_.clear();
-  for_batches(scene.candidates, scene.history, entries, [&](std::span<const std::uint32_t> batch) {
-    if (scene.candidates.plain[batch[0]].kind.may_be_corners) {
-      evaluate_alike(scene, batch, Way::corners);
-    } else {
-      others_.insert(others_.end(), batch.begin(), batch.end());
-    }
-  });
-  for_batches(scene.candidates, scene.history, others_,
-              [&](std::span<const std::uint32_t> batch) { evaluate_alike(scene, batch, Way::faces); });
+void ContactForces::evaluate_all(const PlainScene &scene, const std::vector<std::uint32_t> &entries,
+                                 Way way) {
+  for_batches(scene.candidates, scene.history, entries,
+              [&](std::span<const std::uint32_t> batch) { evaluate_alike(scene, batch, way); });
 }
 
-// Those with a region. Faces mostly stay faces: to see that no corner is inside costs less than to look for
-// an overlap of corners in vain, and changes nothing.
+// Mostly each list does with its own way. Both ways never fit one pair (lane_faces.hpp), so which one takes
+// it does not depend on the list it came from, and faces that are left to corners do not come back.
+void ContactForces::evaluate_by_shape(const PlainScene &scene) {
+  left_.clear();
+  evaluate_all(scene, faces_, Way::face);
+  faces_.clear();
+  evaluate_all(scene, corners_, Way::corners);
+  evaluate_all(scene, faces_, Way::face);
+  evaluate_all(scene, left_, Way::other);
+}
+
+// Those with a region. What was neither mostly stays so: to see that no corner is inside costs less than to
+// look for the other ways in vain, and changes nothing.
 void ContactForces::evaluate_known(const PlainScene &scene) {
-  for_batches(scene.candidates, scene.history, faces_, [&](std::span<const std::uint32_t> batch) {
-    evaluate_alike(scene, batch, Way::faces_as_before);
-  });
-  evaluate_corners_first(scene, meeting_);
+  evaluate_all(scene, others_, Way::other_as_before);
+  evaluate_by_shape(scene);
+}
+
+void ContactForces::evaluate_strangers(const PlainScene &scene) {
+  corners_.clear();
+  faces_.clear();
+  others_.clear();
+  for (const std::uint32_t entry : strangers_) {
+    (scene.candidates.plain[entry].kind.may_be_corners() ? corners_ : others_).push_back(entry);
+  }
+  evaluate_known(scene);
 }
 
 // The history that the evaluation began with is kept in next_, the velocities in motions_.
@@ -300,8 +319,9 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
     return;
   }
   has_details_ = true;
-  meeting_.clear();
+  corners_.clear();
   faces_.clear();
+  others_.clear();
   for (std::size_t k = 0; k < candidates.plain.size(); ++k) {
     const PlainPair &plain = candidates.plain[k];
     const PlainOverlap overlap = history.overlaps[plain.pair];
@@ -309,7 +329,10 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
       ranges_[plain.pair] = {};
     } else if (!(plain.is_mixed && !next_.has_plain(plain.pair))) { // mixed ones are born with details
       ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_++), 1};
-      (overlap == PlainOverlap::faces ? faces_ : meeting_).push_back(static_cast<std::uint32_t>(k));
+      (overlap == PlainOverlap::corners ? corners_
+       : overlap == PlainOverlap::face  ? faces_
+                                        : others_)
+          .push_back(static_cast<std::uint32_t>(k));
     }
   }
   forces_.reserve(num_forces_);
@@ -324,34 +347,29 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
 // Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
 void ContactForces::find_meeting(const Candidates &candidates, const ContactHistory &history,
                                  std::size_t first, std::size_t last) {
-  meeting_.resize(last - first);
-  faces_.resize(last - first);
-  strangers_.resize(last - first);
-  std::uint32_t *strangers = strangers_.data();
-  std::uint32_t *corners = meeting_.data();
-  std::uint32_t *faces = faces_.data();
+  std::array<std::vector<std::uint32_t> *, 4> lists{&strangers_, &corners_, &faces_, &others_};
+  std::array<std::uint32_t *, 4> ends{};
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    lists[i]->resize(last - first);
+    ends[i] = lists[i]->data();
+  }
   const BlockMotion *motions = motions_.data();
   for (std::size_t k = first; k < last; ++k) {
     const PlainPair &plain = candidates.plain[k];
-    const auto entry = static_cast<std::uint32_t>(k);
     const PlainOverlap overlap = history.overlaps[plain.pair];
-    if (overlap == PlainOverlap::corners) { // that known boxes part is rare, and the lanes will see it
-      *corners++ = entry;
-    } else if (overlap == PlainOverlap::faces) {
-      *faces++ = entry;
-    } else {
-      *strangers = entry;
+    std::uint32_t *&end = ends[static_cast<std::size_t>(overlap)];
+    *end = static_cast<std::uint32_t>(k);
+    bool meets = true; // that known boxes part is rare, and the lanes will see it
+    if (overlap == PlainOverlap::none) {
       const CandidatePair &pair = candidates.pairs[plain.pair];
-      strangers += motions[pair.lower.value].box.meets(motions[pair.higher.value].box) ? 1 : 0;
+      meets = motions[pair.lower.value].box.meets(motions[pair.higher.value].box);
     }
+    end += meets ? 1 : 0;
   }
-  const auto cut = [&](std::vector<std::uint32_t> &list, const std::uint32_t *list_end) {
-    list.resize(static_cast<std::size_t>(list_end - list.data()));
-    report_.evaluations += std::ssize(list);
-  };
-  cut(strangers_, strangers);
-  cut(meeting_, corners);
-  cut(faces_, faces);
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    lists[i]->resize(static_cast<std::size_t>(ends[i] - lists[i]->data()));
+    report_.evaluations += std::ssize(*lists[i]);
+  }
 }
 
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
@@ -374,7 +392,7 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
         candidates.plain.begin());
     find_meeting(candidates, history, begin, end);
     evaluate_known(scene);
-    evaluate_corners_first(scene, strangers_);
+    evaluate_strangers(scene);
     sums_.close_group(system, candidates, group);
   }
   const PlainBatch::Extremes seen = batch_->take_extremes();
@@ -398,7 +416,7 @@ void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidate
   if (!candidates.pairs[number].is_plain) {
     next_.ranges[number] = {static_cast<std::uint32_t>(first_known), static_cast<std::uint32_t>(count)};
   } else if (count > 0) {
-    next_.overlaps[number] = PlainOverlap::corners;
+    next_.overlaps[number] = PlainOverlap::other;
     next_.plain[number] = next_.regions.back();
     next_.regions.pop_back();
   }

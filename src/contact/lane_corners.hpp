@@ -10,8 +10,8 @@
 // one is walked along from crossing to crossing.
 //
 // Three conditions make it so, for edges that can take part (candidates.hpp):
-//  - V is the first vertex between two of them that lies in the other block's box and below all of its lines,
-//    W likewise,
+//  - V is the first vertex between two of them that lies in the other block's box and clearly below all of
+//    its lines, W likewise,
 //  - each of the four edges leaves the other block before it ends,
 //  - and across an edge of the other corner. Then X on an edge of W is where that edge leaves V's block: a
 //    line leaves a convex block once.
@@ -42,21 +42,29 @@ struct LaneCorner {
   }
 };
 
+/// More than what rounding does to a depth below a line of a block.
+[[gnu::always_inline]] inline Lanes rounding_of(const LaneSide &side) {
+  return Lanes(1e-12) * (max(abs(side.low.x), abs(side.high.x)) + max(abs(side.low.y), abs(side.high.y)));
+}
+
+/// @param rounding  of the other block: sides in one line have no corner that is clearly inside, and it would
+///                  be in vain to look at what rounding puts there
 template <std::size_t lines>
-[[gnu::always_inline]] inline Mask is_inside(const LaneVec &x, const LaneSide &other) {
+[[gnu::always_inline]] inline Mask is_inside(const LaneVec &x, const LaneSide &other, const Lanes &rounding) {
   Mask inside = (other.low.x <= x.x) & (x.x <= other.high.x) & (other.low.y <= x.y) & (x.y <= other.high.y);
-  each<lines>([&](auto j) { inside = inside & (dot(other.slope[j], other.vertex[j] - x) > 0.0); });
+  each<lines>([&](auto j) { inside = inside & (dot(other.slope[j], other.vertex[j] - x) > rounding); });
   return inside;
 }
 
 /// Would find_corner() find one?
 inline Mask has_corner(const LaneSide &own, const LaneSide &other) {
+  const Lanes rounding = rounding_of(other);
   Mask found = Mask::from(0);
   for (std::size_t k = 1; k < own.edges; ++k) {
     const LaneVec &x = own.vertex[k];
     Mask inside = (other.low.x <= x.x) & (x.x <= other.high.x) & (other.low.y <= x.y) & (x.y <= other.high.y);
     for (std::size_t j = 0; j < other.edges; ++j) {
-      inside = inside & (dot(other.slope[j], other.vertex[j] - x) > 0.0);
+      inside = inside & (dot(other.slope[j], other.vertex[j] - x) > rounding);
     }
     found = found | inside;
   }
@@ -67,10 +75,11 @@ inline Mask has_corner(const LaneSide &own, const LaneSide &other) {
 template <std::size_t edges>
 [[gnu::always_inline]] inline Mask find_corner(const LaneSide &own, const LaneSide &other,
                                                LaneCorner &corner) {
+  const Lanes rounding = rounding_of(other);
   Mask found{};
   each<edges - 1>([&](auto before) {
     constexpr std::size_t k = before + 1;
-    const Mask here = is_inside<edges>(own.vertex[k], other) & !found;
+    const Mask here = is_inside<edges>(own.vertex[k], other, rounding) & !found;
     if constexpr (k == 1) {
       corner.vertex = own.vertex[1];
       for (std::size_t i = 0; i < 2; ++i) {
@@ -156,13 +165,30 @@ template <std::size_t lines>
   return first;
 }
 
-/// Walk along the lower envelope of the depths to where the first one is used up.
-/// @return where that is an edge of the other corner
+/// Piece k of a stretch, from s to `to`, with the depths there.
+/// @return int d s ds
 template <std::size_t lines>
+[[gnu::always_inline]] inline Lanes add_piece(std::size_t k, const Lanes &s, const Lanes &to,
+                                              const Lanes &here, const Lanes &there,
+                                              CornerStretch<lines> &stretch) {
+  const Lanes piece = to - s;
+  const Lanes total = Lanes(0.5) * piece * (here + there);
+  stretch.pressure += total;
+  stretch.piece_start[k] = s;
+  stretch.piece_depth[k] = here;
+  stretch.deepest = max(stretch.deepest, there);
+  return s * total + piece * piece * (here + Lanes(2.0) * there) * Lanes(1.0 / 6.0);
+}
+
+/// Walk along the lower envelope of the depths to where the first one is used up.
+/// @param wanted  by line
+/// @return where that is a line that is wanted
+template <std::size_t lines, std::size_t places>
 [[gnu::always_inline]] inline Mask integrate_stretch(const FallingDepths<lines> &lower,
-                                                     const LaneCorner &other, CornerStretch<lines> &stretch) {
+                                                     const std::array<Mask, places> &wanted,
+                                                     CornerStretch<lines> &stretch) {
   PlaceAlong exit{lower.depth[0], max(0.0, lower.fall[0])};
-  Mask leaves = other.has_line[0];
+  Mask leaves = wanted[0];
   NearestLine nearest{lower.depth[0], lower.fall[0]};
   Lanes other_fall = lower.fall[0]; // of two lines
   each<lines - 1>([&](auto before) __attribute__((always_inline)) {
@@ -170,7 +196,7 @@ template <std::size_t lines>
     const Lanes &depth = lower.depth[j];
     const Lanes &fall = lower.fall[j];
     const Mask first = PlaceAlong{depth, fall}.is_before(exit);
-    leaves = (first & other.has_line[j]) | (leaves & !first);
+    leaves = (first & wanted[j]) | (leaves & !first);
     exit.over = select(first, depth, exit.over);
     exit.rate = select(first, fall, exit.rate);
     const Mask nearer = (depth < nearest.depth) | ((depth == nearest.depth) & (fall > nearest.fall));
@@ -215,13 +241,7 @@ template <std::size_t lines>
       }
     }
     const Lanes there = is_last ? Lanes(0.0) : select(to < length, nearest.at(to), 0.0);
-    const Lanes piece = to - s;
-    const Lanes total = Lanes(0.5) * piece * (here + there);
-    stretch.pressure += total;
-    along += s * total + piece * piece * (here + Lanes(2.0) * there) * Lanes(1.0 / 6.0);
-    stretch.piece_start[k] = s;
-    stretch.piece_depth[k] = here;
-    stretch.deepest = max(stretch.deepest, there);
+    along += add_piece(k, s, to, here, there, stretch);
     s = to;
     here = there;
   });
@@ -263,6 +283,24 @@ template <std::size_t edges> struct CornerOverlap {
   LaneCorner higher;
   std::array<CornerStretch<edges>, 2> on_lower;
   std::array<CornerStretch<edges>, 2> on_higher;
+  Mask lower_has; ///< it has a corner inside the other one
+  Mask higher_has;
+
+  /// Where the boundary is measured from.
+  [[nodiscard]] const LaneVec &origin() const { return lower.vertex; }
+  /// visit(number, stretch, direction of its pressure on the lower block).
+  template <class Visit> [[gnu::always_inline]] void for_stretches(Visit &&visit) const {
+    each<2>([&](auto i) __attribute__((always_inline)) {
+      visit(std::integral_constant<std::size_t, 2 * i>{}, on_lower[i], -lower.normal[i]);
+      visit(std::integral_constant<std::size_t, 2 * i + 1>{}, on_higher[i], higher.normal[i]);
+    });
+  }
+  /// visit(x) for the corners of the overlap but the origin, from there.
+  template <class Visit> [[gnu::always_inline]] void for_corners(Visit &&visit) const {
+    visit(on_lower[0].length * on_lower[0].direction);
+    visit(on_lower[1].length * on_lower[1].direction);
+    visit(on_higher[0].begin);
+  }
 
   /// True where the blocks overlap so; elsewhere nothing of this means anything.
   Mask find(const LaneSide &lower_side, const LaneSide &higher_side);
@@ -297,7 +335,7 @@ CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneSide &othe
     each<edges>([&](auto j) __attribute__((always_inline)) {
       lower.fall[j] = dot(other_side.slope[j], stretch.direction);
     });
-    valid = valid & integrate_stretch<edges>(lower, other, stretch);
+    valid = valid & integrate_stretch<edges>(lower, other.has_line, stretch);
     valid = valid & (stretch.length <= own.length[i]);
   });
   return valid;
@@ -305,8 +343,9 @@ CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneSide &othe
 
 template <std::size_t edges>
 Mask CornerOverlap<edges>::find(const LaneSide &lower_side, const LaneSide &higher_side) {
-  const Mask has_both = find_corner<edges>(lower_side, higher_side, lower) &
-                        find_corner<edges>(higher_side, lower_side, higher);
+  lower_has = find_corner<edges>(lower_side, higher_side, lower);
+  higher_has = find_corner<edges>(higher_side, lower_side, higher);
+  const Mask has_both = lower_has & higher_has;
   if (!has_both.any()) {
     return has_both;
   }
@@ -328,7 +367,7 @@ template <std::size_t edges> Mask CornerOverlap<edges>::has_two_lines_each() con
         stretch.begin = stretches[i].begin;
         stretch.direction = stretches[i].direction;
         each<2>([&](auto j) { below.fall[j] = dot(other.slope[j], stretch.direction); });
-        integrate_stretch<2>(below, other, stretch);
+        integrate_stretch<2>(below, other.has_line, stretch);
         same = same & (stretch.pressure == stretches[i].pressure);
       });
     };

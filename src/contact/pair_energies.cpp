@@ -49,7 +49,7 @@ std::vector<double> find_energies(const BlockSystem &system, const Candidates &c
     const CandidatePair &pair = candidates.pairs[plain.pair];
     if (!plain.kind.is_deformable && is_simple(pair.lower) && is_simple(pair.higher) &&
         system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
-      (plain.kind.may_be_corners ? corners : others).push_back(&plain);
+      (plain.kind.may_be_corners() ? corners : others).push_back(&plain);
     }
   }
   const std::unique_ptr<PlainBatch> batch = make_plain_batch(instructions);

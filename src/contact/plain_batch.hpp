@@ -61,29 +61,29 @@ public:
   virtual void find_deforming_motions(const BlockSystem &system, std::size_t first,
                                       std::span<BlockMotion> motions,
                                       std::span<DeformingBlock> deforming) const = 0;
-  /// What evaluate() says of each lane, by bits.
-  struct Faces {
+  /// What one of the ways below says of each lane, by bits.
+  struct Seen {
     unsigned touching = 0;
     unsigned meeting = 0;      ///< the boxes do
-    unsigned with_corners = 0; ///< a corner of each block is in the other one: what evaluate_corners() needs
+    unsigned apart = 0;        ///< the blocks are seen not to touch
+    unsigned with_corners = 0; ///< of each block a corner is in the other one: evaluate_corners() may do
+    unsigned with_face = 0;    ///< of one block only: evaluate_faces() may do
   };
-  virtual Faces evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;
-  /// What evaluate_corners() can say of each lane, by bits.
-  struct Corners {
-    unsigned touching = 0;
-    unsigned meeting = 0;
-    unsigned apart = 0;
-  };
-  /// The same, where PlainPair::may_be_corners, for those that overlap with one corner of each block, which
-  /// is far less work (lane_corners.hpp). Of the others some are seen not to touch, the rest is left to
-  /// evaluate().
-  virtual Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) = 0;
+  /// Whatever the overlap is.
+  virtual Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;
+  /// The same with far less work, where PlainPair::Kind::may_be_corners, for those that overlap with one
+  /// corner of each block (lane_corners.hpp). Others do not touch; some are seen to be apart, the rest is
+  /// left to the other ways.
+  virtual Seen evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) = 0;
+  /// The same, where PlainPair::Kind::may_be_face, for those that overlap with one or two corners of one
+  /// block in a face of the other one (lane_faces.hpp).
+  virtual Seen evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) = 0;
   /// Energies by lane, m3; see find_energies.
   struct Energies {
     unsigned known = 0; ///< by bits
     std::array<double, most_lanes> energy;
   };
-  /// Of pairs that overlap with one corner of each block, where PlainPair::may_be_corners.
+  /// Of pairs that overlap with one corner of each block, where PlainPair::Kind::may_be_corners.
   virtual Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
                                         const PlainLanes &lanes) = 0;
   /// Of most others of blocks with no more than most_corner_edges edges.

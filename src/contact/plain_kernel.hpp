@@ -4,6 +4,7 @@
 
 #include "lane_corners.hpp"
 #include "lane_energies.hpp"
+#include "lane_faces.hpp"
 #include "lane_motion.hpp"
 #include "lane_region.hpp"
 #include "lane_stretch.hpp"
@@ -27,8 +28,9 @@ public:
                     std::span<BlockMotion> motions) const override;
   void find_deforming_motions(const BlockSystem &system, std::size_t first, std::span<BlockMotion> motions,
                               std::span<DeformingBlock> deforming) const override;
-  Faces evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
-  Corners evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
+  Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
+  Seen evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
+  Seen evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) override;
   Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
                                 const PlainLanes &lanes) override;
   Energies find_energies(const BlockSystem &system, const Candidates &candidates,
@@ -43,13 +45,18 @@ private:
   void integrate();
   void measure(const LaneConstants &constants);
   template <class AnyMotion> void add_dashpot(const LaneConstants &constants, const AnyMotion &motion);
-  template <std::size_t edges> Corners evaluate_corners(const PlainScene &scene, const Pairs &pairs);
-  template <std::size_t edges> struct CornerPairs;
+  template <std::size_t edges> Seen evaluate_corners(const PlainScene &scene, const Pairs &pairs);
+  template <std::size_t edges> Seen evaluate_faces(const PlainScene &scene, const Pairs &pairs);
+  /// Of the lanes whose overlap is known, which touch.
+  template <class Overlap>
+  unsigned evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
+                            const Mask &known);
+  template <std::size_t edges> struct PairSides;
   static void load_chain(const BlockSystem &system, const LaneBlocks &blocks, std::size_t edges,
                          LaneSide &side);
   static Energies by_lane(const Mask &known, const Lanes &energy);
-  /// visit(edges) with the number of edges the corners of all pairs are looked for among.
-  template <class Visit> static auto with_corner_edges(const PlainPair &pair, Visit &&visit);
+  /// visit(edges) with the number of edges of the longer chain, where there are few.
+  template <class Visit> static auto with_few_edges(const PlainPair &pair, Visit &&visit);
   template <class Overlap> void measure(const Overlap &overlap, const LaneConstants &constants);
   template <class Overlap, class AnyMotion>
   void add_dashpot(const Overlap &overlap, const LaneConstants &constants, const AnyMotion &motion);
@@ -283,7 +290,7 @@ inline void LaneBatch::load_chain(const BlockSystem &system, const LaneBlocks &b
   side.vertex[edges] = load_vertex(system, blocks, edges);
 }
 
-inline PlainBatch::Faces LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
+inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
   const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
     load_chain(scene.system, blocks, edges, side);
@@ -299,17 +306,22 @@ inline PlainBatch::Faces LaneBatch::evaluate(const PlainScene &scene, const Plai
   integrate();
   const Mask meets = boxes_meet(lower_, higher_);
   regions_.touches = regions_.touches & meets;
-  const Faces result{regions_.touches.by_lane(), meets.by_lane(),
-                     (meets & has_corner(lower_, higher_) & has_corner(higher_, lower_)).by_lane()};
-  if (result.touching == 0) {
-    return result;
+  const Mask lower_has = has_corner(lower_, higher_);
+  const Mask higher_has = has_corner(higher_, lower_);
+  Seen seen;
+  seen.touching = regions_.touches.by_lane();
+  seen.meeting = meets.by_lane();
+  seen.with_corners = (meets & lower_has & higher_has).by_lane();
+  seen.with_face = (meets & (lower_has ^ higher_has)).by_lane();
+  if (seen.touching == 0) {
+    return seen;
   }
   const LaneConstants constants = load_constants(scene, pairs);
   regions_.take_stiffness(constants.half_stiffness);
   measure(constants);
   add_friction_and_dashpots(scene, pairs, constants,
                             [&](const auto &motion) { add_dashpot(constants, motion); });
-  return result;
+  return seen;
 }
 
 // The corners and the places where the boundaries cross.
@@ -317,12 +329,10 @@ template <class Overlap> void LaneBatch::measure(const Overlap &overlap, const L
   const LaneVec normal = regions_.normal();
   const LaneVec tangent = perp(normal);
   const LaneVec to_point = regions_.point() - regions_.origin;
-  const auto &[first, second] = overlap.on_lower;
-  const auto &[third, fourth] = overlap.on_higher;
   const LaneVec start = -to_point;
   LaneRegions::Extent extent{dot(start, normal), dot(start, tangent), dot(start, normal),
                              dot(start, tangent)};
-  const auto include = [&](const LaneVec &end) __attribute__((always_inline)) {
+  overlap.for_corners([&](const LaneVec &end) __attribute__((always_inline)) {
     const LaneVec x = end - to_point;
     const Lanes along_n = dot(x, normal);
     const Lanes along_t = dot(x, tangent);
@@ -330,46 +340,57 @@ template <class Overlap> void LaneBatch::measure(const Overlap &overlap, const L
     extent.high_n = max(extent.high_n, along_n);
     extent.low_t = min(extent.low_t, along_t);
     extent.high_t = max(extent.high_t, along_t);
-  };
-  include(first.length * first.direction);
-  include(second.length * second.direction);
-  include(third.begin);
-  regions_.take_extent(extent, max(max(first.deepest, second.deepest), max(third.deepest, fourth.deepest)),
-                       constants);
+  });
+  Lanes deepest = 0.0;
+  overlap.for_stretches([&](auto, const auto &stretch, const LaneVec &)
+                            __attribute__((always_inline)) { deepest = max(deepest, stretch.deepest); });
+  regions_.take_extent(extent, deepest, constants);
 }
 
 template <class Overlap, class AnyMotion>
 void LaneBatch::add_dashpot(const Overlap &overlap, const LaneConstants &constants, const AnyMotion &motion) {
   std::array<Lanes, 4> share;
   Lanes facing_pressure = 0.0;
-  each<2>([&](auto i) __attribute__((always_inline)) {
-    share[i] = max(0.0, -dot(regions_.normal(), overlap.lower.normal[i]));
-    share[2 + i] = max(0.0, dot(regions_.normal(), overlap.higher.normal[i]));
-    facing_pressure += share[i] * overlap.on_lower[i].pressure;
-    facing_pressure += share[2 + i] * overlap.on_higher[i].pressure;
+  overlap.for_stretches([&](auto i, const auto &stretch, const LaneVec &push) __attribute__((always_inline)) {
+    share[i] = max(0.0, dot(regions_.normal(), push));
+    facing_pressure += share[i] * stretch.pressure;
   });
   LaneDashpot dashpot(regions_, constants, facing_pressure);
   const LaneVec velocity = motion.velocity_at(regions_.origin);
-  const auto add = [&](const auto &stretch, const Lanes &w) __attribute__((always_inline)) {
-    dashpot.add(stretch.begin, stretch.direction, stretch, w, motion, velocity);
-  };
-  each<2>([&](auto i) __attribute__((always_inline)) {
-    add(overlap.on_lower[i], share[i]);
-    add(overlap.on_higher[i], share[2 + i]);
+  overlap.for_stretches([&](auto i, const auto &stretch, const LaneVec &) __attribute__((always_inline)) {
+    dashpot.add(stretch.begin, stretch.direction, stretch, share[i], motion, velocity);
   });
   regions_.add_dashpot(dashpot.total, dashpot.moment, motion);
 }
 
+template <class Overlap>
+unsigned LaneBatch::evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
+                                     const Mask &known) {
+  regions_.start(overlap.origin());
+  overlap.for_stretches([&](auto, const auto &stretch, const LaneVec &push) __attribute__((always_inline)) {
+    regions_.add_pressure(stretch.pressure, stretch.moment, push);
+  });
+  regions_.touches = known & regions_.has_pressure();
+  regions_.find_resultant();
+  if (regions_.touches.any()) {
+    const LaneConstants constants = load_constants(scene, pairs);
+    regions_.take_stiffness(constants.half_stiffness);
+    measure(overlap, constants);
+    add_friction_and_dashpots(scene, pairs, constants,
+                              [&](const auto &motion) { add_dashpot(overlap, constants, motion); });
+  }
+  return regions_.touches.by_lane();
+}
+
 // The shorter chain goes on with copies of its last edge: no line is next to itself, and a corner is found
 // where it is first.
-template <std::size_t edges> struct LaneBatch::CornerPairs {
+template <std::size_t edges> struct LaneBatch::PairSides {
   LaneSide lower;
   LaneSide higher;
   std::size_t last_lower;
   std::size_t last_higher;
-  CornerOverlap<edges> overlap;
 
-  [[gnu::always_inline]] CornerPairs(const BlockSystem &system, const Pairs &pairs)
+  [[gnu::always_inline]] PairSides(const BlockSystem &system, const Pairs &pairs)
       : last_lower(pairs.first.kind.lower_edges - std::size_t{1}),
         last_higher(pairs.first.kind.higher_edges - std::size_t{1}) {
     each<edges>([&](auto k) __attribute__((always_inline)) {
@@ -377,56 +398,62 @@ template <std::size_t edges> struct LaneBatch::CornerPairs {
       load_edge(system, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
     });
   }
+  /// As they move.
+  [[gnu::always_inline]] PairSides(const PlainScene &scene, const Pairs &pairs)
+      : PairSides(scene.system, pairs) {
+    load_box(pairs.lower, lower);
+    load_box(pairs.higher, higher);
+    if (pairs.first.kind.is_deformable) {
+      lower.edges = edges;
+      higher.edges = edges;
+      load_deformed_slopes(scene, pairs.lower, last_lower, lower);
+      load_deformed_slopes(scene, pairs.higher, last_higher, higher);
+    }
+  }
 };
 
 template <std::size_t edges>
-PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const Pairs &pairs) {
-  CornerPairs<edges> corners(scene.system, pairs);
-  load_box(pairs.lower, corners.lower);
-  load_box(pairs.higher, corners.higher);
-  if (pairs.first.kind.is_deformable) {
-    corners.lower.edges = edges;
-    corners.higher.edges = edges;
-    load_deformed_slopes(scene, pairs.lower, corners.last_lower, corners.lower);
-    load_deformed_slopes(scene, pairs.higher, corners.last_higher, corners.higher);
-  }
-  CornerOverlap<edges> &overlap = corners.overlap;
-  const Mask meets = boxes_meet(corners.lower, corners.higher);
-  const Mask valid = meets & overlap.find(corners.lower, corners.higher);
-  Corners result;
-  result.meeting = meets.by_lane();
-  result.apart = (!meets).by_lane();
+PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pairs &pairs) {
+  PairSides<edges> sides(scene, pairs);
+  CornerOverlap<edges> overlap;
+  const Mask meets = boxes_meet(sides.lower, sides.higher);
+  const Mask valid = meets & overlap.find(sides.lower, sides.higher);
+  Seen seen;
+  seen.meeting = meets.by_lane();
+  seen.apart = (!meets).by_lane();
   if ((!valid).any()) {
-    corners.lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.kind.lower_edges);
-    corners.higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.kind.higher_edges);
-    const Mask apart = are_apart<edges>(corners.lower, corners.higher);
-    result.apart |= (apart & !valid).by_lane();
+    const Mask with_face = meets & (overlap.lower_has ^ overlap.higher_has);
+    sides.lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.kind.lower_edges);
+    sides.higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.kind.higher_edges);
+    const Mask apart = are_apart<edges>(sides.lower, sides.higher);
+    seen.with_face = with_face.by_lane();
+    seen.apart |= (apart & !valid & !with_face).by_lane();
     if (!valid.any()) {
-      return result;
+      return seen;
     }
   }
-  regions_.start(overlap.lower.vertex);
-  each<2>([&](auto i) __attribute__((always_inline)) {
-    const auto &on_lower = overlap.on_lower[i];
-    const auto &on_higher = overlap.on_higher[i];
-    regions_.add_pressure(on_lower.pressure, on_lower.moment, -overlap.lower.normal[i]);
-    regions_.add_pressure(on_higher.pressure, on_higher.moment, overlap.higher.normal[i]);
-  });
-  regions_.touches = valid & regions_.has_pressure();
-  regions_.find_resultant();
-  result.touching = regions_.touches.by_lane();
-  if (result.touching == 0) {
-    return result;
-  }
-  const LaneConstants constants = load_constants(scene, pairs);
-  regions_.take_stiffness(constants.half_stiffness);
-  measure(overlap, constants);
-  add_friction_and_dashpots(scene, pairs, constants,
-                            [&](const auto &motion) { add_dashpot(overlap, constants, motion); });
-  return result;
+  seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
+  return seen;
 }
 
-template <class Visit> auto LaneBatch::with_corner_edges(const PlainPair &pair, Visit &&visit) {
+template <std::size_t edges>
+PlainBatch::Seen LaneBatch::evaluate_faces(const PlainScene &scene, const Pairs &pairs) {
+  const PairSides<edges> sides(scene, pairs);
+  FaceOverlap<edges> overlap;
+  const Mask meets = boxes_meet(sides.lower, sides.higher);
+  const Mask valid =
+      meets & overlap.find(sides.lower, sides.last_lower + 1, sides.higher, sides.last_higher + 1);
+  Seen seen;
+  seen.meeting = meets.by_lane();
+  seen.apart = (!meets).by_lane();
+  seen.with_corners = (meets & overlap.with_corners).by_lane();
+  if (valid.any()) {
+    seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
+  }
+  return seen;
+}
+
+template <class Visit> auto LaneBatch::with_few_edges(const PlainPair &pair, Visit &&visit) {
   static_assert(most_corner_edges == 4);
   switch (std::max(pair.kind.lower_edges, pair.kind.higher_edges)) {
   case 2:
@@ -438,9 +465,14 @@ template <class Visit> auto LaneBatch::with_corner_edges(const PlainPair &pair, 
   }
 }
 
-inline PlainBatch::Corners LaneBatch::evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) {
+inline PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
-  return with_corner_edges(pairs.first, [&](auto edges) { return evaluate_corners<edges>(scene, pairs); });
+  return with_few_edges(pairs.first, [&](auto edges) { return evaluate_corners<edges>(scene, pairs); });
+}
+
+inline PlainBatch::Seen LaneBatch::evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) {
+  const Pairs pairs(scene, lanes);
+  return with_few_edges(pairs.first, [&](auto edges) { return evaluate_faces<edges>(scene, pairs); });
 }
 
 inline PlainBatch::Energies LaneBatch::by_lane(const Mask &known, const Lanes &energy) {
@@ -455,12 +487,13 @@ inline PlainBatch::Energies LaneBatch::find_corner_energies(const BlockSystem &s
                                                             const Candidates &candidates,
                                                             const PlainLanes &lanes) {
   const Pairs pairs(candidates, lanes);
-  return with_corner_edges(pairs.first, [&](auto edges) {
-    CornerPairs<edges> corners(system, pairs);
-    load_box(system, pairs.lower, corners.lower);
-    load_box(system, pairs.higher, corners.higher);
-    const Mask overlaps = corners.overlap.find(corners.lower, corners.higher);
-    return by_lane(overlaps & corners.overlap.has_two_lines_each(), corners.overlap.energy());
+  return with_few_edges(pairs.first, [&](auto edges) {
+    PairSides<edges> sides(system, pairs);
+    load_box(system, pairs.lower, sides.lower);
+    load_box(system, pairs.higher, sides.higher);
+    CornerOverlap<edges> overlap;
+    const Mask overlaps = overlap.find(sides.lower, sides.higher);
+    return by_lane(overlaps & overlap.has_two_lines_each(), overlap.energy());
   });
 }
 

@@ -39,8 +39,12 @@ struct PlainPair {
     std::uint8_t lower_edges = 0;
     std::uint8_t higher_edges = 0;
     bool is_deformable = false; ///< at least one block is
-    /// Neither block has more than most_corner_edges edges, and each a corner in its chain.
-    bool may_be_corners = false;
+    bool has_few_edges = false; ///< neither block has more than most_corner_edges
+
+    /// A corner of each block may be inside the other one ...
+    [[nodiscard]] bool may_be_corners() const { return has_few_edges && lower_edges > 1 && higher_edges > 1; }
+    /// ... or one or two of one block alone.
+    [[nodiscard]] bool may_be_face() const { return has_few_edges && (lower_edges > 1 || higher_edges > 1); }
   };
   Kind kind;
   bool is_mixed = false; ///< CandidatePair::is_mixed
@@ -83,8 +87,9 @@ struct Candidates {
 /// Most edges of one block of a plain pair.
 constexpr std::size_t most_plain_edges = 8;
 
-/// Most edges of blocks whose overlap of two corners has a way of its own (src/contact/lane_corners.hpp): of
-/// all edges, not of those in a chain, or the way would depend on the refreshes.
+/// Most edges of blocks whose overlap of two corners, or of corners and a face, has a way of its own
+/// (src/contact/lane_corners.hpp, lane_faces.hpp): of all edges, not of those in a chain, or the way would
+/// depend on the refreshes.
 constexpr std::size_t most_corner_edges = 4;
 
 /// What a pair's constants follow from.

@@ -189,19 +189,22 @@ private:
   /// Entries [first, last) of Candidates::plain.
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                             std::size_t first, std::size_t last);
-  /// How a pair is looked at: as one corner of each block; as one that was none in the step before; as one
-  /// that is none.
-  enum class Way { corners, faces_as_before, faces };
+  /// How a pair is looked at: as one corner of each block; as corners of one in a face of the other; as one
+  /// that was neither in the step before; as one that is neither.
+  enum class Way { corners, face, other_as_before, other };
   void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way);
   /// Entries [first, last) whose boxes meet.
   void find_meeting(const Candidates &candidates, const ContactHistory &history, std::size_t first,
                     std::size_t last);
-  void evaluate_corners_first(const PlainScene &scene, std::span<const std::uint32_t> entries);
+  void evaluate_all(const PlainScene &scene, const std::vector<std::uint32_t> &entries, Way way);
+  /// Those of corners_ and faces_, and what is left of them.
+  void evaluate_by_shape(const PlainScene &scene);
   void evaluate_known(const PlainScene &scene);
+  void evaluate_strangers(const PlainScene &scene);
   /// Places for the lanes that touch.
-  PlainResults open_regions(const PlainLanes &lanes, unsigned touching, unsigned by_faces);
+  PlainResults open_regions(const PlainLanes &lanes, unsigned touching, PlainOverlap overlap);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
-  void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, unsigned by_faces);
+  void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, PlainOverlap overlap);
   /// What lanes do not know of them.
   static void note_details(const PlainLanes &lanes, std::size_t lane, RegionDetails &details);
   /// Once more, with details.
@@ -257,10 +260,12 @@ private:
   ContactParameters parameters_;
   Overlap overlap_;
   std::unique_ptr<PlainBatch> batch_;
-  std::vector<std::uint32_t> meeting_;   ///< entries of Candidates::plain whose boxes meet, with a region ...
-  std::vector<std::uint32_t> faces_;     ///< ... that was not one corner in another ...
-  std::vector<std::uint32_t> strangers_; ///< ... and without one
-  std::vector<std::uint32_t> others_;    ///< those of them that are not one corner in another
+  // Entries of Candidates::plain whose boxes meet, by what they are looked at as.
+  std::vector<std::uint32_t> corners_;
+  std::vector<std::uint32_t> faces_;
+  std::vector<std::uint32_t> others_;    ///< they were neither
+  std::vector<std::uint32_t> left_;      ///< they are neither
+  std::vector<std::uint32_t> strangers_; ///< without a region so far
   std::vector<std::uint32_t> births_;    ///< plain pairs whose new regions must choose among laws
   std::array<CandidatePair, 8> own_;     ///< constants of mixed pairs at hand, by lane
   BlockSums sums_;

@@ -53,9 +53,10 @@ struct RegionRange {
   std::uint32_t count = 0;
 };
 
-/// How a plain pair (contact/candidates.hpp) overlaps: with one corner of each block, or otherwise and hardly
-/// so in the next step. Which of the two saves work and changes no result: `corners` where it is not known.
-enum class PlainOverlap : std::uint8_t { none = 0, corners = 1, faces = 2 };
+/// How a plain pair (contact/candidates.hpp) overlaps, and so mostly in the next step: with one corner of
+/// each block, with corners of one in a face of the other, or otherwise. To know it saves work and changes no
+/// result: `corners` where it is not known.
+enum class PlainOverlap : std::uint8_t { none = 0, corners = 1, face = 2, other = 3 };
 
 /// Contact memory by candidate pair. Only living regions are listed: at most one of two convex blocks, and
 /// behind those of a pair its bonds.
