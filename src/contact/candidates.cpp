@@ -269,7 +269,7 @@ void find_waiting(const BlockSystem &system, Candidates &candidates) {
   candidates.is_added.assign(system.num_owned, 1);
   std::vector<bool> comes_late(candidates.pairs.size(), true);
   for (std::size_t k = 0; k < candidates.num_interior_plain; ++k) {
-    comes_late[candidates.plain[k].pair] = candidates.plain[k].is_mixed;
+    comes_late[candidates.plain[k].pair] = false;
   }
   const auto for_owned = [&](std::uint32_t pair, auto &&visit) {
     for (const BlockIndex row : {candidates.pairs[pair].lower, candidates.pairs[pair].higher}) {

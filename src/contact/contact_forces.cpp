@@ -374,7 +374,6 @@ void ContactForces::find_meeting(const Candidates &candidates, const ContactHist
 
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                                          ContactHistory &history, std::size_t first, std::size_t last) {
-  births_.clear();
   const PlainScene scene{system,
                          candidates,
                          history,
@@ -393,15 +392,16 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     find_meeting(candidates, history, begin, end);
     evaluate_known(scene);
     evaluate_strangers(scene);
+    for (const std::uint32_t number : births_) {
+      evaluate_any_pair(system, candidates, number, {});
+    }
+    births_.clear();
     sums_.close_group(system, candidates, group);
   }
   const PlainBatch::Extremes seen = batch_->take_extremes();
   report_.normals_undefined += seen.normals_undefined;
   report_.max_overlap = std::max(report_.max_overlap, seen.max_overlap);
   report_.max_overlap_share = std::max(report_.max_overlap_share, seen.max_overlap_share);
-  for (const std::uint32_t number : births_) {
-    evaluate_any_pair(system, candidates, number, {});
-  }
 }
 
 void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidates &candidates,
@@ -413,14 +413,19 @@ void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidate
   find_regions(system, candidates, number, old);
   const std::size_t count = num_forces_ - begin; // of memories as well
   ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)};
-  if (!candidates.pairs[number].is_plain) {
+  const bool is_plain = candidates.pairs[number].is_plain;
+  if (!is_plain) {
     next_.ranges[number] = {static_cast<std::uint32_t>(first_known), static_cast<std::uint32_t>(count)};
-  } else if (count > 0) {
+  } else if (count > 0) { // one region, with its group
     next_.overlaps[number] = PlainOverlap::other;
     next_.plain[number] = next_.regions.back();
     next_.regions.pop_back();
+    sums_.open(number, true) = forces_[begin];
+    if (!dyads_.empty()) {
+      sums_.dyads(number) = dyads_.front();
+    }
   }
-  if (count > 0) {
+  if (!is_plain && count > 0) {
     sums_.keep(number, std::span(forces_).subspan(begin, count),
                std::span(dyads_).first(std::min(count, dyads_.size())));
   }

@@ -276,6 +276,42 @@ TEST(PlainPairs, AgreeWhereEdgesHaveLawsOfTheirOwn) {
   expect_agreement(some_deform, true);
 }
 
+// Their blocks do not wait: what is born joins its group, in the order of the other blocks' ids.
+TEST(PlainPairs, BornAmongLawsAreAddedWithTheirGroup) {
+  std::mt19937 engine(95);
+  constexpr int count = 150;
+  BlockSystem system = couples(engine, count, most_plain_edges, some_deform);
+  deform(engine, system);
+  const JointLaws joints = laws_by_edge(one_law(1e6, 0.3, 10.0), system);
+  ContactBench bench(std::move(system), joints, 0.1);
+  ASSERT_TRUE(bench.candidates.waiting.empty());
+  ASSERT_GT(bench.candidates.plain.back().group(), 2U);
+  for (int step = 0; step < 2; ++step) { // they are born, then known
+    bench.forces.find_motions(bench.system, 0, bench.system.num_owned);
+    bench.forces.evaluate_interior(bench.system, bench.candidates, bench.history, Details::now,
+                                   Keep::waiting);
+    bench.forces.evaluate_border(bench.system, bench.candidates, bench.history);
+    const ContactCount counted = bench.forces.finish_sums(bench.system, bench.candidates);
+    EXPECT_EQ(counted.touching, std::ssize(bench.forces.regions()));
+    std::size_t mixed = 0;
+    for (const RegionForce &force : bench.forces.regions()) {
+      EXPECT_EQ(force.born, step == 0);
+      mixed += bench.candidates.pairs[force.pair].is_mixed ? 1 : 0;
+    }
+    EXPECT_GT(mixed, static_cast<std::size_t>(count) / 2);
+    for (std::size_t row = 0; row < bench.system.num_owned; ++row) {
+      const BlockContactSum wanted = sum_contacts(bench.candidates, bench.forces, row);
+      const BlockContactSum &got = bench.forces.sums().of_blocks()[row];
+      EXPECT_EQ(got.force, wanted.force);
+      EXPECT_EQ(got.damping, wanted.damping);
+      if (bench.system.is_deformable(row)) {
+        const Mat2 &dyad = bench.forces.sums().of_gradients()[bench.system.deformation_begin[row]].force;
+        EXPECT_EQ(norm(dyad) > 0.0, norm(wanted.force.u) > 0.0);
+      }
+    }
+  }
+}
+
 /// Where a couple stands in the list of pairs; none for one that is left out.
 std::optional<std::size_t> find_pair(const ContactBench &bench, const CandidatePair &wanted) {
   for (std::size_t k = 0; k < bench.candidates.pairs.size(); ++k) {

@@ -77,8 +77,8 @@ struct Candidates {
   std::vector<std::uint32_t> general; ///< numbers of all other pairs
   std::size_t num_interior_general = 0;
   std::vector<std::uint32_t> chain_vertices; ///< entries of BlockSystem::vertex
-  /// By owned row: all of its pairs are plain, without a ghost and of one law, and come in the order of the
-  /// other blocks' ids; see BlockSums.
+  /// By owned row: all of its pairs are plain and without a ghost, and come in the order of the other blocks'
+  /// ids; see BlockSums.
   std::vector<std::uint8_t> is_added;
   std::vector<std::uint32_t> waiting;  ///< numbers of the pairs of the others, in order
   std::vector<std::uint8_t> are_added; ///< by PlainPair::group: none of its pairs is one of these
