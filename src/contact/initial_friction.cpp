@@ -1,5 +1,7 @@
 #include "gcpdda/contact/initial_friction.hpp"
 
+#include "pair_motion.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -38,6 +40,36 @@ Vec2 acceleration_at(const BlockSystem &system, std::size_t row, Vec2 arm) {
 }
 
 } // namespace
+
+void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm) {
+  RegionForce &force = forces_[region];
+  const Vec2 tangent = perp(force.normal);
+  const auto add_torques = [&](PairTorques &torque, Vec2 f) {
+    torque[0] += cross(lower_arm, f);
+    torque[1] -= cross(higher_arm, f);
+  };
+  const Vec2 change = (force.shear - shear) * tangent;
+  add_force(force, force.point, change);
+  add_torques(force.torque, change);
+  const Vec2 drag = (force.shear + dot(force.shear_force, tangent)) * tangent;
+  force.damping_force += drag;
+  add_torques(force.damping_torque, drag);
+  const Vec2 elastic = -shear * tangent;
+  const std::size_t number = region - ranges_[force.pair].begin;
+  if (RegionDyads *dyads = sums_.kept_dyads(force.pair, number)) {
+    for (const std::size_t k : {0U, 1U}) {
+      const Vec2 arm = k == 0 ? lower_arm : -higher_arm;
+      BlockGradientSum &sum = (*dyads)[k];
+      sum.force += outer(arm, change);
+      sum.damping += outer(arm, drag);
+      sum.shear = force.bonded ? sum.shear + outer(arm, elastic - force.shear_force) : outer(arm, elastic);
+    }
+  }
+  force.shear = shear;
+  force.shear_force = elastic;
+  force.shear_torque = {};
+  add_torques(force.shear_torque, force.shear_force);
+}
 
 InitialStick::Yields InitialStick::yields_of(const BlockSystem &system, const Region &region) {
   return {yield_of(system, region.lower, region.arm_lower, region.tangent),

@@ -44,7 +44,8 @@ struct LaneCorner {
 
 /// More than what rounding does to a depth below a line of a block.
 [[gnu::always_inline]] inline Lanes rounding_of(const LaneSide &side) {
-  return Lanes(1e-12) * (max(abs(side.low.x), abs(side.high.x)) + max(abs(side.low.y), abs(side.high.y)));
+  return Lanes(16.0 * std::numeric_limits<double>::epsilon()) *
+         (max(abs(side.low.x), abs(side.high.x)) + max(abs(side.low.y), abs(side.high.y)));
 }
 
 /// @param rounding  of the other block: sides in one line have no corner that is clearly inside, and it would

@@ -6,9 +6,11 @@
 #include "plain_batch.hpp"
 
 #include "gcpdda/geometry/lane_mat.hpp"
+#include "gcpdda/geometry/lane_turn.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -183,5 +185,61 @@ private:
     turn = LaneMat::of([&](std::size_t i) { return &blocks.motion[i]->increment.turn; });
   }
 };
+
+/// What PlainBatch::find_motions() says.
+inline bool find_rigid_motions(const BlockSystem &system, std::size_t first, std::span<BlockMotion> motions) {
+  static_assert(sizeof(RigidDof) == 3 * sizeof(double));
+  const ThreeLanes trial = load_triples(&system.trial[first].u.x);
+  const ThreeLanes previous = load_triples(&system.trial_previous[first].u.x);
+  const ThreeLanes velocity = load_triples(&system.velocity[first].u.x);
+  const Lanes turn = trial[2] - previous[2];
+  if ((!LaneTurn::is_small(turn)).any()) {
+    return false;
+  }
+  const auto [sine, versine] = LaneTurn::of(turn);
+  const LaneVec centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[first + i]; });
+  std::array<std::byte *, num_lanes> to;
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    to[i] = reinterpret_cast<std::byte *>(&motions[first + i]);
+    motions[first + i].box = system.box[first + i];
+  }
+  static_assert(offsetof(BlockMotion, increment) == 4 * sizeof(double) &&
+                offsetof(BlockMotion, spin) == 10 * sizeof(double));
+  store_by_lane(to, 0, centroid.x, centroid.y, velocity[0], velocity[1]);
+  store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], versine, -sine);
+  store_by_lane(to, 8 * sizeof(double), sine, versine, velocity[2], 0.0);
+  return true;
+}
+
+/// What PlainBatch::find_deforming_motions() says.
+inline void find_deforming_motions(const BlockSystem &system, std::size_t first,
+                                   std::span<BlockMotion> motions, std::span<DeformingBlock> deforming) {
+  const std::size_t entry = system.deformation_begin[first];
+  const Deformation *deformation = &system.deformation[entry];
+  const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
+    return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
+  };
+  const ThreeLanes trial = load_triples(&system.trial[first].u.x);
+  const ThreeLanes previous = load_triples(&system.trial_previous[first].u.x);
+  const ThreeLanes velocity = load_triples(&system.velocity[first].u.x);
+  const LaneVec centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[first + i]; });
+  const LaneMat to_reference = LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
+  const LaneMat turn = (load(&Deformation::trial) - load(&Deformation::trial_previous)) * to_reference;
+  const LaneMat slopes = determinant(to_reference) * transposed(to_reference);
+  const LaneMat rate = load(&Deformation::rate) * to_reference;
+  std::array<std::byte *, num_lanes> to;
+  std::array<std::byte *, num_lanes> to_deforming;
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    to[i] = reinterpret_cast<std::byte *>(&motions[first + i]);
+    to_deforming[i] = reinterpret_cast<std::byte *>(&deforming[entry + i]);
+    motions[first + i].box = system.box[first + i];
+  }
+  store_by_lane(to, 0, centroid.x, centroid.y, velocity[0], velocity[1]);
+  store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], turn.xx(), turn.xy());
+  store_by_lane(to, 8 * sizeof(double), turn.yx(), turn.yy(), velocity[2], 0.0);
+  static_assert(offsetof(DeformingBlock, slopes) == 0 && offsetof(DeformingBlock, rate) == sizeof(Mat2));
+  store_by_lane(to_deforming, 0, slopes.xx(), slopes.xy(), slopes.yx(), slopes.yy());
+  store_by_lane(to_deforming, sizeof(Mat2), rate.xx(), rate.xy(), rate.yx(), rate.yy());
+}
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS
