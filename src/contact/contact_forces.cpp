@@ -93,7 +93,7 @@ RegionForce &ContactForces::append_force(const RegionForce &force) {
 }
 
 // Up to as many entries of Candidates::plain as there are lanes.
-void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way) {
+PlainLanes ContactForces::lanes_of(const PlainScene &scene, std::span<const std::uint32_t> entries) {
   static_assert(std::tuple_size_v<decltype(own_)> == most_lanes);
   PlainLanes lanes;
   lanes.count = entries.size();
@@ -113,6 +113,11 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
       lanes.constants[i] = &own_[i];
     }
   }
+  return lanes;
+}
+
+void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way) {
+  const PlainLanes lanes = lanes_of(scene, entries);
   const unsigned given = (1U << entries.size()) - 1U; // lanes beyond repeat the last one
   const auto leave = [&](unsigned which, std::vector<std::uint32_t> &to) {
     for_bits(which & given, [&](std::size_t i) { to.push_back(entries[i]); });

@@ -192,6 +192,7 @@ private:
   /// How a pair is looked at: as one corner of each block; as corners of one in a face of the other; as one
   /// that was neither in the step before; as one that is neither.
   enum class Way { corners, face, other_as_before, other };
+  PlainLanes lanes_of(const PlainScene &scene, std::span<const std::uint32_t> entries);
   void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way);
   /// Entries [first, last) whose boxes meet.
   void find_meeting(const Candidates &candidates, const ContactHistory &history, std::size_t first,
