@@ -122,7 +122,6 @@ private:
   void find_corners(const LaneSide &own, const Inside &inside);
   /// Which line the edge leaves across first.
   static std::array<Mask, edges> find_exit(const FallingDepths<edges> &lower);
-  static void find_depths(const LaneSide &other, const LaneVec &x, FallingDepths<edges> &lower);
   static void find_falls(const LaneSide &other, const LaneVec &direction, FallingDepths<edges> &lower);
   Mask walk_face(const LaneSide &own, const LaneVec &face_normal);
 
@@ -221,14 +220,6 @@ FaceOverlap<edges>::find_exit(const FallingDepths<edges> &lower) {
 }
 
 template <std::size_t edges>
-[[gnu::always_inline]] inline void FaceOverlap<edges>::find_depths(const LaneSide &other, const LaneVec &x,
-                                                                   FallingDepths<edges> &lower) {
-  each<edges>([&](auto j) __attribute__((always_inline)) {
-    lower.depth[j] = dot(other.slope[j], other.vertex[j] - x);
-  });
-}
-
-template <std::size_t edges>
 [[gnu::always_inline]] inline void
 FaceOverlap<edges>::find_falls(const LaneSide &other, const LaneVec &direction, FallingDepths<edges> &lower) {
   each<edges>([&](auto j) __attribute__((always_inline)) { lower.fall[j] = dot(other.slope[j], direction); });
@@ -274,7 +265,7 @@ Mask FaceOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, co
   find_corners(own, inside);
 
   FallingDepths<edges> below;
-  find_depths(other, first_, below);
+  find_depths<edges>(other, first_, below.depth);
   on_before_.begin = {0.0, 0.0};
   on_before_.direction = -perp(before_.normal);
   find_falls(other, on_before_.direction, below);
@@ -287,7 +278,7 @@ Mask FaceOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, co
     on_inner_.length = inner_.length;
     find_falls(other, on_inner_.direction, below);
     integrate_inside<edges>(below, on_inner_);
-    find_depths(other, second_, below);
+    find_depths<edges>(other, second_, below.depth);
   }
   on_after_.begin = second_ - first_;
   on_after_.direction = perp(after_.normal);
