@@ -294,12 +294,12 @@ void find_waiting(const BlockSystem &system, Candidates &candidates) {
   }
 }
 
-/// Entries of BlockSystem::vertex at the ends of a chain's edges.
+/// The ends of a chain's edges.
 void append_chain(const BlockSystem &system, std::size_t row, const EdgeChain &chain,
-                  std::vector<std::uint32_t> &vertices) {
+                  std::vector<std::uint8_t> &vertices) {
   const std::size_t n = system.num_vertices(row);
   for (std::size_t i = 0; i <= chain.count; ++i) {
-    vertices.push_back(system.vertex_begin[row] + static_cast<std::uint32_t>((chain.first + i) % n));
+    vertices.push_back(static_cast<std::uint8_t>((chain.first + i) % n));
   }
 }
 
@@ -311,13 +311,13 @@ void append_plain(const BlockSystem &system, const ChainFinder &finder, const Ed
   const std::uint32_t higher = pair.higher.value;
   candidates.plain.push_back(
       {static_cast<std::uint32_t>(candidates.pairs.size() - 1),
-       static_cast<std::uint32_t>(candidates.chain_vertices.size()),
+       static_cast<std::uint32_t>(candidates.chains.size()),
        {static_cast<std::uint8_t>(lower_chain.count), static_cast<std::uint8_t>(higher_chain.count),
         finder.is_deformable(lower, higher),
         system.num_vertices(lower) <= most_corner_edges && system.num_vertices(higher) <= most_corner_edges},
        pair.is_mixed});
-  append_chain(system, lower, lower_chain, candidates.chain_vertices);
-  append_chain(system, higher, higher_chain, candidates.chain_vertices);
+  append_chain(system, lower, lower_chain, candidates.chains);
+  append_chain(system, higher, higher_chain, candidates.chains);
 }
 
 /// None yet, with room for so many pairs.
@@ -328,7 +328,7 @@ Candidates with_room(std::size_t pairs, const JointLaws &joints) {
   }
   candidates.pairs.reserve(pairs);
   candidates.plain.reserve(pairs);
-  candidates.chain_vertices.reserve(6 * pairs); // about three ends of edges for each of two blocks
+  candidates.chains.reserve(8 * pairs); // about four ends of edges for each of two blocks
   return candidates;
 }
 
@@ -364,10 +364,10 @@ void list_contacts_of_blocks(const BlockSystem &system, Candidates &candidates) 
     for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
       const auto pair = static_cast<std::uint32_t>(k);
       if (candidates.pairs[k].higher.value < system.num_owned) {
-        visit(candidates.pairs[k].higher.value, BlockContact{pair, false});
+        visit(candidates.pairs[k].higher.value, BlockContact(pair, false));
       }
       if (candidates.pairs[k].lower.value < system.num_owned) {
-        visit(candidates.pairs[k].lower.value, BlockContact{pair, true});
+        visit(candidates.pairs[k].lower.value, BlockContact(pair, true));
       }
     }
   };

@@ -175,7 +175,7 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
     wanted |= 1U << i;
     has_mixed = has_mixed || plain.is_mixed;
     results.sums[i] = &sums_.open(plain.pair, is_born);
-    results.memory[i] = &next_.plain[plain.pair];
+    results.memory[i] = &plain_memory_[plain.pair];
     next_.overlaps[plain.pair] = overlap;
     if (results.has_details) {
       ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
@@ -201,7 +201,7 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
       results.memory[i]->law = lanes.constants[i]->law;
     }
     if (results.has_details) {
-      note_details(lanes, i, forces_[ranges_[pair].begin]);
+      note_details(pair, lanes.memory[i] == &PlainLanes::no_memory, forces_[ranges_[pair].begin]);
       static_cast<RegionSums &>(forces_[ranges_[pair].begin]) = *results.sums[i];
     }
   });
@@ -210,9 +210,9 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
   });
 }
 
-void ContactForces::note_details(const PlainLanes &lanes, std::size_t lane, RegionDetails &details) {
-  details.pair = lanes.pair[lane]->pair;
-  details.born = lanes.memory[lane] == &PlainLanes::no_memory;
+void ContactForces::note_details(std::uint32_t pair, bool is_born, RegionDetails &details) {
+  details.pair = pair;
+  details.born = is_born;
   details.bonded = false;
 }
 
@@ -221,11 +221,10 @@ void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
   results.has_details = true;
   std::array<RegionState, most_lanes> known;
   for (std::size_t i = 0; i < lanes.count; ++i) {
-    const PlainPair &plain = *lanes.pair[i];
-    // The general way, which mixed pairs are born by, finds details at once.
-    if ((touching >> i & 1U) != 0 && !(plain.is_mixed && lanes.memory[i] == &PlainLanes::no_memory)) {
-      RegionForce &force = forces_[ranges_[plain.pair].begin];
-      note_details(lanes, i, force);
+    const std::uint32_t pair = lanes.pair[i]->pair;
+    if ((touching >> i & 1U) != 0) {
+      RegionForce &force = forces_[ranges_[pair].begin];
+      note_details(pair, !next_.has_plain(pair), force);
       results.wanted |= 1U << i;
       results.sums[i] = &force;
       results.memory[i] = &known[i];
@@ -287,7 +286,7 @@ void ContactForces::evaluate_strangers(const PlainScene &scene) {
   evaluate_known(scene);
 }
 
-// The history that the evaluation began with is kept in next_, the velocities in motions_.
+// The velocities are kept in motions_, which pairs touched before in next_.
 void ContactForces::find_details(const BlockSystem &system, const Candidates &candidates,
                                  const ContactHistory &history) {
   if (has_details_) {
@@ -302,7 +301,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
     const PlainOverlap overlap = history.overlaps[plain.pair];
     if (overlap == PlainOverlap::none) {
       ranges_[plain.pair] = {};
-    } else if (!(plain.is_mixed && !next_.has_plain(plain.pair))) { // mixed ones are born with details
+    } else if (!plain.is_mixed || next_.has_plain(plain.pair)) { // mixed ones are born with details
       ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_++), 1};
       (overlap == PlainOverlap::corners ? corners_
        : overlap == PlainOverlap::face  ? faces_
@@ -313,8 +312,8 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
   forces_.reserve(num_forces_);
   grow(forces_, num_forces_);
   is_again_ = true;
-  evaluate_known({system, candidates, next_, motions_, deforming_, parameters_.damping_ratio,
-                  parameters_.stiffness_damping});
+  evaluate_known({system, candidates, history, motions_, deforming_, parameters_.damping_ratio,
+                  parameters_.stiffness_damping, true});
   is_again_ = false;
   batch_->take_extremes(); // they have been told
 }
@@ -355,7 +354,9 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
                          motions_,
                          deforming_,
                          parameters_.damping_ratio,
-                         parameters_.stiffness_damping};
+                         parameters_.stiffness_damping,
+                         false};
+  plain_memory_ = history.plain;
   for (std::size_t begin = first, end = first; begin < last; begin = end) {
     const std::uint32_t group = candidates.plain[begin].group();
     const auto from = candidates.plain.begin() + static_cast<std::ptrdiff_t>(begin);
@@ -393,7 +394,7 @@ void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidate
     next_.ranges[number] = {static_cast<std::uint32_t>(first_known), static_cast<std::uint32_t>(count)};
   } else if (count > 0) { // one region, with its group
     next_.overlaps[number] = PlainOverlap::other;
-    next_.plain[number] = next_.regions.back();
+    plain_memory_[number] = next_.regions.back();
     next_.regions.pop_back();
     sums_.open(number, true) = forces_[begin];
     if (!dyads_.empty()) {
@@ -434,7 +435,6 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
     ranges_.assign(candidates.pairs.size(), {});
   }
   next_.overlaps.assign(candidates.pairs.size(), PlainOverlap::none);
-  next_.plain.resize(candidates.pairs.size());
   next_.ranges.assign(candidates.general.empty() ? 0 : candidates.pairs.size(), {});
   next_.regions.clear();
   for (const std::uint32_t pair : candidates.general) {
@@ -453,7 +453,9 @@ ForceReport ContactForces::evaluate_border(const BlockSystem &system, const Cand
   evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).subspan(candidates.num_interior_general));
-  std::swap(history, next_);
+  std::swap(history.overlaps, next_.overlaps);
+  std::swap(history.ranges, next_.ranges);
+  std::swap(history.regions, next_.regions);
   return report_;
 }
 

@@ -17,8 +17,8 @@ void for_regions(const Candidates &candidates, const ContactForces &contacts, st
                  Visit &&visit) {
   for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
     const BlockContact contact = candidates.block_contacts[c];
-    for (const RegionForce &force : contacts.of_pair(contact.pair)) {
-      visit(force, contact.is_lower);
+    for (const RegionForce &force : contacts.of_pair(contact.pair())) {
+      visit(force, contact.is_lower());
     }
   }
 }

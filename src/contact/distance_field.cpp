@@ -55,8 +55,11 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
 } // namespace
 
-DistanceField::DistanceField(std::span<const Vec2> vertex, std::span<const Vec2> normal)
-    : vertex_(vertex), normal_(normal), length_(vertex.size()), reentrant_(reentrant_vertices(vertex)) {
+void DistanceField::take(std::span<const Vec2> vertex, std::span<const Vec2> normal) {
+  vertex_ = vertex;
+  normal_ = normal;
+  length_.resize(vertex.size());
+  find_reentrant_vertices(vertex, reentrant_);
   for (std::size_t i = 0; i < vertex_.size(); ++i) {
     length_[i] = dot(vertex_[after(i)] - vertex_[i], tangent(i));
   }
@@ -142,6 +145,9 @@ void DistanceField::find_stretches(const FieldEdge &edge) {
   stretches_.clear();
   for (std::size_t i = 0; i < vertex_.size(); ++i) {
     const Line l = line(i, edge.begin, edge.tangent);
+    if (l.alpha * l.at(edge.length) > 0.0) { // most lines, told without a division
+      continue;
+    }
     const double s = -l.alpha / l.beta;
     if (!(s > 0.0 && s < edge.length)) {
       continue;

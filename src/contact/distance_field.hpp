@@ -34,10 +34,11 @@ struct FieldPart {
   double foot = 0.0; ///< from `begin`, outside the part or at one of its ends
 };
 
-/// A simple polygon, counter-clockwise, with its unit normals; the spans must outlive it.
+/// That of one polygon after another; buffers are reused.
 class DistanceField {
 public:
-  DistanceField(std::span<const Vec2> vertex, std::span<const Vec2> normal);
+  /// A simple polygon, counter-clockwise, with its unit normals, which must outlive what follows.
+  void take(std::span<const Vec2> vertex, std::span<const Vec2> normal);
 
   /// Append the parts of an edge inside, in its direction.
   void trace(const FieldEdge &edge, PotentialKind potential, std::vector<FieldPart> &parts);

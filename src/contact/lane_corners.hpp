@@ -57,19 +57,27 @@ template <std::size_t lines>
   return inside;
 }
 
-/// Would find_corner() find one?
-inline Mask has_corner(const LaneSide &own, const LaneSide &other) {
+/// How many corners of one block are inside the other one.
+struct CornersInside {
+  Mask any{};
+  Mask two{};   ///< at least
+  Mask three{}; ///< at least
+};
+
+inline CornersInside count_corners(const LaneSide &own, const LaneSide &other) {
   const Lanes rounding = rounding_of(other);
-  Mask found = Mask::from(0);
+  CornersInside count;
   for (std::size_t k = 1; k < own.edges; ++k) {
     const LaneVec &x = own.vertex[k];
     Mask inside = (other.low.x <= x.x) & (x.x <= other.high.x) & (other.low.y <= x.y) & (x.y <= other.high.y);
     for (std::size_t j = 0; j < other.edges; ++j) {
       inside = inside & (dot(other.slope[j], other.vertex[j] - x) > rounding);
     }
-    found = found | inside;
+    count.three = count.three | (count.two & inside);
+    count.two = count.two | (count.any & inside);
+    count.any = count.any | inside;
   }
-  return found;
+  return count;
 }
 
 /// The first end of two edges of `own` inside `other`.

@@ -20,7 +20,12 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
 struct LaneBlocks {
   std::array<std::size_t, num_lanes> row;
   std::array<const BlockMotion *, num_lanes> motion;
-  std::array<const std::uint32_t *, num_lanes> chain; ///< entries of BlockSystem::vertex
+  std::array<std::size_t, num_lanes> first_vertex; ///< entries of BlockSystem::vertex
+  std::array<const std::uint8_t *, num_lanes> chain;
+
+  [[nodiscard, gnu::always_inline]] std::size_t vertex(std::size_t i, std::size_t k) const {
+    return first_vertex[i] + chain[i][k];
+  }
 };
 
 /// Of *get(i).
@@ -40,7 +45,7 @@ template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, L
 [[gnu::always_inline]] inline LaneVec load_vertex(const BlockSystem &system, const LaneBlocks &blocks,
                                                   std::size_t k) {
   const Vec2 *vertex = system.vertex.data();
-  return LaneVec::of([&](std::size_t i) { return vertex + blocks.chain[i][k]; });
+  return LaneVec::of([&](std::size_t i) { return vertex + blocks.vertex(i, k); });
 }
 
 /// Edge `number` of the chains as edge k of the side.
@@ -48,7 +53,7 @@ template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, L
                                              std::size_t number, std::size_t k, LaneSide &side) {
   std::array<std::size_t, num_lanes> at;
   for (std::size_t i = 0; i < num_lanes; ++i) {
-    at[i] = blocks.chain[i][number];
+    at[i] = blocks.vertex(i, number);
   }
   const Vec2 *vertex = system.vertex.data();
   const Vec2 *normal = system.normal.data();
@@ -75,7 +80,7 @@ inline void load_deformed_slopes(const PlainScene &scene, const LaneBlocks &bloc
   const LaneMat of_normals = LaneMat::of([&](std::size_t i) { return slopes[i]; });
   for (std::size_t k = 0; k < side.edges; ++k) {
     side.slope[k] = of_normals(
-        LaneVec::of([&](std::size_t i) { return normals[i] + blocks.chain[i][std::min(k, last)]; }));
+        LaneVec::of([&](std::size_t i) { return normals[i] + blocks.vertex(i, std::min(k, last)); }));
   }
 }
 

@@ -55,7 +55,7 @@ struct LaneConstants {
   Lanes allowed_overlap;
   double damping_ratio;
   double stiffness_damping;
-  Mask was_there; ///< the region has a memory
+  Mask is_stretched; ///< the slide of this step stretches its spring
   Lanes shear;
   Lanes longest;
   Lanes slip;
@@ -188,8 +188,8 @@ void LaneRegions::add_friction(const LaneConstants &constants, const AnyMotion &
   slips_ = !holds;
   const Lanes stiffness = constants.tangential_stiffness * longest_;
   const LaneVec slide = motion.slide_at(point_);
-  Lanes shear =
-      select(constants.was_there & holds, constants.shear + stiffness * dot(slide, tangent), constants.shear);
+  Lanes shear = select(constants.is_stretched & holds, constants.shear + stiffness * dot(slide, tangent),
+                       constants.shear);
   const Mask breaks = holds & (abs(shear) > cap_);
   slips_ = slips_ | breaks;
   slip_ = select(breaks, constants.slip + (abs(shear) - cap_) / stiffness, constants.slip);

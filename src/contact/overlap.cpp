@@ -119,6 +119,18 @@ std::span<const Vec2> field_normals(const BlockView &block) {
 
 } // namespace
 
+/// Scratch of pairs that are not both convex.
+struct Overlap::OfReentrant {
+  DistanceField field;
+  std::vector<FieldPart> parts;
+  RegionSplitter splitter;
+};
+
+Overlap::Overlap() = default;
+Overlap::~Overlap() = default;
+Overlap::Overlap(Overlap &&) noexcept = default;
+Overlap &Overlap::operator=(Overlap &&) noexcept = default;
+
 // Over the common part C of the two boxes line j lies between low_j and high_j. Where low_j is above the
 // smallest high_k, line k is nearer all over C and line j can be left out: inside C nothing changes, and
 // nothing of the other block lies outside. If the other block has a point in C, an edge of this one cannot
@@ -176,13 +188,8 @@ void Overlap::clip_edges(const BlockView &own, const BlockView &other, Potential
     if (!edge_meets(own.vertex[e], end_of_edge(own, e), other.box)) {
       continue;
     }
-    FieldEdge edge{own.vertex[e], end_of_edge(own, e), perp(own.normal[e]), own.length[e]};
-    double stretch = 1.0;
-    if constexpr (deformed) {
-      const EdgeInField in_field(own, e, other);
-      edge = in_field.edge;
-      stretch = in_field.stretch;
-    }
+    const EdgeInField in_field(own, e, other);
+    const FieldEdge &edge = in_field.edge;
     Vec2 a = edge.begin;
     const Vec2 tangent = edge.tangent;
     for (std::size_t j = 0; j < num_lines; ++j) {
@@ -221,8 +228,9 @@ void Overlap::clip_edges(const BlockView &own, const BlockView &other, Potential
       walk_envelope(start, line, in.begin, in.end);
     }
     if constexpr (deformed) {
-      const double begin = (anchor + in.begin) / stretch;
-      to_world(first_piece, own.vertex[e] + begin * perp(own.normal[e]), stretch, field_scale(other));
+      const double begin = (anchor + in.begin) / in_field.stretch;
+      to_world(first_piece, own.vertex[e] + begin * perp(own.normal[e]), in_field.stretch,
+               field_scale(other));
     }
   }
 }
@@ -239,12 +247,17 @@ void Overlap::to_world(std::size_t first_piece, Vec2 begin, double stretch, doub
 }
 
 void Overlap::trace_edges(const BlockView &own, const BlockView &other, PotentialKind potential) {
-  DistanceField field(field_vertices(other), field_normals(other));
+  DistanceField &field = of_reentrant_->field;
+  std::vector<FieldPart> &parts = of_reentrant_->parts;
   const double scale = field_scale(other);
-  std::vector<FieldPart> parts;
+  bool is_taken = false;
   for (std::size_t e = 0; e < own.vertex.size(); ++e) {
     if (!edge_meets(own.vertex[e], end_of_edge(own, e), other.box)) {
       continue;
+    }
+    if (!is_taken) { // many pairs end here, without an edge near the other block
+      field.take(field_vertices(other), field_normals(other));
+      is_taken = true;
     }
     const EdgeInField in_field(own, e, other);
     const double stretch = in_field.stretch;
@@ -313,6 +326,10 @@ bool Overlap::find(const BlockView &first, const BlockView &second, PotentialKin
   pieces_.clear();
   curves_.clear();
   regions_.clear();
+  const bool are_convex = first.is_convex && second.is_convex;
+  if (!are_convex && !of_reentrant_) {
+    of_reentrant_ = std::make_unique<OfReentrant>();
+  }
   const auto add_edges = [&](const BlockView &own, const BlockView &other) {
     if (!other.is_convex) {
       trace_edges(own, other, potential);
@@ -325,8 +342,8 @@ bool Overlap::find(const BlockView &first, const BlockView &second, PotentialKin
   add_edges(first, second);
   const std::size_t num_first = pieces_.size();
   add_edges(second, first);
-  if (!first.is_convex || !second.is_convex) {
-    split_into_regions(first, second, pieces_, num_first, regions_);
+  if (!are_convex) {
+    of_reentrant_->splitter.split(first, second, pieces_, num_first, regions_);
   } else if (!pieces_.empty()) {
     start_at_entry(std::span(pieces_).first(num_first));
     start_at_entry(std::span(pieces_).subspan(num_first));

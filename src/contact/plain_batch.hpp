@@ -22,6 +22,7 @@ struct PlainScene {
   std::span<const DeformingBlock> deforming; ///< by entry of BlockSystem::deformation
   double damping_ratio = 0.0;
   double stiffness_damping = 0.0;
+  bool is_known = false; ///< the memories are those that this evaluation left behind: only details are wanted
 };
 
 /// Up to as many pairs as there are lanes, with like numbers of edges, all rigid or none; lanes beyond repeat
@@ -66,8 +67,8 @@ public:
     unsigned touching = 0;
     unsigned meeting = 0;      ///< the boxes do
     unsigned apart = 0;        ///< the blocks are seen not to touch
-    unsigned with_corners = 0; ///< of each block a corner is in the other one: evaluate_corners() may do
-    unsigned with_face = 0;    ///< of one block only: evaluate_faces() may do
+    unsigned with_corners = 0; ///< of each block one corner is in the other one: evaluate_corners() may do
+    unsigned with_face = 0;    ///< corners of one block only are: evaluate_faces() may do
   };
   /// Whatever the overlap is.
   virtual Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;

@@ -81,22 +81,26 @@ struct LaneBatch::Pairs {
   LaneBlocks higher;
 
   /// As they lie.
-  [[gnu::always_inline]] Pairs(const Candidates &candidates, const PlainLanes &given)
+  [[gnu::always_inline]] Pairs(const BlockSystem &system, const Candidates &candidates,
+                               const PlainLanes &given)
       : lanes(given), first(*given.pair[0]) {
-    const std::uint32_t *chains = candidates.chain_vertices.data();
+    const std::uint32_t *vertex_begin = system.vertex_begin.data();
+    const std::uint8_t *chains = candidates.chains.data();
     const std::size_t higher_chain = first.kind.lower_edges + std::size_t{1};
     for (std::size_t i = 0; i < num_lanes; ++i) {
       const PlainPair &plain = *lanes.pair[i];
       const CandidatePair &pair = candidates.pairs[plain.pair];
       lower.row[i] = pair.lower.value;
       higher.row[i] = pair.higher.value;
+      lower.first_vertex[i] = vertex_begin[lower.row[i]];
+      higher.first_vertex[i] = vertex_begin[higher.row[i]];
       lower.chain[i] = chains + plain.chain;
       higher.chain[i] = chains + plain.chain + higher_chain;
     }
   }
   /// And as they move.
   [[gnu::always_inline]] Pairs(const PlainScene &scene, const PlainLanes &given)
-      : Pairs(scene.candidates, given) {
+      : Pairs(scene.system, scene.candidates, given) {
     const BlockMotion *motions = scene.motions.data();
     for (std::size_t i = 0; i < num_lanes; ++i) {
       lower.motion[i] = motions + lower.row[i];
@@ -121,7 +125,7 @@ inline LaneConstants LaneBatch::load_constants(const PlainScene &scene, const Pa
           dashpot[2],
           scene.damping_ratio,
           scene.stiffness_damping,
-          known[2] >= 0.0,
+          scene.is_known ? Mask{} : known[2] >= 0.0,
           known[0],
           known[1],
           max(0.0, known[2])};
@@ -252,13 +256,13 @@ inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const Plain
   integrate();
   const Mask meets = boxes_meet(lower_, higher_);
   regions_.touches = regions_.touches & meets;
-  const Mask lower_has = has_corner(lower_, higher_);
-  const Mask higher_has = has_corner(higher_, lower_);
+  const CornersInside of_lower = count_corners(lower_, higher_);
+  const CornersInside of_higher = count_corners(higher_, lower_);
   Seen seen;
   seen.touching = regions_.touches.by_lane();
   seen.meeting = meets.by_lane();
-  seen.with_corners = (meets & lower_has & higher_has).by_lane();
-  seen.with_face = (meets & (lower_has ^ higher_has)).by_lane();
+  seen.with_corners = (meets & of_lower.any & of_higher.any & !(of_lower.two | of_higher.two)).by_lane();
+  seen.with_face = (meets & (of_lower.any ^ of_higher.any) & !(of_lower.three | of_higher.three)).by_lane();
   if (seen.touching == 0) {
     return seen;
   }
@@ -432,7 +436,7 @@ inline PlainBatch::Energies LaneBatch::by_lane(const Mask &known, const Lanes &e
 inline PlainBatch::Energies LaneBatch::find_corner_energies(const BlockSystem &system,
                                                             const Candidates &candidates,
                                                             const PlainLanes &lanes) {
-  const Pairs pairs(candidates, lanes);
+  const Pairs pairs(system, candidates, lanes);
   return with_few_edges(pairs.first, [&](auto edges) {
     PairSides<edges> sides(system, pairs);
     load_box(system, pairs.lower, sides.lower);
@@ -445,7 +449,7 @@ inline PlainBatch::Energies LaneBatch::find_corner_energies(const BlockSystem &s
 
 inline PlainBatch::Energies LaneBatch::find_energies(const BlockSystem &system, const Candidates &candidates,
                                                      const PlainLanes &lanes) {
-  const Pairs pairs(candidates, lanes);
+  const Pairs pairs(system, candidates, lanes);
   load_chain(system, pairs.lower, pairs.first.kind.lower_edges, lower_);
   load_chain(system, pairs.higher, pairs.first.kind.higher_edges, higher_);
   load_box(system, pairs.lower, lower_);

@@ -21,49 +21,33 @@
 
 namespace gcpdda {
 
-namespace {
-
-/// Edges of a block: their stretch, and where they begin along it.
-struct Outline {
-  std::vector<std::int32_t> stretch;
-  std::vector<double> arc;
-
-  explicit Outline(const BlockView &block) : stretch(block.vertex.size(), 0), arc(block.vertex.size(), 0.0) {
-    if (block.is_convex) {
-      return;
-    }
-    // The reference polygon: deformation must not renumber anything.
-    const std::size_t n = block.vertex.size();
-    const std::vector<bool> reentrant = reentrant_vertices(block.frame ? block.frame->vertex : block.vertex);
-    const auto num_reentrant =
-        static_cast<std::int32_t>(std::count(reentrant.begin(), reentrant.end(), true));
-    const auto start =
-        static_cast<std::size_t>(std::find(reentrant.begin(), reentrant.end(), true) - reentrant.begin()) % n;
-    std::int32_t passed = 0;
-    for (std::size_t e = 0; e < n; ++e) {
-      passed += e > 0 && reentrant[e] ? 1 : 0;
-      stretch[e] = num_reentrant > 0 ? passed % num_reentrant : 0;
-    }
-    for (std::size_t step = 1; step < n; ++step) {
-      const std::size_t e = (start + step) % n;
-      const std::size_t last = (start + step - 1) % n;
-      arc[e] = reentrant[e] ? 0.0 : arc[last] + block.length[last];
-    }
+void RegionSplitter::Outline::follow(const BlockView &block) {
+  const std::size_t n = block.vertex.size();
+  stretch.assign(n, 0);
+  arc.assign(n, 0.0);
+  if (block.is_convex) {
+    return;
   }
-};
+  // The reference polygon: deformation must not renumber anything.
+  find_reentrant_vertices(block.frame ? block.frame->vertex : block.vertex, reentrant);
+  const auto num_reentrant = static_cast<std::int32_t>(std::count(reentrant.begin(), reentrant.end(), true));
+  const auto start =
+      static_cast<std::size_t>(std::find(reentrant.begin(), reentrant.end(), true) - reentrant.begin()) % n;
+  std::int32_t passed = 0;
+  for (std::size_t e = 0; e < n; ++e) {
+    passed += e > 0 && reentrant[e] ? 1 : 0;
+    stretch[e] = num_reentrant > 0 ? passed % num_reentrant : 0;
+  }
+  for (std::size_t step = 1; step < n; ++step) {
+    const std::size_t e = (start + step) % n;
+    const std::size_t last = (start + step - 1) % n;
+    arc[e] = reentrant[e] ? 0.0 : arc[last] + block.length[last];
+  }
+}
 
-/// A piece on its way into a region.
-struct Placed {
-  std::size_t piece = 0;
-  RegionFaces faces;
-  std::size_t region = 0; ///< number of its first piece
-  double low = 0.0;       ///< along the outline, with the gaps that its ends bridge
-  double high = 0.0;
-};
-
-/// Where a piece lies along a block's outline; `on` is its own edge or the nearest one.
-void project(const Piece &piece, const BlockView &block, const Outline &outline, std::int32_t on,
-             Placed &placed) {
+// Where a piece lies along a block's outline; `on` is its own edge or the nearest one.
+void RegionSplitter::project(const Piece &piece, const BlockView &block, const Outline &outline,
+                             std::int32_t on, Placed &placed) {
   const auto e = static_cast<std::size_t>(on);
   const auto along = [&](Vec2 x) {
     const double s = dot(x - block.vertex[e], perp(block.normal[e]));
@@ -77,18 +61,16 @@ void project(const Piece &piece, const BlockView &block, const Outline &outline,
   placed.high = std::max(begin + piece.depth_begin, end + piece.depth_end) + crossing;
 }
 
-/// Give all pieces of a region that hang together on the outline the number of their first one; returns how
-/// many regions there are.
-std::size_t connect(std::vector<Placed> &placed) {
+std::size_t RegionSplitter::connect() {
   std::size_t num_regions = 0;
-  std::sort(placed.begin(), placed.end(), [](const Placed &p, const Placed &q) {
+  std::sort(placed_.begin(), placed_.end(), [](const Placed &p, const Placed &q) {
     return std::tie(p.faces, p.region, p.low, p.piece) < std::tie(q.faces, q.region, q.low, q.piece);
   });
-  for (auto begin = placed.begin(); begin != placed.end();) {
+  for (auto begin = placed_.begin(); begin != placed_.end();) {
     double high = begin->high;
     std::size_t lowest = begin->piece;
     auto end = begin + 1;
-    for (; end != placed.end() && end->faces == begin->faces && end->region == begin->region &&
+    for (; end != placed_.end() && end->faces == begin->faces && end->region == begin->region &&
            end->low <= high;
          ++end) {
       lowest = std::min(lowest, end->piece);
@@ -101,20 +83,19 @@ std::size_t connect(std::vector<Placed> &placed) {
   return num_regions;
 }
 
-/// All pieces with faces and region.
-std::vector<Placed> placed_pieces(const BlockView &first, const BlockView &second,
-                                  std::span<const Piece> pieces, std::size_t num_first) {
-  const Outline on_first(first);
-  const Outline on_second(second);
-  std::vector<Placed> placed(pieces.size());
+void RegionSplitter::place(const BlockView &first, const BlockView &second, std::span<const Piece> pieces,
+                           std::size_t num_first) {
+  on_first_.follow(first);
+  on_second_.follow(second);
+  placed_.assign(pieces.size(), {});
   const auto edge_of = [&](std::size_t i, bool of_first) {
     return i < num_first ? (of_first ? pieces[i].edge : pieces[i].face)
                          : (of_first ? pieces[i].face : pieces[i].edge);
   };
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    placed[i].piece = i;
-    placed[i].faces = {on_first.stretch[static_cast<std::size_t>(edge_of(i, true))],
-                       on_second.stretch[static_cast<std::size_t>(edge_of(i, false))]};
+    placed_[i].piece = i;
+    placed_[i].faces = {on_first_.stretch[static_cast<std::size_t>(edge_of(i, true))],
+                        on_second_.stretch[static_cast<std::size_t>(edge_of(i, false))]};
   }
   // A cut on one outline can take away what held pieces together on the other one: until nothing changes.
   std::size_t num_regions = 0;
@@ -124,17 +105,14 @@ std::vector<Placed> placed_pieces(const BlockView &first, const BlockView &secon
     for (const bool of_first : {true, false}) {
       const BlockView &block = of_first ? first : second;
       if (!block.is_convex) {
-        for (Placed &p : placed) {
-          project(pieces[p.piece], block, of_first ? on_first : on_second, edge_of(p.piece, of_first), p);
+        for (Placed &p : placed_) {
+          project(pieces[p.piece], block, of_first ? on_first_ : on_second_, edge_of(p.piece, of_first), p);
         }
-        num_regions = connect(placed);
+        num_regions = connect();
       }
     }
   } while (num_regions != before && !first.is_convex && !second.is_convex);
-  return placed;
 }
-
-} // namespace
 
 void start_at_entry(std::span<Piece> pieces) {
   const auto start = std::min_element(pieces.begin(), pieces.end(), [](const Piece &p, const Piece &q) {
@@ -146,20 +124,19 @@ void start_at_entry(std::span<Piece> pieces) {
   std::rotate(pieces.begin(), start, pieces.end());
 }
 
-void split_into_regions(const BlockView &first, const BlockView &second, std::vector<Piece> &pieces,
-                        std::size_t num_first, std::vector<Region> &regions) {
+void RegionSplitter::split(const BlockView &first, const BlockView &second, std::vector<Piece> &pieces,
+                           std::size_t num_first, std::vector<Region> &regions) {
   regions.clear();
   if (pieces.empty()) {
     return;
   }
-  std::vector<Placed> placed = placed_pieces(first, second, pieces, num_first);
-  std::sort(placed.begin(), placed.end(), [](const Placed &p, const Placed &q) {
+  place(first, second, pieces, num_first);
+  std::sort(placed_.begin(), placed_.end(), [](const Placed &p, const Placed &q) {
     return std::tie(p.faces, p.region, p.piece) < std::tie(q.faces, q.region, q.piece);
   });
-  std::vector<Piece> sorted;
-  sorted.reserve(pieces.size());
-  for (auto begin = placed.begin(); begin != placed.end();) {
-    const auto end = std::find_if(begin, placed.end(), [&](const Placed &p) {
+  sorted_.clear();
+  for (auto begin = placed_.begin(); begin != placed_.end();) {
+    const auto end = std::find_if(begin, placed_.end(), [&](const Placed &p) {
       return p.faces != begin->faces || p.region != begin->region;
     });
     const bool carries = std::any_of(begin, end, [&](const Placed &p) {
@@ -169,18 +146,18 @@ void split_into_regions(const BlockView &first, const BlockView &second, std::ve
     if (carries) {
       Region region;
       region.faces = begin->faces;
-      region.begin = static_cast<std::uint32_t>(sorted.size());
-      std::for_each(begin, end, [&](const Placed &p) { sorted.push_back(pieces[p.piece]); });
+      region.begin = static_cast<std::uint32_t>(sorted_.size());
+      std::for_each(begin, end, [&](const Placed &p) { sorted_.push_back(pieces[p.piece]); });
       region.middle = region.begin + static_cast<std::uint32_t>(std::count_if(
                                          begin, end, [&](const Placed &p) { return p.piece < num_first; }));
-      region.end = static_cast<std::uint32_t>(sorted.size());
-      start_at_entry(std::span(sorted).subspan(region.begin, region.middle - region.begin));
-      start_at_entry(std::span(sorted).subspan(region.middle));
+      region.end = static_cast<std::uint32_t>(sorted_.size());
+      start_at_entry(std::span(sorted_).subspan(region.begin, region.middle - region.begin));
+      start_at_entry(std::span(sorted_).subspan(region.middle));
       regions.push_back(region);
     }
     begin = end;
   }
-  pieces.swap(sorted);
+  pieces.swap(sorted_);
 }
 
 } // namespace gcpdda

@@ -159,15 +159,20 @@ bool is_convex(std::span<const Vec2> vertices) {
   return true;
 }
 
-std::vector<bool> reentrant_vertices(std::span<const Vec2> vertices) {
+void find_reentrant_vertices(std::span<const Vec2> vertices, std::vector<bool> &reentrant) {
   const std::size_t n = vertices.size();
   const double rounding = rounding_of(vertices);
-  std::vector<bool> reentrant(n);
+  reentrant.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 in = vertices[i] - vertices[(i + n - 1) % n];
-    const Vec2 out = vertices[(i + 1) % n] - vertices[i];
+    const Vec2 in = vertices[i] - vertices[i == 0 ? n - 1 : i - 1];
+    const Vec2 out = vertices[i + 1 == n ? 0 : i + 1] - vertices[i];
     reentrant[i] = turns_right(in, out, rounding);
   }
+}
+
+std::vector<bool> reentrant_vertices(std::span<const Vec2> vertices) {
+  std::vector<bool> reentrant;
+  find_reentrant_vertices(vertices, reentrant);
   return reentrant;
 }
 

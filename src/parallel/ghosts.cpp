@@ -310,16 +310,15 @@ std::vector<Bytes> Ghosts::exchange(std::vector<Bytes> &send, std::size_t bytes_
 
 void Ghosts::copy_accelerations(BlockSystem &system) {
   copy(system.acceleration);
-  std::vector<Mat2> per_row(system.num_rows());
-  for (std::size_t row = 0; row < system.num_mobile(); ++row) {
-    per_row[row] = system.is_deformable(row) ? system.deformation_of(row).acceleration : Mat2{};
-  }
-  copy(per_row);
-  for (std::size_t row = system.num_owned; row < system.first_fixed(); ++row) {
-    if (system.is_deformable(row)) {
-      system.deformation_of(row).acceleration = per_row[row];
-    }
-  }
+  copy_by(
+      [&](std::uint32_t row) {
+        return system.is_deformable(row) ? system.deformation_of(row).acceleration : Mat2{};
+      },
+      [&](std::uint32_t row, const Mat2 &acceleration) {
+        if (system.is_deformable(row)) {
+          system.deformation_of(row).acceleration = acceleration;
+        }
+      });
 }
 
 void Ghosts::begin(const BlockSystem &system) {

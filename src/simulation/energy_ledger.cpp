@@ -122,20 +122,24 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
 void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
   const BlockSystem &blocks = simulation.blocks();
   const std::vector<double> known = find_energies(blocks, simulation.candidates());
-  const auto half_stiffness_of = [&](const CandidatePair &pair) {
-    return simulation.contacts().parameters().constants(pair.law).half_stiffness;
+  const ContactHistory &history = simulation.history();
+  const auto half_stiffness_of = [&](std::int32_t law) {
+    return simulation.contacts().parameters().constants(law).half_stiffness;
   };
   for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
     const CandidatePair &pair = simulation.candidates().pairs[k];
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
-    const bool is_dilated = simulation.history().is_dilated(k);
+    const bool is_dilated = history.is_dilated(k);
     if (!simulation.counts_here(pair) || !(is_dilated || blocks.box[a].meets(blocks.box[b]))) {
       continue;
     }
     const bool is_known = !std::isnan(known[k]) && !is_dilated;
-    if (is_known && !pair.is_mixed) {
-      sum.add(share * half_stiffness_of(pair) * known[k]);
+    const bool has_plain = history.has_plain(k); // one region, whose law does not change
+    const std::int32_t law = has_plain && pair.is_mixed ? history.plain[k].law : pair.law;
+    const bool has_one_law = has_plain || !pair.is_mixed;
+    if (is_known && (has_one_law || known[k] == 0.0)) {
+      sum.add(share * half_stiffness_of(law) * known[k]);
       continue;
     }
     const BlockView first = view_of(blocks, a);
@@ -144,7 +148,7 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
       sum.add(share * dilated_energy(simulation, k, first, second));
     } else {
       const double half_stiffness =
-          pair.is_mixed ? mean_stiffness(simulation, k, first, second) : half_stiffness_of(pair);
+          has_one_law ? half_stiffness_of(law) : mean_stiffness(simulation, k, first, second);
       sum.add(share * half_stiffness * (is_known ? known[k] : overlap_energy(first, second)));
     }
   }

@@ -52,14 +52,14 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(simulation.candidates().pairs);
   add(simulation.candidates().block_contacts);
   add(simulation.candidates().plain);
-  add(simulation.candidates().chain_vertices);
+  add(simulation.candidates().chains);
   add(simulation.history().overlaps);
   add(simulation.history().plain);
   add(simulation.history().regions);
   bytes += blocks.num_rows() * sizeof(BlockMotion);
   // At the start, which takes all details.
   bytes += simulation.contacts().regions().size() *
-           (sizeof(RegionForce) + sizeof(RegionState) + sizeof(RegionRange) +
+           (sizeof(RegionForce) + sizeof(RegionRange) +
             (blocks.deformation.empty() ? 0 : sizeof(RegionDyads) + sizeof(RegionRange)));
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);

@@ -308,7 +308,8 @@ void Simulation::unload(const std::vector<std::int64_t> &removed, double duratio
     Unloading load{block.id.value, {}, {}, time(), duration};
     bool touches = false;
     for (std::uint32_t c = candidates_.contact_begin[row]; c < candidates_.contact_begin[row + 1]; ++c) {
-      const auto [number, is_lower] = candidates_.block_contacts[c];
+      const std::uint32_t number = candidates_.block_contacts[c].pair();
+      const bool is_lower = candidates_.block_contacts[c].is_lower();
       const CandidatePair &pair = candidates_.pairs[number];
       const std::size_t other = (is_lower ? pair.higher : pair.lower).value;
       if (!holds(removed, blocks_.properties[other].id.value)) {

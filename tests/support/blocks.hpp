@@ -7,7 +7,10 @@
 #include "support/memories.hpp"
 #include "support/shapes.hpp"
 
+#include <gtest/gtest.h>
+
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -122,5 +125,21 @@ struct ContactBench {
   ForceReport report;
   Seen seen;
 };
+
+/// But for the numbers of their pairs.
+inline void expect_same_bits(const RegionForce &a, const RegionForce &b) {
+  const auto sums = [](const RegionForce &f) {
+    return std::tie(f.force, f.torque, f.shear_force, f.shear_torque, f.damping_force, f.damping_torque);
+  };
+  const auto place = [](const RegionForce &f) {
+    return std::tie(f.dyad, f.origin, f.point, f.normal, f.extent_begin, f.extent_end);
+  };
+  const auto sizes = [](const RegionForce &f) {
+    return std::tie(f.normal_force, f.shear, f.cap, f.overlap, f.born, f.normal_undefined);
+  };
+  EXPECT_EQ(sums(a), sums(b));
+  EXPECT_EQ(place(a), place(b));
+  EXPECT_EQ(sizes(a), sizes(b));
+}
 
 } // namespace gcpdda::testing

@@ -39,8 +39,8 @@ OneBlock contacts_of(const Simulation &simulation, std::size_t row) {
   OneBlock block;
   for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
     const BlockContact contact = candidates.block_contacts[c];
-    for (const RegionForce &force : simulation.contacts().of_pair(contact.pair)) {
-      block.dyad += contact_part(force, contact.is_lower, simulation.blocks().trial_centroid[row]).dyad;
+    for (const RegionForce &force : simulation.contacts().of_pair(contact.pair())) {
+      block.dyad += contact_part(force, contact.is_lower(), simulation.blocks().trial_centroid[row]).dyad;
       block.size += norm(force.force);
       block.largest = std::max(block.largest, norm(force.force));
     }

@@ -161,9 +161,9 @@ TEST(MakeCandidates, ContactsOfABlockAscendByPartner) {
     BlockId last{-1};
     for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
       const BlockContact contact = candidates.block_contacts[c];
-      const CandidatePair &pair = candidates.pairs[contact.pair];
-      EXPECT_EQ((contact.is_lower ? pair.lower : pair.higher).value, row);
-      const BlockId partner = system.properties[(contact.is_lower ? pair.higher : pair.lower).value].id;
+      const CandidatePair &pair = candidates.pairs[contact.pair()];
+      EXPECT_EQ((contact.is_lower() ? pair.lower : pair.higher).value, row);
+      const BlockId partner = system.properties[(contact.is_lower() ? pair.higher : pair.lower).value].id;
       EXPECT_LT(last, partner);
       last = partner;
       ++ends;

@@ -198,7 +198,7 @@ void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = f
   if (with_families) {
     joints = laws_by_edge(joints, system);
   }
-  TwoWays ways(std::move(system), std::move(joints), 0.1);
+  TwoWays ways(system, joints, 0.1);
   ASSERT_GE(ways.plain.candidates.plain.size(), static_cast<std::size_t>(count));
   int touching = 0;
   int sliding = 0;
@@ -323,17 +323,6 @@ std::optional<std::size_t> find_pair(const ContactBench &bench, const CandidateP
   return std::nullopt;
 }
 
-void expect_same_bits(const RegionForce &a, const RegionForce &b) {
-  EXPECT_EQ(a.force, b.force);
-  EXPECT_EQ(a.torque, b.torque);
-  EXPECT_EQ(a.dyad, b.dyad);
-  EXPECT_EQ(a.origin, b.origin);
-  EXPECT_EQ(a.point, b.point);
-  EXPECT_EQ(a.overlap, b.overlap);
-  EXPECT_EQ(a.damping_force, b.damping_force);
-  EXPECT_EQ(a.damping_torque, b.damping_torque);
-}
-
 // Machines of one cluster may differ.
 void expect_same_bits_by(Instructions instructions) {
   std::mt19937 engine(93);
@@ -420,10 +409,10 @@ void expect_same_bits_without_some_edges(std::size_t most_edges) {
   const double skin = 0.02;
   cut.candidates = make_candidates(system, couple_pairs, cut.forces.parameters(), {}, cut.history, skin);
   EXPECT_LT(cut.candidates.pairs.size(), couple_pairs.size()) << "some are kept apart by a line";
-  EXPECT_LT(cut.candidates.chain_vertices.size(), 6 * cut.candidates.pairs.size() * 2);
+  EXPECT_LT(cut.candidates.chains.size(), 6 * cut.candidates.pairs.size() * 2);
   EXPECT_GT(num_with_corners(cut.candidates), most_edges == most_corner_edges ? count / 2 : 0);
-  EXPECT_LT(cut.candidates.chain_vertices.size() * whole.candidates.pairs.size(),
-            whole.candidates.chain_vertices.size() * cut.candidates.pairs.size());
+  EXPECT_LT(cut.candidates.chains.size() * whole.candidates.pairs.size(),
+            whole.candidates.chains.size() * cut.candidates.pairs.size());
   int touching = 0;
   int with_energy = 0;
   for (int step = 0; step < 3; ++step) {

@@ -5,10 +5,16 @@
 #include "gcpdda/contact/stiffness_bound.hpp"
 #include "gcpdda/io/scene_reader.hpp"
 #include "gcpdda/parallel/packing.hpp"
+#include "gcpdda/simulation/energy_ledger.hpp"
+#include "gcpdda/simulation/simulation.hpp"
 #include "support/blocks.hpp"
 #include "support/scenes.hpp"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
 
 namespace gcpdda::region_law_test {
 namespace {
@@ -138,6 +144,50 @@ TEST(EdgeJoints, TravelWithTheirRowAndCostNothingElse) {
   EXPECT_EQ(arrived.edge_joint.size(), 4U);
   append_row(arrived, joined, 1);
   EXPECT_EQ(arrived.edge_joint, joined.edge_joint);
+}
+
+/// Largest |residual| of a square that bounces on one face of another one, over its energy at first.
+/// @param joints  of the edges of the lower square, from the bottom one on
+double bounce_residual(const std::string &joints, std::int32_t expected_law) {
+  const std::string toml =
+      R"([run]
+duration = 0.1
+time_step = 1e-4
+gravity = [0, 0]
+contact_damping = 0.0
+fidelity = "rigid"
+[material.rock]
+density = 2500
+[joint.default]
+normal_stiffness = 1e8
+friction_angle_deg = 0
+[joint.soft]
+normal_stiffness = 1e7
+friction_angle_deg = 0
+)" + block_toml("floor", rectangle({-1.0, -1.0}, {2.0, 0.0}), "fixed = true\nedge_joints = " + joints) +
+      block_toml("square", rectangle({0.0, 1e-3}, {1.0, 1.001}), "velocity = [0.0, -1.0, 0.0]");
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  EXPECT_TRUE(simulation.candidates().pairs.at(0).is_mixed);
+  EnergyLedger ledger(simulation);
+  double largest = 0.0;
+  bool has_touched = false;
+  while (!simulation.finished()) {
+    simulation.step();
+    if (!simulation.candidates().pairs.empty() && simulation.history().has_plain(0)) {
+      EXPECT_EQ(simulation.history().plain[0].law, expected_law);
+      has_touched = true;
+    }
+    largest = std::max(largest, std::abs(ledger.row(simulation).residual));
+  }
+  EXPECT_TRUE(has_touched);
+  EXPECT_GT(simulation.blocks().velocity[0].u.y, 0.9) << "it has bounced";
+  return largest / (0.5 * 2500.0);
+}
+
+// The ledger is off by the square of omega dt = 0.02 at most, of the stiffer law.
+TEST(EdgeJoints, EachRegionHasTheEnergyOfItsOwnLaw) {
+  EXPECT_LT(bounce_residual(R"(["soft", "", "", ""])", 0), 0.02 * 0.02);
+  EXPECT_LT(bounce_residual(R"(["", "", "soft", ""])", 1), 0.02 * 0.02);
 }
 
 TEST(EdgeJoints, TurnRoundWithAnOutlineGivenClockwise) {

@@ -32,8 +32,8 @@ struct CandidatePair {
 /// alone, so that no bit of a run depends on when the neighbourhood is refreshed.
 struct PlainPair {
   std::uint32_t pair = 0;
-  std::uint32_t chain = 0; ///< Candidates::chain_vertices from here on: the ends of the lower block's edges,
-                           ///< one more than edges, then those of the higher one's
+  std::uint32_t chain = 0; ///< Candidates::chains from here on: the ends of the lower block's edges, one more
+                           ///< than edges, then those of the higher one's
   /// Pairs that have these in common may share an evaluation.
   struct Kind {
     std::uint8_t lower_edges = 0;
@@ -58,9 +58,15 @@ struct PlainPair {
 };
 
 /// A candidate pair as one of its blocks sees it.
-struct BlockContact {
-  std::uint32_t pair = 0;
-  bool is_lower = false;
+class BlockContact {
+public:
+  BlockContact() = default;
+  BlockContact(std::uint32_t pair, bool is_lower) : packed_(2 * pair + (is_lower ? 1 : 0)) {}
+  [[nodiscard]] std::uint32_t pair() const { return packed_ / 2; }
+  [[nodiscard]] bool is_lower() const { return packed_ % 2 != 0; }
+
+private:
+  std::uint32_t packed_ = 0;
 };
 
 /// Which pairs may touch, as flat lists.
@@ -76,7 +82,7 @@ struct Candidates {
   std::size_t num_interior_plain = 0;
   std::vector<std::uint32_t> general; ///< numbers of all other pairs
   std::size_t num_interior_general = 0;
-  std::vector<std::uint32_t> chain_vertices; ///< entries of BlockSystem::vertex
+  std::vector<std::uint8_t> chains; ///< numbers of vertices in their blocks
   /// By owned row: all of its pairs are plain and without a ghost, and come in the order of the other blocks'
   /// ids; see BlockSums.
   std::vector<std::uint8_t> is_added;

@@ -40,6 +40,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -207,7 +208,7 @@ private:
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, PlainOverlap overlap);
   /// What lanes do not know of them.
-  static void note_details(const PlainLanes &lanes, std::size_t lane, RegionDetails &details);
+  static void note_details(std::uint32_t pair, bool is_born, RegionDetails &details);
   /// Once more, with details.
   void store_again(const PlainLanes &lanes, unsigned touching);
   /// Visit entries of Candidates::plain that are alike, as many at a time as there are lanes.
@@ -280,7 +281,10 @@ private:
   /// Of forces_, one a pair; without details only of those that are not plain.
   std::vector<RegionRange> ranges_;
   ForceReport report_; ///< of what has been evaluated so far
+  /// What the history becomes, but for ContactHistory::plain, whose entries are written where they are read;
+  /// afterwards what it was.
   ContactHistory next_;
+  std::span<RegionState> plain_memory_;   ///< that of the evaluation at hand
   std::vector<BlockMotion> motions_;      ///< one a row
   std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation
   std::size_t first_of_pair_ = 0;         ///< region of the pair at hand

@@ -39,6 +39,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -118,6 +119,11 @@ struct RegionIntegrals {
 /// The pieces of two blocks and the regions they form; buffers are reused from call to call.
 class Overlap {
 public:
+  Overlap();
+  ~Overlap();
+  Overlap(Overlap &&) noexcept;
+  Overlap &operator=(Overlap &&) noexcept;
+
   /// Collect the pieces of both blocks' edges, region by region; false if there are none.
   bool find(const BlockView &first, const BlockView &second, PotentialKind potential);
 
@@ -164,6 +170,8 @@ private:
   std::size_t num_lines_ = 0;
   std::vector<double> alpha_;
   std::vector<double> beta_;
+  struct OfReentrant;
+  std::unique_ptr<OfReentrant> of_reentrant_; ///< made for the first pair that needs it
 };
 
 /// Energy int_S (phi_A + phi_B) H dA (m3) that belongs to the forces of RegionIntegrals: moving a block

@@ -33,6 +33,8 @@ bool is_convex(std::span<const Vec2> vertices);
 
 /// The vertices that keep a polygon from being convex: where the boundary turns right.
 std::vector<bool> reentrant_vertices(std::span<const Vec2> vertices);
+/// The same into a list that has been used before.
+void find_reentrant_vertices(std::span<const Vec2> vertices, std::vector<bool> &reentrant);
 
 /// How thin a polygon is (m). Convex: the smallest distance between two parallel lines that enclose it, one
 /// of them flush with an edge. Otherwise that of the convex hull, or the distance from a re-entrant vertex

@@ -49,19 +49,28 @@ public:
 
   /// Owners' entries of any array with one entry a row to their ghosts.
   template <class T> void copy(std::vector<T> &per_row) {
+    copy_by([&](std::uint32_t row) { return per_row[row]; },
+            [&](std::uint32_t row, const T &value) { per_row[row] = value; });
+  }
+  /// The same of what get(row) says of owned rows; set(row, value) for the ghosts.
+  template <class Get, class Set> void copy_by(Get &&get, Set &&set) {
+    using T = std::invoke_result_t<Get, std::uint32_t>;
     static_assert(std::is_trivially_copyable_v<T>);
     std::vector<Bytes> send;
     for (const Neighbour &n : neighbours_) {
       Bytes &message = send.emplace_back(n.send_rows.size() * sizeof(T));
       for (std::size_t i = 0; i < n.send_rows.size(); ++i) {
-        std::memcpy(message.data() + i * sizeof(T), &per_row[n.send_rows[i]], sizeof(T));
+        const T value = get(n.send_rows[i]);
+        std::memcpy(message.data() + i * sizeof(T), &value, sizeof(T));
       }
     }
     const std::vector<Bytes> received = exchange(send, sizeof(T));
     for (std::size_t k = 0; k < neighbours_.size(); ++k) {
       const std::vector<std::uint32_t> &rows = neighbours_[k].receive_rows;
       for (std::size_t i = 0; i < rows.size(); ++i) {
-        std::memcpy(&per_row[rows[i]], received[k].data() + i * sizeof(T), sizeof(T));
+        T value;
+        std::memcpy(&value, received[k].data() + i * sizeof(T), sizeof(T));
+        set(rows[i], value);
       }
     }
   }
