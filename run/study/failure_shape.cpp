@@ -118,7 +118,7 @@ Outcome bounce(double tip_deg, double speed, double tilt_deg) {
   return try_scene(toml, [&](Simulation &simulation) {
     const double inertia = simulation.blocks().properties[0].inertia / simulation.blocks().properties[0].mass;
     double tip = 0.0;
-    while (!simulation.finished() && (tip == 0.0 || !simulation.contacts().regions().empty())) {
+    while (!simulation.finished() && (tip == 0.0 || !simulation.history().empty())) {
       simulation.step();
       for (const Vec2 v : simulation.blocks().of_row(simulation.blocks().vertex, 0)) {
         tip = std::min(tip, v.y);
@@ -126,7 +126,7 @@ Outcome bounce(double tip_deg, double speed, double tilt_deg) {
     }
     const RigidDof v = velocity_of(simulation, 1);
     const double energy = (dot(v.u, v.u) + inertia * v.r * v.r) / (speed * speed);
-    const bool is_out = simulation.contacts().regions().empty();
+    const bool is_out = simulation.history().empty();
     return judged(is_out && tip < 0.0 && std::abs(energy - 1.0) < 0.02,
                   fmt::format("{}, deepest tip {:.2e} m, E/E0 - 1 = {:.1e}, normal undefined {} times",
                               is_out ? "comes back" : "still in contact", -tip, energy - 1.0,

@@ -84,30 +84,31 @@ bool counts_here(const BlockSystem &system, BlockIndex lower) {
   return lower.value < system.num_owned || system.is_fixed(lower.value);
 }
 
-void BlockSums::start(const BlockSystem &system, const Candidates &candidates, Keep keep) {
+void BlockSums::start(const BlockSystem &system, const Candidates &candidates) {
   has_dyads_ = !system.deformation.empty();
+  is_again_ = false;
   is_added_ = candidates.is_added;
+  clear_sums(system);
+  group_.resize(PlainPair::pairs_in_group);
+  group_dyads_.resize(has_dyads_ ? PlainPair::pairs_in_group : 0);
+  kept_range_.resize(candidates.pairs.size());
+  for (const std::uint32_t pair : candidates.waiting) {
+    kept_range_[pair] = {};
+  }
+  kept_.clear();
+  kept_dyads_.clear();
+}
+
+void BlockSums::start_again(const BlockSystem &system) {
+  is_again_ = true;
+  clear_sums(system);
+}
+
+void BlockSums::clear_sums(const BlockSystem &system) {
   sums_.assign(system.num_owned, {});
   gradients_.assign(system.deformation.size(), {});
   count_ = {};
   largest_squared_ = 0.0;
-  group_.resize(PlainPair::pairs_in_group);
-  group_dyads_.resize(has_dyads_ ? PlainPair::pairs_in_group : 0);
-  if (keep == Keep::all) {
-    kept_range_.assign(candidates.pairs.size(), {});
-  } else {
-    kept_range_.resize(candidates.pairs.size());
-    for (const std::uint32_t pair : candidates.waiting) {
-      kept_range_[pair] = {};
-    }
-  }
-  num_kept_ = 0;
-  kept_.clear();
-  kept_dyads_.clear();
-  if (keep != Keep::all && keep_ == Keep::all) { // what all took is not needed again
-    kept_dyads_.shrink_to_fit();
-  }
-  keep_ = keep;
 }
 
 inline void BlockSums::add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads) {
@@ -181,7 +182,7 @@ void BlockSums::add_group(const BlockSystem &system, const Candidates &candidate
 }
 
 void BlockSums::close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
-  if (keep_ != Keep::all && candidates.are_added[group] != 0) {
+  if (candidates.are_added[group] != 0) {
     add_group<false>(system, candidates, group);
   } else {
     add_group<true>(system, candidates, group);
@@ -190,69 +191,57 @@ void BlockSums::close_group(const BlockSystem &system, const Candidates &candida
 }
 
 void BlockSums::keep_plain(std::uint32_t pair, const RegionSums &region, bool born) {
-  kept_range_[pair] = {num_kept_++, 1};
-  if (keep_ != Keep::all) {
-    kept_.push_back({region, born});
+  const RegionDyads *dyads = has_dyads_ ? &group_dyads_[pair % PlainPair::pairs_in_group] : nullptr;
+  if (is_again_) {
+    kept(pair, 0) = region;
+    if (dyads != nullptr) {
+      *kept_dyads(pair, 0) = *dyads;
+    }
+    return;
   }
-  if (has_dyads_) {
-    kept_dyads_.push_back(group_dyads_[pair % PlainPair::pairs_in_group]);
+  kept_range_[pair] = {static_cast<std::uint32_t>(kept_.size()), 1};
+  kept_.push_back({region, born});
+  if (dyads != nullptr) {
+    kept_dyads_.push_back(*dyads);
   }
 }
 
 void BlockSums::keep(std::uint32_t pair, std::span<const RegionForce> regions,
                      std::span<const RegionDyads> dyads) {
-  const auto count = static_cast<std::uint32_t>(regions.size());
-  kept_range_[pair] = {num_kept_, count};
-  num_kept_ += count;
-  for (const RegionForce &region : keep_ == Keep::all ? std::span<const RegionForce>() : regions) {
+  kept_range_[pair] = {static_cast<std::uint32_t>(kept_.size()), static_cast<std::uint32_t>(regions.size())};
+  for (const RegionForce &region : regions) {
     kept_.push_back({region, region.born});
   }
   if (has_dyads_) {
     kept_dyads_.insert(kept_dyads_.end(), dyads.begin(), dyads.end());
-    kept_dyads_.resize(num_kept_);
+    kept_dyads_.resize(kept_.size());
   }
 }
 
-ContactCount BlockSums::finish(const BlockSystem &system, const Candidates &candidates,
-                               const AllRegions &all) {
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (when(BlockIndex{static_cast<std::uint32_t>(row)}) == When::later) {
-      sums_[row] = {};
-      if (system.is_deformable(row)) {
-        gradients_[system.deformation_begin[row]] = {};
-      }
-    }
-  }
+ContactCount BlockSums::finish(const BlockSystem &system, const Candidates &candidates) {
   ContactCount count = count_;
   largest_waiting_squared_ = 0.0;
-  const auto add = [&](const CandidatePair &pair, const RegionSums &region, std::size_t kept) {
+  const auto add = [&](const CandidatePair &pair, std::size_t number) {
+    const RegionSums &region = kept_[number];
     largest_waiting_squared_ = std::max(largest_waiting_squared_, squared(region.force));
     const std::array<BlockIndex, 2> rows{pair.lower, pair.higher};
     for (const std::size_t k : {0U, 1U}) {
       if (when(rows[k]) == When::later) {
         add_region(region, k, sums_[rows[k].value]);
         if (has_dyads_) {
-          add_dyads(system, rows[k], kept_dyads_[kept][k]);
+          add_dyads(system, rows[k], kept_dyads_[number][k]);
         }
       }
     }
   };
-  const auto add_pair = [&](std::uint32_t number, const RegionRange range, const auto &regions) {
+  for (const std::uint32_t number : candidates.waiting) {
+    const RegionRange range = kept_range_[number];
     if (range.count > 0) {
       const CandidatePair &pair = candidates.pairs[number];
-      count += counted(system, pair, regions[range.begin].born);
+      count += counted(system, pair, kept_[range.begin].born);
       for (std::uint32_t i = 0; i < range.count; ++i) {
-        add(pair, regions[range.begin + i], kept_range_[number].begin + i);
+        add(pair, range.begin + i);
       }
-    }
-  };
-  if (keep_ == Keep::all) {
-    for (std::uint32_t pair = 0; pair < candidates.pairs.size(); ++pair) {
-      add_pair(pair, all.ranges[pair], all.regions);
-    }
-  } else {
-    for (const std::uint32_t pair : candidates.waiting) {
-      add_pair(pair, kept_range_[pair], kept_);
     }
   }
   return count;

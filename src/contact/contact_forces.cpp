@@ -25,13 +25,6 @@ void fetch_pair(const Candidates &candidates, const ContactHistory &history, std
   prefetch(&history.plain[pair], sizeof(RegionState));
 }
 
-/// Visit the numbers of the bits that are set, the least first.
-template <class Visit> void for_bits(unsigned bits, Visit &&visit) {
-  for (; bits != 0; bits &= bits - 1) {
-    visit(static_cast<std::size_t>(std::countr_zero(bits)));
-  }
-}
-
 /// How a trial configuration moved since the one before, in a form without cancellation.
 TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
   const RigidDof step = system.trial[row] - system.trial_previous[row];
@@ -158,10 +151,6 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
 
 PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching, PlainOverlap overlap) {
   PlainResults results;
-  results.has_details = details_ == Details::now;
-  if (results.has_details) {
-    grow(forces_, num_forces_ + lanes.count);
-  }
   results.has_dyads = lanes.pair[0]->kind.is_deformable;
   unsigned wanted = 0;
   bool has_mixed = false;
@@ -177,11 +166,6 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
     results.sums[i] = &sums_.open(plain.pair, is_born);
     results.memory[i] = &plain_memory_[plain.pair];
     next_.overlaps[plain.pair] = overlap;
-    if (results.has_details) {
-      ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_), 1};
-      results.details[i] = &forces_[num_forces_];
-      ++num_forces_;
-    }
     if (results.has_dyads) {
       results.dyads[i] = &sums_.dyads(plain.pair);
     }
@@ -195,43 +179,14 @@ void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes
                                 PlainOverlap overlap) {
   const PlainResults results = open_regions(lanes, touching, overlap);
   const unsigned too_deep = batch_->store(results);
-  for_bits(results.has_details || results.has_mixed ? results.wanted : 0U, [&](std::size_t i) {
-    const std::uint32_t pair = lanes.pair[i]->pair;
+  for_bits(results.has_mixed ? results.wanted : 0U, [&](std::size_t i) {
     if (lanes.pair[i]->is_mixed) {
       results.memory[i]->law = lanes.constants[i]->law;
-    }
-    if (results.has_details) {
-      note_details(pair, lanes.memory[i] == &PlainLanes::no_memory, forces_[ranges_[pair].begin]);
-      static_cast<RegionSums &>(forces_[ranges_[pair].begin]) = *results.sums[i];
     }
   });
   for_bits(too_deep, [&](std::size_t i) {
     note_depth(scene.system, scene.candidates.pairs[lanes.pair[i]->pair], batch_->overlap(i));
   });
-}
-
-void ContactForces::note_details(std::uint32_t pair, bool is_born, RegionDetails &details) {
-  details.pair = pair;
-  details.born = is_born;
-  details.bonded = false;
-}
-
-void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
-  PlainResults results;
-  results.has_details = true;
-  std::array<RegionState, most_lanes> known;
-  for (std::size_t i = 0; i < lanes.count; ++i) {
-    const std::uint32_t pair = lanes.pair[i]->pair;
-    if ((touching >> i & 1U) != 0) {
-      RegionForce &force = forces_[ranges_[pair].begin];
-      note_details(pair, !next_.has_plain(pair), force);
-      results.wanted |= 1U << i;
-      results.sums[i] = &force;
-      results.memory[i] = &known[i];
-      results.details[i] = &force;
-    }
-  }
-  batch_->store(results);
 }
 
 template <class Visit>
@@ -284,38 +239,6 @@ void ContactForces::evaluate_strangers(const PlainScene &scene) {
     (scene.candidates.plain[entry].kind.may_be_corners() ? corners_ : others_).push_back(entry);
   }
   evaluate_known(scene);
-}
-
-// The velocities are kept in motions_, which pairs touched before in next_.
-void ContactForces::find_details(const BlockSystem &system, const Candidates &candidates,
-                                 const ContactHistory &history) {
-  if (has_details_) {
-    return;
-  }
-  has_details_ = true;
-  corners_.clear();
-  faces_.clear();
-  others_.clear();
-  for (std::size_t k = 0; k < candidates.plain.size(); ++k) {
-    const PlainPair &plain = candidates.plain[k];
-    const PlainOverlap overlap = history.overlaps[plain.pair];
-    if (overlap == PlainOverlap::none) {
-      ranges_[plain.pair] = {};
-    } else if (!plain.is_mixed || next_.has_plain(plain.pair)) { // mixed ones are born with details
-      ranges_[plain.pair] = {static_cast<std::uint32_t>(num_forces_++), 1};
-      (overlap == PlainOverlap::corners ? corners_
-       : overlap == PlainOverlap::face  ? faces_
-                                        : others_)
-          .push_back(static_cast<std::uint32_t>(k));
-    }
-  }
-  forces_.reserve(num_forces_);
-  grow(forces_, num_forces_);
-  is_again_ = true;
-  evaluate_known({system, candidates, history, motions_, deforming_, parameters_.damping_ratio,
-                  parameters_.stiffness_damping, true});
-  is_again_ = false;
-  batch_->take_extremes(); // they have been told
 }
 
 // Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
@@ -388,10 +311,13 @@ void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidate
   dyads_.clear();
   find_regions(system, candidates, number, old);
   const std::size_t count = num_forces_ - begin; // of memories as well
-  ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)};
-  const bool is_plain = candidates.pairs[number].is_plain;
-  if (!is_plain) {
+  if (!candidates.pairs[number].is_plain) {
+    ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)};
     next_.ranges[number] = {static_cast<std::uint32_t>(first_known), static_cast<std::uint32_t>(count)};
+    if (count > 0) {
+      sums_.keep(number, std::span(forces_).subspan(begin, count),
+                 std::span(dyads_).first(std::min(count, dyads_.size())));
+    }
   } else if (count > 0) { // one region, with its group
     next_.overlaps[number] = PlainOverlap::other;
     plain_memory_[number] = next_.regions.back();
@@ -400,10 +326,7 @@ void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidate
     if (!dyads_.empty()) {
       sums_.dyads(number) = dyads_.front();
     }
-  }
-  if (!is_plain && count > 0) {
-    sums_.keep(number, std::span(forces_).subspan(begin, count),
-               std::span(dyads_).first(std::min(count, dyads_.size())));
+    drop_last_force();
   }
 }
 
@@ -420,27 +343,18 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
 }
 
 void ContactForces::evaluate_interior(const BlockSystem &system, const Candidates &candidates,
-                                      ContactHistory &history, Details details, Keep keep) {
-  details_ = details;
-  has_details_ = details == Details::now;
+                                      ContactHistory &history) {
   find_motions(system, system.first_fixed(), system.num_rows());
-  if (details == Details::now) { // for as many regions as the last time, and some more
-    const std::size_t all = candidates.pairs.size();
-    forces_.reserve(num_forces_ == 0 ? all : std::min(all, num_forces_ + num_forces_ / 64));
-  }
   num_forces_ = 0;
   dilation_works_.clear();
-  ranges_.resize(candidates.pairs.size());
-  if (details == Details::now) {
-    ranges_.assign(candidates.pairs.size(), {});
-  }
   next_.overlaps.assign(candidates.pairs.size(), PlainOverlap::none);
   next_.ranges.assign(candidates.general.empty() ? 0 : candidates.pairs.size(), {});
   next_.regions.clear();
+  ranges_.resize(next_.ranges.size());
   for (const std::uint32_t pair : candidates.general) {
     ranges_[pair] = {};
   }
-  sums_.start(system, candidates, keep);
+  sums_.start(system, candidates);
   report_ = {};
   evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);
   evaluate_general_pairs(system, candidates, history,
@@ -481,10 +395,10 @@ std::vector<TrialIncrement> trial_increments(const BlockSystem &system) {
   return increments;
 }
 
-double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
+double coming_slide(const BlockSystem &system, const CandidatePair &pair, Vec2 point, Vec2 normal,
                     std::span<const TrialIncrement> increments) {
-  return dot(slide_at(system, pair, force.point, increments[pair.lower.value], increments[pair.higher.value]),
-             perp(force.normal));
+  return dot(slide_at(system, pair, point, increments[pair.lower.value], increments[pair.higher.value]),
+             perp(normal));
 }
 
 } // namespace gcpdda

@@ -136,37 +136,30 @@ void swell(BlockSystem &system, std::size_t row, std::span<const Vec2> by) {
 double put_in_situ_shear(const BlockSystem &system, const Candidates &candidates, const InSituStress &stress,
                          ContactForces &forces, ContactHistory &history) {
   double most_cut = 0.0;
-  for (std::size_t k = 0; k < forces.regions().size(); ++k) {
-    const RegionForce &force = forces.regions()[k];
-    const CandidatePair &pair = candidates.pairs[force.pair];
-    const Vec2 tangent = perp(force.normal);
-    const Vec2 middle = force.point + 0.5 * (force.extent_begin + force.extent_end) * tangent;
+  forces.change_shear(system, candidates, history, [&](ContactForces::ShearToSet region) {
+    const RegionForce &force = region.force;
+    const Vec2 middle = force.point + 0.5 * (force.extent_begin + force.extent_end) * region.tangent;
     // On the lower block, whose outward normal is minus the direction of N: -sigma n = C (N/|N|).
     const Vec2 traction = stress.compression_at(middle)(force.normal);
     const double pressure = dot(traction, force.normal);
     if (!(pressure > 0.0)) {
-      continue;
+      return;
     }
     // An overlap force falls off at the ends of the joint, and the shear with it.
     const double normal_force =
         force.bonded ? pressure * (force.extent_end - force.extent_begin) : force.normal_force;
-    const double wanted = -normal_force * dot(traction, tangent) / pressure;
-    const double shear = std::clamp(wanted, -force.cap, force.cap);
+    const double wanted = -normal_force * dot(traction, region.tangent) / pressure;
     if (!force.bonded && force.cap == 0.0 && history.has_bonds(force.pair)) {
-      continue; // the bond carries it
+      return; // the bond carries it
     }
     constexpr double rounding = 1e-9;
     if (std::abs(wanted) > force.cap * (1.0 + rounding) && std::abs(wanted) > rounding * normal_force) {
       most_cut = std::max(most_cut, 1.0 - force.cap / std::abs(wanted));
     }
-    RegionState &memory = history.state(force.pair, forces.number_in_pair(k));
-    if (!(force.cap > 0.0) || !(memory.longest > 0.0)) {
-      continue;
+    if (force.cap > 0.0 && region.memory.longest > 0.0) {
+      region.set(std::clamp(wanted, -force.cap, force.cap));
     }
-    memory.shear = shear;
-    forces.set_shear(k, shear, force.point - system.trial_centroid[pair.lower.value],
-                     force.point - system.trial_centroid[pair.higher.value]);
-  }
+  });
   return most_cut;
 }
 

@@ -1,7 +1,5 @@
 #include "gcpdda/contact/initial_friction.hpp"
 
-#include "pair_motion.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,123 +39,77 @@ Vec2 acceleration_at(const BlockSystem &system, std::size_t row, Vec2 arm) {
 
 } // namespace
 
-void ContactForces::set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm) {
-  RegionForce &force = forces_[region];
-  const Vec2 tangent = perp(force.normal);
-  const auto add_torques = [&](PairTorques &torque, Vec2 f) {
-    torque[0] += cross(lower_arm, f);
-    torque[1] -= cross(higher_arm, f);
-  };
-  const Vec2 change = (force.shear - shear) * tangent;
-  add_force(force, force.point, change);
-  add_torques(force.torque, change);
-  const Vec2 drag = (force.shear + dot(force.shear_force, tangent)) * tangent;
-  force.damping_force += drag;
-  add_torques(force.damping_torque, drag);
-  const Vec2 elastic = -shear * tangent;
-  const std::size_t number = region - ranges_[force.pair].begin;
-  if (RegionDyads *dyads = sums_.kept_dyads(force.pair, number)) {
-    for (const std::size_t k : {0U, 1U}) {
-      const Vec2 arm = k == 0 ? lower_arm : -higher_arm;
-      BlockGradientSum &sum = (*dyads)[k];
-      sum.force += outer(arm, change);
-      sum.damping += outer(arm, drag);
-      sum.shear = force.bonded ? sum.shear + outer(arm, elastic - force.shear_force) : outer(arm, elastic);
+InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
+                           ContactHistory &history)
+    : system_(system), candidates_(candidates), forces_(forces), history_(history),
+      contact_counts_(system.num_rows(), 0.0) {
+  forces_.change_shear(system_, candidates_, history_, [&](Region region) {
+    // A region without extent along its tangent (faces that coincide up to rounding) has no spring yet.
+    if (!(region.force.cap > 0.0) || !(region.memory.longest > 0.0)) {
+      return;
     }
-  }
-  force.shear = shear;
-  force.shear_force = elastic;
-  force.shear_torque = {};
-  add_torques(force.shear_torque, force.shear_force);
+    contact_counts_[region.pair.lower.value] += 1.0;
+    contact_counts_[region.pair.higher.value] += 1.0;
+    const double sliding = sliding_of(region);
+    if (sliding != 0.0 && !region.force.bonded) { // a bond that slides starts with its spring unstretched
+      region.set(std::copysign(region.force.cap, sliding));
+      region.memory.state = ContactState::slip;
+    }
+  });
 }
 
-InitialStick::Yields InitialStick::yields_of(const BlockSystem &system, const Region &region) {
-  return {yield_of(system, region.lower, region.arm_lower, region.tangent),
-          yield_of(system, region.higher, region.arm_higher, region.tangent)};
+double InitialStick::sliding_of(const Region &region) const {
+  const Vec2 lower = velocity_at(system_, region.pair.lower.value, region.arm_lower);
+  const Vec2 higher = velocity_at(system_, region.pair.higher.value, region.arm_higher);
+  const double sliding = dot(lower - higher, region.tangent);
+  const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * (norm(lower) + norm(higher));
+  return std::abs(sliding) > rounding ? sliding : 0.0;
 }
 
-double InitialStick::tangential_acceleration(const BlockSystem &system, const Region &region) {
-  return dot(acceleration_at(system, region.lower, region.arm_lower) -
-                 acceleration_at(system, region.higher, region.arm_higher),
+bool InitialStick::sticks(const Region &region) const {
+  return region.force.cap > 0.0 && region.memory.longest > 0.0 && sliding_of(region) == 0.0;
+}
+
+InitialStick::Yields InitialStick::yields_of(const Region &region) const {
+  return {yield_of(system_, region.pair.lower.value, region.arm_lower, region.tangent),
+          yield_of(system_, region.pair.higher.value, region.arm_higher, region.tangent)};
+}
+
+double InitialStick::tangential_acceleration(const Region &region) const {
+  return dot(acceleration_at(system_, region.pair.lower.value, region.arm_lower) -
+                 acceleration_at(system_, region.pair.higher.value, region.arm_higher),
              region.tangent);
 }
 
 double InitialStick::corrected(const Region &region, double change) {
-  return std::clamp(region.memory->shear + change, -region.cap, region.cap);
+  return std::clamp(region.memory.shear + change, -region.force.cap, region.force.cap);
 }
 
-InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
-                           ContactHistory &history)
-    : forces_(forces), candidates_(candidates), history_(history), contact_counts_(system.num_rows(), 0.0) {
-  for (std::size_t k = 0; k < forces.regions().size(); ++k) {
-    const Region region = region_of(system, k);
-    // A region without extent along its tangent (faces that coincide up to rounding) has no spring yet.
-    if (!(region.cap > 0.0) || !(region.memory->longest > 0.0)) {
-      continue;
+template <class Change> void InitialStick::change_sticking(Change &&change) {
+  forces_.change_shear(system_, candidates_, history_, [&](Region region) {
+    if (sticks(region)) {
+      region.set(change(region));
     }
-    contact_counts_[region.lower] += 1.0;
-    contact_counts_[region.higher] += 1.0;
-    const Vec2 lower_velocity = velocity_at(system, region.lower, region.arm_lower);
-    const Vec2 higher_velocity = velocity_at(system, region.higher, region.arm_higher);
-    const double sliding = dot(lower_velocity - higher_velocity, region.tangent);
-    const double rounding =
-        16.0 * std::numeric_limits<double>::epsilon() * (norm(lower_velocity) + norm(higher_velocity));
-    if (std::abs(sliding) > rounding && forces.regions()[k].bonded) {
-      continue; // its spring starts unstretched
-    }
-    if (std::abs(sliding) > rounding) {
-      set_shear(region, std::copysign(region.cap, sliding));
-      region.memory->state = ContactState::slip;
-    } else {
-      sticking_.push_back(static_cast<std::uint32_t>(k));
-    }
-  }
+  });
 }
 
-InitialStick::Region InitialStick::region_of(const BlockSystem &system, std::size_t number) const {
-  const RegionForce &force = forces_.regions()[number];
-  const CandidatePair &pair = candidates_.pairs[force.pair];
-  return {number,
-          &history_.state(force.pair, forces_.number_in_pair(number)),
-          perp(force.normal),
-          force.point - system.trial_centroid[pair.lower.value],
-          force.point - system.trial_centroid[pair.higher.value],
-          force.cap,
-          pair.lower.value,
-          pair.higher.value};
-}
-
-void InitialStick::set_shear(const Region &region, double shear) {
-  region.memory->shear = shear;
-  forces_.set_shear(region.number, shear, region.arm_lower, region.arm_higher);
-}
-
-double InitialStick::residual(const BlockSystem &system) const {
+double InitialStick::sweep() {
   double largest = 0.0;
-  for (const std::uint32_t number : sticking_) {
-    const Region region = region_of(system, number);
-    const auto [lower, higher] = yields_of(system, region);
+  change_sticking([&](const Region &region) {
+    const double acceleration = tangential_acceleration(region);
+    const auto [lower, higher] = yields_of(region);
     const double yield = lower + higher;
-    const double wanted = corrected(region, tangential_acceleration(system, region) / yield);
-    largest = std::max(largest, std::abs(wanted - region.memory->shear) * yield);
-  }
+    const double wanted = corrected(region, acceleration / yield);
+    largest = std::max(largest, std::abs(wanted - region.memory.shear) * yield);
+    const double damped_yield =
+        contact_counts_[region.pair.lower.value] * lower + contact_counts_[region.pair.higher.value] * higher;
+    return corrected(region, acceleration / damped_yield);
+  });
   return largest;
 }
 
-void InitialStick::sweep(const BlockSystem &system) {
-  for (const std::uint32_t number : sticking_) {
-    const Region region = region_of(system, number);
-    const auto [lower, higher] = yields_of(system, region);
-    const double damped_yield =
-        contact_counts_[region.lower] * lower + contact_counts_[region.higher] * higher;
-    set_shear(region, corrected(region, tangential_acceleration(system, region) / damped_yield));
-  }
-}
-
-void InitialStick::reset(const BlockSystem &system) {
-  for (const std::uint32_t number : sticking_) {
-    set_shear(region_of(system, number), 0.0);
-  }
+void InitialStick::reset() {
+  change_sticking([](const Region &) { return 0.0; });
 }
 
 } // namespace gcpdda

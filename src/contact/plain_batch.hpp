@@ -6,6 +6,7 @@
 #include "gcpdda/contact/contact_forces.hpp"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -104,6 +105,13 @@ public:
   };
   virtual Extremes take_extremes() = 0;
 };
+
+/// Visit the numbers of the bits that are set, the least first.
+template <class Visit> void for_bits(unsigned bits, Visit &&visit) {
+  for (; bits != 0; bits &= bits - 1) {
+    visit(static_cast<std::size_t>(std::countr_zero(bits)));
+  }
+}
 
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions);
 // Null where the compiler or the machine lacks these instructions, or where the whole build uses AVX.

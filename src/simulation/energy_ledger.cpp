@@ -158,22 +158,19 @@ enum class Moment { now, middle };
 
 /// Energy of the stick springs and of open bonds; in the middle of two trial configurations F_n F_{n+1}/(2
 /// k), the form that the leapfrog conserves exactly. Slipping springs keep theirs.
-void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
+void add_stick(const Simulation &simulation, const std::vector<ContactDigest::Spring> &springs, Moment moment,
+               ExactSum &sum) {
   const ContactParameters &parameters = simulation.contacts().parameters();
+  const ContactHistory &history = simulation.history();
   const std::vector<TrialIncrement> increments =
       moment == Moment::middle ? trial_increments(simulation.blocks()) : std::vector<TrialIncrement>();
-  const std::span<const RegionForce> forces = simulation.contacts().regions();
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    const RegionForce &force = forces[k];
-    const CandidatePair &pair = simulation.candidates().pairs[force.pair];
-    const ContactHistory &history = simulation.history();
-    const std::size_t number = simulation.contacts().number_in_pair(k);
-    const RegionState &memory = history.state(force.pair, number);
-    if (!simulation.counts_here(pair)) {
-      continue;
-    }
+  for (const ContactDigest::Spring &spring : springs) {
+    const CandidatePair &pair = simulation.candidates().pairs[spring.pair];
+    const RegionState &memory = history.state(spring.pair, spring.number);
     const LawConstants constants = parameters.constants(memory.law >= 0 ? memory.law : pair.law);
-    const RegionMemory *bond = force.bonded ? &history.of_other(force.pair)[number] : nullptr;
+    const RegionMemory *other =
+        history.has_plain(spring.pair) ? nullptr : &history.of_other(spring.pair)[spring.number];
+    const RegionMemory *bond = other != nullptr && other->is_bond() ? other : nullptr;
     if (bond != nullptr) {
       sum.add(2.0 * constants.half_stiffness *
               bond_energy(simulation.blocks(), pair, *bond, moment == Moment::middle));
@@ -187,7 +184,7 @@ void add_stick(const Simulation &simulation, Moment moment, ExactSum &sum) {
       next += stiffness *
               (bond != nullptr
                    ? opening_of(simulation.blocks(), pair, *bond, Configuration::trial).slide - memory.slip
-                   : coming_slide(simulation.blocks(), pair, force, increments));
+                   : coming_slide(simulation.blocks(), pair, spring.point, spring.normal, increments));
     }
     sum.add(0.5 * memory.shear * next / stiffness);
   }
@@ -224,7 +221,7 @@ Terms initial_terms(const Simulation &simulation) {
   }
   add_strain(blocks, Moment::now, terms.strain);
   add_normal(simulation, 1.0, terms.normal);
-  add_stick(simulation, Moment::now, terms.stick);
+  add_stick(simulation, simulation.contact_digest().springs, Moment::now, terms.stick);
   simulation.bolts().add_energies(1.0, terms.support);
   return terms;
 }
@@ -232,6 +229,7 @@ Terms initial_terms(const Simulation &simulation) {
 Terms current_terms(Simulation &simulation) {
   Terms terms;
   const double time_step = simulation.plan().time_step;
+  const std::vector<ContactDigest::Spring> &springs = simulation.contact_digest().springs;
   simulation.look_ahead([&](const BlockSystem &blocks) {
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
       const BlockLedger &ledger = blocks.ledger[row];
@@ -246,7 +244,7 @@ Terms current_terms(Simulation &simulation) {
     }
     add_strain(blocks, Moment::middle, terms.strain);
     add_normal(simulation, 0.5, terms.normal);
-    add_stick(simulation, Moment::middle, terms.stick);
+    add_stick(simulation, springs, Moment::middle, terms.stick);
     simulation.bolts().add_energies_at(blocks, 0.5, terms.support);
   });
   add_normal(simulation, 0.5, terms.normal);

@@ -38,20 +38,22 @@ Diagnostic too_deep(const Scene &scene, const InitialOverlap &overlap) {
 void Simulation::check_initial_overlaps() {
   std::vector<InitialOverlap> mine;
   InitialOverlap deepest;
-  for (const RegionForce &force : contacts_.regions()) {
-    const CandidatePair &pair = candidates_.pairs[force.pair];
+  for_regions(0, candidates_.pairs.size(), [&](std::uint32_t number, std::span<const RegionForce> regions) {
+    const CandidatePair &pair = candidates_.pairs[number];
     if (!counts_here(pair)) {
-      continue;
+      return;
     }
     const BlockProperties &a = blocks_.properties[pair.lower.value];
     const BlockProperties &b = blocks_.properties[pair.higher.value];
-    const InitialOverlap overlap{a.id.value, b.id.value, force.overlap, std::min(a.width, b.width)};
-    if (is_too_deep(overlap)) {
-      mine.push_back(overlap);
-    } else if (overlap.depth > deepest.depth) {
-      deepest = overlap;
+    for (const RegionForce &force : regions) {
+      const InitialOverlap overlap{a.id.value, b.id.value, force.overlap, std::min(a.width, b.width)};
+      if (is_too_deep(overlap)) {
+        mine.push_back(overlap);
+      } else if (overlap.depth > deepest.depth) {
+        deepest = overlap;
+      }
     }
-  }
+  });
   mine.push_back(deepest);
   std::vector<InitialOverlap> all;
   for (const auto &from_rank : communicator_.all_gather(mine)) {
@@ -120,12 +122,14 @@ void Simulation::find_initial_state() {
   take(contacts_.evaluate(blocks_, candidates_, history_)); // ghosts are whole copies yet
   evaluate_bolts();
   check_initial_overlaps();
-  if (scene_.in_situ.present) {
-    put_initial_shear();
-  } else if (scene_.run.initial_friction == InitialFriction::consistent) {
+  if (scene_.run.initial_friction == InitialFriction::consistent && !scene_.in_situ.present) {
     find_initial_friction();
+  } else {
+    if (scene_.in_situ.present) {
+      put_initial_shear();
+    }
+    accelerate_owned();
   }
-  accelerate_owned();
   restless_ = {{0, blocks_.num_owned}};
   report();
   counters_.evaluations = 0; // these are of steps
@@ -138,22 +142,23 @@ void Simulation::find_initial_state() {
 void Simulation::find_initial_friction() {
   InitialStick stick(blocks_, candidates_, contacts_, history_);
   ghosts_.copy(stick.contact_counts());
-  const auto agreed_residual = [&] {
-    accelerate_owned();
+  const auto sweep = [&] {
     ghosts_.copy_accelerations(blocks_);
-    double residual = stick.residual(blocks_);
+    double residual = stick.sweep();
     communicator_.max(std::span(&residual, 1));
+    accelerate_owned();
     return residual;
   };
   constexpr int num_sweeps = 50;
-  const double before = agreed_residual();
+  accelerate_owned();
+  const double before = sweep();
   double after = before;
-  for (int sweep = 0; sweep < num_sweeps && after > 0.0; ++sweep) {
-    stick.sweep(blocks_);
-    after = agreed_residual();
+  for (int done = 1; done <= num_sweeps && after > 0.0; ++done) {
+    after = sweep();
   }
   if (before > 0.0 && !(after < before)) {
-    stick.reset(blocks_);
+    stick.reset();
+    accelerate_owned();
     notes_.push_back(
         {Severity::info,
          {},

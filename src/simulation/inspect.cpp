@@ -57,10 +57,9 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(simulation.history().plain);
   add(simulation.history().regions);
   bytes += blocks.num_rows() * sizeof(BlockMotion);
-  // At the start, which takes all details.
-  bytes += simulation.contacts().regions().size() *
-           (sizeof(RegionForce) + sizeof(RegionRange) +
-            (blocks.deformation.empty() ? 0 : sizeof(RegionDyads) + sizeof(RegionRange)));
+  const ContactDigest &digest = simulation.contact_digest();
+  add(digest.on_rows);
+  add(digest.springs);
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);
 }
@@ -284,7 +283,7 @@ private:
     for (std::size_t k = 0; k < simulation_.candidates().pairs.size(); ++k) {
       if (simulation_.counts_here(simulation_.candidates().pairs[k])) {
         ++candidates;
-        touching += simulation_.contacts().of_pair(k).empty() ? 0 : 1;
+        touching += simulation_.history().is_living(k) ? 1 : 0;
       }
     }
     touching_ = total(communicator_, touching);

@@ -28,18 +28,10 @@ std::vector<Reaction> collect_reactions(const Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
   const int num_ranks = simulation.communicator().size();
   std::vector<std::vector<Reaction>> outgoing(static_cast<std::size_t>(num_ranks));
-  for (const RegionForce &force : simulation.contacts().regions()) {
-    const CandidatePair &pair = simulation.candidates().pairs[force.pair];
-    const bool lower_fixed = blocks.is_fixed(pair.lower.value);
-    if (!lower_fixed && !blocks.is_fixed(pair.higher.value)) {
-      continue;
-    }
-    const std::size_t fixed = lower_fixed ? pair.lower.value : pair.higher.value;
-    const std::size_t mobile = lower_fixed ? pair.higher.value : pair.lower.value;
-    const std::int64_t id = blocks.properties[fixed].id.value;
+  for (const ContactDigest::OnFixed &on_fixed : simulation.contact_digest().on_fixed) {
+    const std::int64_t id = blocks.properties[on_fixed.row].id.value;
     const auto writer = static_cast<std::size_t>(slab_owner(simulation.num_blocks(), num_ranks, id));
-    outgoing[writer].push_back({id, blocks.properties[mobile].id.value,
-                                contact_part(force, lower_fixed, blocks.trial_centroid[fixed])});
+    outgoing[writer].push_back({id, blocks.properties[on_fixed.other].id.value, on_fixed.part});
   }
   std::vector<Reaction> reactions;
   for (const auto &arrived : simulation.communicator().all_to_all(outgoing)) {
@@ -73,12 +65,12 @@ BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 sta
 
 FrameRow mobile_row(const Simulation &simulation, std::size_t index) {
   const BlockSystem &blocks = simulation.blocks();
-  const ContactForces &contacts = simulation.contacts();
+  const ContactDigest &contacts = simulation.contact_digest();
   FrameRow row = row_of(blocks, index);
   row.stress = blocks.is_deformable(index)
                    ? mean_cauchy_stress(blocks.deformation_of(index), blocks.properties[index].area)
-                   : mean_stress(blocks, simulation.candidates(), contacts, index);
-  const RigidDof force = sum_contacts(simulation.candidates(), contacts, index).force;
+                   : contacts.mean_stress(blocks, index);
+  const RigidDof &force = contacts.on_rows[index].force;
   row.contact_force = {force.u.x, force.u.y, force.r};
   return row;
 }
@@ -154,37 +146,38 @@ void SimulationFrame::append(std::int64_t first, std::int64_t last, std::vector<
 }
 
 // Pairs are in the order of the file.
-template <class Act>
-void SimulationContacts::for_each_pair(std::int64_t first, std::int64_t last, Act act) const {
-  const BlockSystem &blocks = simulation_.blocks();
+SimulationContacts::Pairs SimulationContacts::pairs_from(std::int64_t first, std::int64_t last) const {
   const std::vector<CandidatePair> &pairs = simulation_.candidates().pairs;
-  const auto id_of = [&](const CandidatePair &pair) { return blocks.properties[pair.lower.value].id.value; };
-  const auto begin =
-      std::lower_bound(pairs.begin(), pairs.end(), first,
-                       [&](const CandidatePair &pair, std::int64_t id) { return id_of(pair) < id; });
-  for (auto pair = begin; pair != pairs.end() && id_of(*pair) < last; ++pair) {
-    const auto number = static_cast<std::size_t>(pair - pairs.begin());
-    if (!simulation_.contacts().of_pair(number).empty() && simulation_.counts_here(*pair)) {
-      act(number);
-    }
-  }
+  const auto first_from = [&](std::int64_t id) {
+    const auto found = std::partition_point(pairs.begin(), pairs.end(), [&](const CandidatePair &pair) {
+      return simulation_.blocks().properties[pair.lower.value].id.value < id;
+    });
+    return static_cast<std::size_t>(found - pairs.begin());
+  };
+  return {first_from(first), first_from(last)};
 }
 
 std::int64_t SimulationContacts::count(std::int64_t first, std::int64_t last) const {
   std::int64_t count = 0;
-  for_each_pair(first, last,
-                [&](std::size_t pair) { count += std::ssize(simulation_.contacts().of_pair(pair)); });
+  const auto [begin, end] = pairs_from(first, last);
+  for (std::size_t pair = begin; pair < end; ++pair) {
+    if (simulation_.counts_here(simulation_.candidates().pairs[pair])) {
+      simulation_.history().for_pair(pair, [&](const RegionMemory &) { ++count; });
+    }
+  }
   return count;
 }
 
 void SimulationContacts::append(std::int64_t first, std::int64_t last, std::vector<ContactRow> &rows) const {
   const BlockSystem &blocks = simulation_.blocks();
-  const ContactForces &contacts = simulation_.contacts();
   rows.reserve(rows.size() + static_cast<std::size_t>(count(first, last)));
-  for_each_pair(first, last, [&](std::size_t number) {
+  const auto append_pair = [&](std::uint32_t number, std::span<const RegionForce> regions) {
     const CandidatePair &pair = simulation_.candidates().pairs[number];
+    if (!simulation_.counts_here(pair)) {
+      return;
+    }
     std::int32_t position = 0;
-    for (const RegionForce &force : contacts.of_pair(number)) {
+    for (const RegionForce &force : regions) {
       const RegionState &memory = simulation_.history().state(number, static_cast<std::size_t>(position));
       const Vec2 tangent = perp(force.normal);
       ContactRow row;
@@ -201,7 +194,9 @@ void SimulationContacts::append(std::int64_t first, std::int64_t last, std::vect
       row.slip = memory.slip;
       rows.push_back(row);
     }
-  });
+  };
+  const auto [begin, end] = pairs_from(first, last);
+  simulation_.for_regions(begin, end, append_pair);
 }
 
 std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {

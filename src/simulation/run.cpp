@@ -334,10 +334,8 @@ private:
   std::int64_t count_contacts() {
     std::int64_t count = 0;
     for (std::size_t k = 0; k < simulation_.candidates().pairs.size(); ++k) {
-      count += !simulation_.contacts().of_pair(k).empty() &&
-                       simulation_.counts_here(simulation_.candidates().pairs[k])
-                   ? 1
-                   : 0;
+      const bool counts = simulation_.counts_here(simulation_.candidates().pairs[k]);
+      count += counts && simulation_.history().is_living(k) ? 1 : 0;
     }
     return total(communicator_, count);
   }

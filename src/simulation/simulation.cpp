@@ -35,7 +35,7 @@ void Simulation::step() {
     refresh(remembered_contacts());
   }
   load_time_ = time() + scheme_.load_time * plan_.time_step;
-  predict_own();
+  predict_own(true);
   evaluate_contacts();
   sum_contacts_of_blocks();
   move_blocks();
@@ -147,12 +147,16 @@ Diagnostics Simulation::warnings() const {
 }
 
 // Ghosts are on their way then.
-void Simulation::predict_own() {
+void Simulation::predict_own(bool for_contacts) {
   {
     const auto scope = phases_.measure(Phase::predict);
-    predict(blocks_, scheme_, plan_.time_step,
-            [&](std::size_t first, std::size_t last) { contacts_.find_motions(blocks_, first, last); });
-    prescribe_trials();
+    const auto find_motions = [&](std::size_t first, std::size_t last) {
+      if (for_contacts) {
+        contacts_.find_motions(blocks_, first, last);
+      }
+    };
+    predict(blocks_, scheme_, plan_.time_step, find_motions);
+    prescribe_trials(find_motions);
   }
   const auto scope = phases_.measure(Phase::ghosts);
   ghosts_.begin(blocks_);
@@ -164,13 +168,13 @@ void Simulation::finish_ghosts() {
 }
 
 // At t_n + c1 dt, where the family takes x* of constant velocity.
-void Simulation::prescribe_trials() {
+void Simulation::prescribe_trials(const std::function<void(std::size_t, std::size_t)> &then) {
   const double when = time() + scheme_.trial_velocity * plan_.time_step;
   for (const auto &[block, motion] : prescribed_) {
     if (const auto row = owned_row(blocks_, block)) {
       blocks_.trial[*row] = motion.displacement(when);
       pose(blocks_, *row, *row + 1);
-      contacts_.find_motions(blocks_, *row, *row + 1);
+      then(*row, *row + 1);
     }
   }
 }
@@ -190,10 +194,7 @@ void Simulation::prescribe_motion() {
 void Simulation::evaluate_contacts() {
   {
     const auto scope = phases_.measure(Phase::forces);
-    const std::int64_t coming = stage_step() + 1;
-    const bool is_told = plan_.output_due(coming) || plan_.history_due(coming);
-    contacts_.evaluate_interior(blocks_, candidates_, history_, is_told ? Details::now : Details::on_demand,
-                                Keep::waiting);
+    contacts_.evaluate_interior(blocks_, candidates_, history_);
   }
   finish_ghosts();
   const auto scope = phases_.measure(Phase::forces);
@@ -209,6 +210,7 @@ void Simulation::evaluate_bolts() {
 
 void Simulation::take(const ForceReport &report) {
   force_report_ = report;
+  is_digested_ = false;
   if (report.fault) {
     keep_first(local_fault_, *report.fault);
   }

@@ -315,14 +315,16 @@ void Simulation::unload(const std::vector<std::int64_t> &removed, double duratio
       if (!holds(removed, blocks_.properties[other].id.value)) {
         continue;
       }
-      for (const RegionForce &force : contacts().of_pair(number)) {
-        const ContactPart part = contact_part(force, is_lower, blocks_.trial_centroid[row]);
-        load.rigid += {part.force, part.dyad.xy - part.dyad.yx};
-        if (blocks_.is_deformable(row)) {
-          load.gradient += transposed(blocks_.trial_inverse[blocks_.deformation_begin[row]] * part.dyad);
+      for_regions(number, number + 1, [&](std::uint32_t, std::span<const RegionForce> regions) {
+        for (const RegionForce &force : regions) {
+          const ContactPart part = contact_part(force, is_lower, blocks_.trial_centroid[row]);
+          load.rigid += {part.force, part.dyad.xy - part.dyad.yx};
+          if (blocks_.is_deformable(row)) {
+            load.gradient += transposed(blocks_.trial_inverse[blocks_.deformation_begin[row]] * part.dyad);
+          }
         }
         touches = true;
-      }
+      });
     }
     if (touches && !holds(removed, block.id.value)) {
       mine.push_back(load);

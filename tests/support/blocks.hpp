@@ -4,6 +4,7 @@
 
 #include "gcpdda/contact/contact_forces.hpp"
 #include "gcpdda/model/block_system.hpp"
+#include "support/contact_regions.hpp"
 #include "support/memories.hpp"
 #include "support/shapes.hpp"
 
@@ -102,6 +103,7 @@ struct ContactBench {
   const Seen &evaluate() {
     pose(system, 0, system.num_rows());
     report = forces.evaluate(system, candidates, history);
+    regions = Regions(system, candidates, history, forces);
     for (std::size_t row = 0; row < system.num_owned; ++row) {
       system.trial_previous[row] = system.trial[row];
       if (system.is_deformable(row)) {
@@ -109,8 +111,8 @@ struct ContactBench {
       }
     }
     seen = {};
-    if (!forces.regions().empty()) {
-      static_cast<RegionForce &>(seen) = forces.regions().front();
+    if (!regions.all().empty()) {
+      static_cast<RegionForce &>(seen) = regions.all().front();
       seen.touching = true;
     }
     return seen;
@@ -123,6 +125,7 @@ struct ContactBench {
   [[nodiscard]] RegionMemory memory() const { return memories(history).front(); }
 
   ForceReport report;
+  Regions regions;
   Seen seen;
 };
 

@@ -1,5 +1,6 @@
 // What blocks get of their contacts, group by group, against the same regions one block after the other.
 
+#include "support/contact_regions.hpp"
 #include "support/scenes.hpp"
 
 #include "gcpdda/simulation/simulation.hpp"
@@ -34,30 +35,26 @@ struct OneBlock {
   double largest = 0.0; ///< of them
 };
 
-OneBlock contacts_of(const Simulation &simulation, std::size_t row) {
-  const Candidates &candidates = simulation.candidates();
+OneBlock contacts_of(const Simulation &simulation, const Regions &regions, std::size_t row) {
   OneBlock block;
-  for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
-    const BlockContact contact = candidates.block_contacts[c];
-    for (const RegionForce &force : simulation.contacts().of_pair(contact.pair())) {
-      block.dyad += contact_part(force, contact.is_lower(), simulation.blocks().trial_centroid[row]).dyad;
-      block.size += norm(force.force);
-      block.largest = std::max(block.largest, norm(force.force));
-    }
-  }
+  regions.for_block(simulation.candidates(), row, [&](const RegionForce &force, bool is_lower) {
+    block.dyad += contact_part(force, is_lower, simulation.blocks().trial_centroid[row]).dyad;
+    block.size += norm(force.force);
+    block.largest = std::max(block.largest, norm(force.force));
+  });
   return block;
 }
 
 /// @return largest force on the block
-double expect_same_sums(const Simulation &simulation, std::size_t row) {
+double expect_same_sums(const Simulation &simulation, const Regions &regions, std::size_t row) {
   SCOPED_TRACE(row);
   const BlockSystem &blocks = simulation.blocks();
   const BlockSums &sums = simulation.contacts().sums();
-  const BlockContactSum wanted = sum_contacts(simulation.candidates(), simulation.contacts(), row);
+  const BlockContactSum wanted = regions.sum_contacts(simulation.candidates(), row);
   EXPECT_EQ(sums.of_blocks()[row].force, wanted.force);
   EXPECT_EQ(sums.of_blocks()[row].shear, wanted.shear);
   EXPECT_EQ(sums.of_blocks()[row].damping, wanted.damping);
-  const OneBlock one = contacts_of(simulation, row);
+  const OneBlock one = contacts_of(simulation, regions, row);
   if (blocks.is_deformable(row)) {
     expect_near(sums.of_gradients()[blocks.deformation_begin[row]].force, one.dyad,
                 64.0 * std::numeric_limits<double>::epsilon() * one.size); // arms are shorter than a metre
@@ -73,10 +70,11 @@ void expect_same_sums(const std::string &fidelity) {
   const Candidates &candidates = simulation.candidates();
   ASSERT_GT(candidates.plain.back().group(), 1U);
   ASSERT_LT(candidates.waiting.size(), candidates.pairs.size() / 10);
+  const Regions regions(simulation);
   double largest = 0.0;
   int waiting = 0;
   for (std::size_t row = 0; row < simulation.blocks().num_owned; ++row) {
-    const double on_block = expect_same_sums(simulation, row);
+    const double on_block = expect_same_sums(simulation, regions, row);
     largest = std::max(largest, on_block);
     waiting += candidates.is_added[row] == 0 && on_block > 0.0 ? 1 : 0;
   }

@@ -1,5 +1,6 @@
 // Friction, dashpot and bookkeeping of single contacts, configuration by configuration.
 
+#include "gcpdda/simulation/contact_digest.hpp"
 #include "support/blocks.hpp"
 #include "support/scenes.hpp"
 
@@ -116,7 +117,7 @@ TEST(Contact, OfDenormalPressureIsFinite) {
                                  {rectangle({-20.0, -5.0}, {20.0, depth_of_tip})}),
                        one_law(stiffness, 0.5), 0.3);
     bench.evaluate();
-    const BlockContactSum sum = sum_contacts(bench.candidates, bench.forces, 0);
+    const BlockContactSum sum = bench.regions.sum_contacts(bench.candidates, 0);
     for (const RigidDof &force : {sum.force, sum.shear, sum.damping}) {
       EXPECT_TRUE(std::isfinite(force.u.x) && std::isfinite(force.u.y) && std::isfinite(force.r))
           << depth_of_tip;
@@ -180,7 +181,7 @@ TEST(Friction, TurnsWithTheBlocks) {
   bench.evaluate();
   bench.move(0, {{2e-3, 0.0}, 0.0});
   const double shear = bench.memory().shear;
-  const Vec2 force = bench.forces.regions().front().force;
+  const Vec2 force = bench.regions.all().front().force;
   const Vec2 about{3.0, -7.0};
   double angle = 0.0;
   for (const double step : {0.01, -0.3, 1.0, 2.5}) {
@@ -251,7 +252,7 @@ TEST(Dashpot, NeverPullsHoweverFastTheSeparation) {
       ContactBench bench(system_of({block}, {rectangle({-20.0, -5.0}, {20.0, 0.0})}), one_law(stiffness),
                          0.5);
       const Vec2 normal = bench.evaluate().normal;
-      const double elastic = bench.forces.regions().front().normal_force;
+      const double elastic = bench.regions.all().front().normal_force;
       bench.system.velocity[0] = {speed * normal, 0.0};
       const ContactBench::Seen &force = bench.evaluate();
       EXPECT_GE(dot(force.force, normal), -1e-12 * elastic) << name << " at " << speed << " m/s";
@@ -320,8 +321,8 @@ TEST(Momentum, ForcesAndTorquesCancelWithinEveryPair) {
       continue;
     }
     ++touching;
-    const auto lower = sum_contacts(bench.candidates, bench.forces, 0);
-    const auto higher = sum_contacts(bench.candidates, bench.forces, 1);
+    const auto lower = bench.regions.sum_contacts(bench.candidates, 0);
+    const auto higher = bench.regions.sum_contacts(bench.candidates, 1);
     const Vec2 c0 = bench.system.trial_centroid[0];
     const Vec2 c1 = bench.system.trial_centroid[1];
     const double size = norm(force.force);
@@ -383,7 +384,9 @@ TEST(Contact, MeanStressOfAPressedColumn) {
                 {rectangle({-5.0, -2.0}, {5.0, depth}), rectangle({-5.0, 3.0 - depth}, {5.0, 5.0})}),
       one_law(stiffness));
   bench.evaluate();
-  const auto stress = mean_stress(bench.system, bench.candidates, bench.forces, 0);
+  ContactDigest digest;
+  digest.find(bench.system, bench.candidates, bench.history, bench.forces);
+  const auto stress = digest.mean_stress(bench.system, 0);
   // Half of each force acts on the end face, half on the sunk one: the arm is between 3 - 2 d and 3.
   EXPECT_LT(stress[1], -normal_force * (3.0 - 2.0 * depth) / 3.0);
   EXPECT_GT(stress[1], -normal_force);

@@ -144,7 +144,7 @@ TEST(FrequencyBound, BoundsTheContactsOwnStiffness) {
       bench.evaluate();
       Eigen::Matrix<double, 6, 1> f;
       for (std::size_t row = 0; row < 2; ++row) {
-        const RigidDof sum = sum_contacts(bench.candidates, bench.forces, row).force;
+        const RigidDof sum = bench.regions.sum_contacts(bench.candidates, row).force;
         f.segment<3>(static_cast<Eigen::Index>(3 * row)) << sum.u.x, sum.u.y, sum.r;
       }
       return f;

@@ -3,6 +3,7 @@
 #include "gcpdda/contact/in_situ.hpp"
 
 #include "scene_texts.hpp"
+#include "support/contact_regions.hpp"
 #include "support/regions.hpp"
 #include "support/scenes.hpp"
 
@@ -57,7 +58,7 @@ Balance balance_of(const Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
   Balance balance;
   double largest = 0.0;
-  for (const RegionForce &force : simulation.contacts().regions()) {
+  for (const RegionForce &force : testing::regions_of(simulation)) {
     largest = std::max(largest, norm(force.force));
   }
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
@@ -150,7 +151,7 @@ TEST(InSituStress, IsThatOfTheBlocks) {
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     const double vertical = 2600.0 * 9.81 * (100.0 - blocks.centroid(row).y);
     const BlockProperties &block = blocks.properties[row];
-    const auto by_contacts = mean_stress(blocks, simulation.candidates(), simulation.contacts(), row);
+    const auto by_contacts = simulation.contact_digest().mean_stress(blocks, row);
     const Mat2 own = (1.0 / block.area) * blocks.deformation_of(row).internal;
     EXPECT_NEAR(own.yy, -vertical, 1e-9 * vertical);
     EXPECT_NEAR(own.xx, -0.7 * vertical, 1e-9 * vertical);
@@ -223,7 +224,7 @@ TEST(Rollers, HoldTheirNormalAlone) {
     Simulation simulation(Communicator::self(), scene);
     const bool rolls = hold == std::string("roller");
     EXPECT_EQ(simulation.blocks().num_fixed, 2U);
-    const double pressed = simulation.contacts().regions()[0].normal_force;
+    const double pressed = testing::regions_of(simulation)[0].normal_force;
     EXPECT_NEAR(pressed, 2.0 * 1e6, 2.0 * 1e6 * 1e-3) << "d/l of its ends";
     while (!simulation.finished()) {
       simulation.step();

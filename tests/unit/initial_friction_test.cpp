@@ -3,6 +3,7 @@
 #include "gcpdda/simulation/simulation.hpp"
 
 #include "support/blocks.hpp"
+#include "support/contact_regions.hpp"
 #include "support/scenes.hpp"
 
 #include <Eigen/LU>
@@ -68,7 +69,7 @@ Simulation started(const std::string &toml, const std::vector<std::string> &sets
 TEST(InitialFriction, StopsTheContactPointOfAFlatBlock) {
   for (const double angle : {5.0 * degree, slope, 35.0 * degree}) {
     const Simulation run = started(incline(angle, 45.0 * degree, flat_block(angle)));
-    const RegionForce &force = run.contacts().regions()[0];
+    const RegionForce force = regions_of(run)[0];
     const BlockProperties &block = run.blocks().properties[0];
     const double arm = block.centroid.y - force.point.y;
     const double expected = g * std::sin(angle) / (1.0 / block.mass + arm * arm / block.inertia);
@@ -118,7 +119,7 @@ TEST(InitialFriction, CarriesABlockAtRest) {
       incline(slope, 21.0 * degree,
               block_toml("block", block_at_rest(slope)) + block_toml("plane", plane, "fixed = true"));
   Simulation run = started(toml);
-  const RegionForce &force = run.contacts().regions()[0];
+  const RegionForce force = regions_of(run)[0];
   const double mass = run.blocks().properties[0].mass;
   const double along = -mass * g * (std::sin(slope) * force.normal.y + std::cos(slope) * force.normal.x);
   // Newton ends at the rounding of positions over the depth: 1e-16/2.4e-4, times a few.
@@ -132,7 +133,7 @@ TEST(InitialFriction, CarriesABlockAtRest) {
     run.step();
   }
   // A region present at t = 0 is not new: it goes on from its stick force.
-  EXPECT_NEAR(run.contacts().regions()[0].shear, shear, 10.0 * rounding * mass * g);
+  EXPECT_NEAR(regions_of(run)[0].shear, shear, 10.0 * rounding * mass * g);
   EXPECT_LE(norm(run.blocks().displacement[0].u), rounding * static_depth(slope) * 100.0);
 }
 
@@ -140,7 +141,7 @@ TEST(InitialFriction, CarriesABlockAtRest) {
 double largest_slip_rate(const Simulation &run) {
   const BlockSystem &blocks = run.blocks();
   double largest = 0.0;
-  for (const RegionForce &force : run.contacts().regions()) {
+  for (const RegionForce &force : regions_of(run)) {
     const auto at = [&](BlockIndex row) {
       const RigidDof &a = blocks.acceleration[row.value];
       return a.u + a.r * perp(force.point - blocks.trial_centroid[row.value]);
@@ -171,8 +172,8 @@ TEST(InitialFriction, StopsAllJointsOfAStack) {
   // What 50 damped sweeps leave.
   EXPECT_LE(largest_slip_rate(with), 1e-3 * g);
   RecordProperty("slip_rate_over_g", fmt::format("{:.3g}", largest_slip_rate(with) / g));
-  for (std::size_t k = 0; k < with.contacts().regions().size(); ++k) {
-    const RegionForce &force = with.contacts().regions()[k];
+  for (std::size_t k = 0; k < regions_of(with).size(); ++k) {
+    const RegionForce force = regions_of(with)[k];
     EXPECT_LE(std::abs(force.shear), force.cap);
   }
 }
@@ -198,7 +199,7 @@ TEST(InitialFriction, SweepsConvergeOnAPyramid) {
 
 TEST(InitialFriction, IsCutAtTheCap) {
   const Simulation run = started(incline(slope, 5.0 * degree, flat_block(slope)));
-  const RegionForce &force = run.contacts().regions()[0];
+  const RegionForce force = regions_of(run)[0];
   const double cap = force.normal_force * std::tan(5.0 * degree);
   EXPECT_NEAR(-force.force.x, cap, 1e-11 * cap);
   // Downhill acceleration of a sliding block: g (sin - tan(phi) cos), at the static depth.
@@ -210,7 +211,7 @@ TEST(InitialFriction, SlidingBlockStartsOnTheCapAgainstItsMotion) {
   for (const double speed : {-0.5, 1e-6, 3.0}) {
     const std::string extra = fmt::format("velocity = [{}, 0.0, 0.0]", speed);
     const Simulation run = started(incline(slope, 30.0 * degree, flat_block(slope, extra)));
-    const RegionForce &force = run.contacts().regions()[0];
+    const RegionForce force = regions_of(run)[0];
     const double cap = force.normal_force * std::tan(30.0 * degree);
     EXPECT_NEAR(force.force.x, -std::copysign(cap, speed), 1e-11 * cap);
     EXPECT_EQ(memories(run.history())[0].state, ContactState::slip);
@@ -224,9 +225,9 @@ TEST(InitialFriction, CommonMotionIsNoSliding) {
               block_toml("lower", rectangle({0.0, 0.0}, {1.0, 1.0}), "velocity = [7.3, -2.1, 0.0]") +
                   block_toml("upper", rectangle({0.0, 0.999}, {1.0, 2.0}), "velocity = [7.3, -2.1, 0.0]"));
   const Simulation run = started(toml);
-  ASSERT_TRUE(!run.contacts().regions().empty());
+  ASSERT_TRUE(!regions_of(run).empty());
   EXPECT_EQ(memories(run.history())[0].state, ContactState::stick);
-  EXPECT_NEAR(run.contacts().regions()[0].shear, 0.0, 1e-11 * density * g) << "both fall the same";
+  EXPECT_NEAR(regions_of(run)[0].shear, 0.0, 1e-11 * density * g) << "both fall the same";
 }
 
 // Without the tangential dashpot, which would drag on a sliding block.
@@ -234,7 +235,7 @@ TEST(InitialFriction, ZeroLeavesZero) {
   for (const char *velocity : {"", "velocity = [1.0, 0.0, 0.0]"}) {
     const Simulation run = started(incline(slope, 30.0 * degree, flat_block(slope, velocity)),
                                    {"run.initial_friction=zero", "run.contact_damping=0"});
-    EXPECT_EQ(run.contacts().regions()[0].shear, 0.0);
+    EXPECT_EQ(regions_of(run)[0].shear, 0.0);
     EXPECT_EQ(memories(run.history())[0].shear, 0.0);
     EXPECT_NEAR(run.blocks().acceleration[0].u.x, g * std::sin(slope), 1e-11 * g);
   }

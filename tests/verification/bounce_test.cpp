@@ -21,7 +21,7 @@ Vec2 trial_velocity(const Simulation &simulation, int block) {
 }
 
 bool touching(const Simulation &simulation) {
-  return !simulation.contacts().regions().empty();
+  return !simulation.history().empty();
 }
 
 constexpr int num_phases = 12;

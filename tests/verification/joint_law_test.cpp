@@ -6,6 +6,7 @@
 #include "gcpdda/contact/bonds.hpp"
 #include "gcpdda/simulation/energy_ledger.hpp"
 #include "support/blocks.hpp"
+#include "support/contact_regions.hpp"
 #include "support/memories.hpp"
 
 #include <fmt/format.h>
@@ -66,7 +67,7 @@ Shear shear_of(Simulation &simulation) {
     step(simulation);
     double shear = 0.0;
     double normal = 0.0;
-    for (const RegionForce &force : simulation.contacts().regions()) {
+    for (const RegionForce &force : regions_of(simulation)) {
       shear += std::abs(dot(force.shear_force, perp(force.normal)));
       normal += force.normal_force;
     }
@@ -123,7 +124,7 @@ void expect_strength_of_bonds(const std::string &kind, const Sides &sides, doubl
   while (!pulled.finished()) {
     step(pulled);
     double now = 0.0;
-    for (const RegionForce &force : pulled.contacts().regions()) {
+    for (const RegionForce &force : regions_of(pulled)) {
       now += force.force.y;
     }
     pull = std::max(pull, now);
@@ -288,7 +289,7 @@ TEST(PullApart, TensionOnceAndThenNothing) {
     step(simulation);
     double pull = 0.0;
     bool bonded = false;
-    for (const RegionForce &force : simulation.contacts().regions()) {
+    for (const RegionForce &force : regions_of(simulation)) {
       pull += force.force.y;
       bonded = bonded || force.bonded;
     }
@@ -341,9 +342,9 @@ TEST(Overhang, StrongHoldsAndWeakBreaksOff) {
   Simulation simulation(Communicator::self(), shipped_scene("overhang", {"run.duration=3.2"}));
   run(simulation);
   std::vector<std::int64_t> bonded;
-  for (std::size_t k = 0; k < simulation.contacts().regions().size(); ++k) {
-    const CandidatePair &pair = simulation.candidates().pairs[simulation.contacts().regions()[k].pair];
-    if (simulation.contacts().regions()[k].bonded && simulation.blocks().is_fixed(pair.lower.value)) {
+  for (std::size_t k = 0; k < regions_of(simulation).size(); ++k) {
+    const CandidatePair &pair = simulation.candidates().pairs[regions_of(simulation)[k].pair];
+    if (regions_of(simulation)[k].bonded && simulation.blocks().is_fixed(pair.lower.value)) {
       bonded.push_back(simulation.blocks().properties[pair.higher.value].id.value);
     }
   }
@@ -391,7 +392,7 @@ TEST(Bond, DoesNoNetWorkOnAClosedPath) {
     double moment = 0.0;
     for (int b = 0; b < 2; ++b) {
       const auto row = static_cast<std::size_t>(b);
-      const BlockContactSum contact = sum_contacts(pair.candidates, pair.forces, row);
+      const BlockContactSum contact = pair.regions.sum_contacts(pair.candidates, row);
       if (k > 0) {
         const double work_done =
             0.5 * work(contact.force + last_force[b], pair.system.trial[row] - before[b]);
@@ -418,7 +419,7 @@ TEST(Bond, IsLeftAloneByACommonMotion) {
     pair.system.trial[0] = {along, angle};
     pair.system.trial[1] = {along + Rotation::of(angle)(arm) - arm, angle};
     pair.evaluate();
-    for (const RegionForce &force : pair.forces.regions()) {
+    for (const RegionForce &force : pair.regions.all()) {
       EXPECT_NEAR(norm(force.force), 0.0, 1e6 * 64.0 * 1e-14)
           << "displacements of 50 m, rounded, times k_n l";
     }

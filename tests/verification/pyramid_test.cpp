@@ -1,6 +1,7 @@
 // C6: a pyramid of unit squares settles and stays.
 
 #include "problem.hpp"
+#include "support/contact_regions.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ double joint_overlaps(const Simulation &simulation, int rows, bool right) {
     column.push_back(first + (rows - 1 - row + (right ? 1 : 0)) / 2);
   }
   double sum = 0.0;
-  for (const RegionForce &force : simulation.contacts().regions()) {
+  for (const RegionForce &force : regions_of(simulation)) {
     const CandidatePair &pair = simulation.candidates().pairs[force.pair];
     const std::int64_t a = simulation.blocks().properties[pair.lower.value].id.value;
     const std::int64_t b = simulation.blocks().properties[pair.higher.value].id.value;

@@ -1,6 +1,7 @@
 // B3, B4 and A5 for blocks with re-entrant vertices, and a wedge in a re-entrant corner.
 
 #include "problem.hpp"
+#include "support/contact_regions.hpp"
 #include "support/incline.hpp"
 
 #include "gcpdda/dynamics/deformable.hpp"
@@ -51,7 +52,7 @@ TEST(ReentrantBlock, SlidesDownAnIncline) {
       run_until(simulation, 1.0);
       const Vec2 before = velocity_of(simulation, 1).u;
       run(simulation);
-      EXPECT_EQ(simulation.contacts().regions().size(), block.regions);
+      EXPECT_EQ(regions_of(simulation).size(), block.regions);
       const double gained = dot(velocity_of(simulation, 1).u - before, incline.downhill());
       expect_value(fmt::format("B3 {} on th=30 phi={}: acceleration over 1..2 s", block.name, friction),
                    incline.acceleration(), gained, 1e-8);
@@ -72,7 +73,7 @@ TEST(ReentrantBlock, RestsOnAnIncline) {
       const RigidDof moved = displacement_of(simulation, 1) - rest;
       creep = std::max(creep, norm(moved.u) + std::abs(moved.r));
     }
-    EXPECT_EQ(simulation.contacts().regions().size(), block.regions);
+    EXPECT_EQ(regions_of(simulation).size(), block.regions);
     expect_below(fmt::format("B4 {} on th=30 phi=35: motion from 20 to 40 s over its size", block.name),
                  1e-12, creep / std::sqrt(reentrant_area));
   }
@@ -125,7 +126,7 @@ std::array<FaceForce, 2> settle(const Notch &notch, const std::string &what) {
 
   std::array<FaceForce, 2> faces;
   Vec2 total;
-  const auto regions = simulation.contacts().of_pair(0);
+  const auto regions = regions_of(simulation);
   EXPECT_EQ(regions.size(), 2U) << "one region a face";
   for (const RegionForce &region : regions) {
     const bool right = region.point.x > 0.0;
@@ -250,7 +251,7 @@ TEST(Collision, OfBlocksOfAllKindsKeepsMomentum) {
     linear = std::max(linear, norm(now.linear - before.linear) / before.linear_scale);
     angular = std::max(angular, std::abs(now.angular - start.angular) / start.angular_scale);
     for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
-      most_regions = std::max(most_regions, simulation.contacts().of_pair(k).size());
+      most_regions = std::max(most_regions, simulation.history().of_pair(k).size());
     }
   }
   ASSERT_FALSE(simulation.fault().has_value());

@@ -1,6 +1,7 @@
 // C4: the pull-out load of a symmetric roof wedge between two abutments (Crawford and Bray).
 
 #include "problem.hpp"
+#include "support/contact_regions.hpp"
 #include "support/memories.hpp"
 
 #include <fmt/format.h>
@@ -55,7 +56,7 @@ double pull_out_load(double ratio) {
           abutment(-1.0, ratio) + abutment(1.0, ratio);
   Simulation simulation(Communicator::self(), scene_of(toml));
   run_until(simulation, raised);
-  const auto faces = simulation.contacts().regions(); // the wedge is the lower block of both
+  const auto faces = regions_of(simulation); // the wedge is the lower block of both
   EXPECT_EQ(faces.size(), 2U);
   const double pressing = 0.5 * std::abs(faces[1].force.x - faces[0].force.x);
   EXPECT_LE(std::abs(faces[0].force.y + faces[1].force.y), 2e-4 * pressing) << "it is in equilibrium";
@@ -63,7 +64,7 @@ double pull_out_load(double ratio) {
   while (!simulation.finished()) {
     step(simulation);
     double load = 0.0;
-    for (const RegionForce &face : simulation.contacts().regions()) {
+    for (const RegionForce &face : regions_of(simulation)) {
       load += face.force.y;
     }
     peak = std::max(peak, load);

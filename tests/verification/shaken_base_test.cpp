@@ -3,6 +3,7 @@
 // Newmark's block on an inclined plane that shakes.
 
 #include "problem.hpp"
+#include "support/contact_regions.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -71,7 +72,7 @@ Slip shaken(double time_step, Drive drive) {
     step(simulation);
     const double gap = (displacement_of(simulation, 0) - displacement_of(simulation, 1)).u.x;
     const double speed = (velocity_of(simulation, 0) - velocity_of(simulation, 1)).u.x;
-    const RegionForce &joint = simulation.contacts().regions()[0];
+    const RegionForce joint = regions_of(simulation)[0];
     const bool slips = std::abs(joint.shear) >= joint.cap; // friction and its dashpot
     if (slip.begin == 0.0 && slips) {
       slip.begin = simulation.time();

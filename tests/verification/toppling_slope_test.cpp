@@ -1,6 +1,7 @@
 // C2: the toppling slope of Goodman and Bray.
 
 #include "problem.hpp"
+#include "support/contact_regions.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -56,7 +57,7 @@ std::map<int, Support> supports_of(const Simulation &simulation) {
     return name.starts_with("column") ? std::stoi(name.substr(6)) : 0;
   };
   std::map<int, Support> supports;
-  for (const RegionForce &force : simulation.contacts().regions()) {
+  for (const RegionForce &force : regions_of(simulation)) {
     const CandidatePair &pair = simulation.candidates().pairs[force.pair];
     const auto [lower, upper] = std::minmax({column_of(pair.lower), column_of(pair.higher)});
     const bool flat = std::abs(dot(force.normal, {0.5, -0.5 * std::sqrt(3.0)})) > 0.7; // joint of a base

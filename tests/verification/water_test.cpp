@@ -1,6 +1,7 @@
 // Water: buoyancy, the period of a raft, and Hoek and Bray's slide with a water-filled tension crack.
 
 #include "problem.hpp"
+#include "support/contact_regions.hpp"
 
 #include "gcpdda/geometry/polygon.hpp"
 
@@ -38,11 +39,11 @@ TEST(Water, SubmergedSquareHasItsBuoyancy) {
                              block_toml("square", rectangle({-0.5, 0.0}, {0.5, 1.0}));
     Simulation simulation(Communicator::self(), scene_of(toml));
     run(simulation);
-    ASSERT_EQ(simulation.contacts().regions().size(), 1U);
+    ASSERT_EQ(regions_of(simulation).size(), 1U);
     const double weight = (rock_density - (is_wet ? water_density : 0.0)) * earth_gravity;
     // Local damping leaves the last digits of the motion.
     expect_value(fmt::format("water: {} square on a floor, force of the joint, N/m", is_wet ? "wet" : "dry"),
-                 weight, simulation.contacts().regions()[0].normal_force, 1e-6);
+                 weight, regions_of(simulation)[0].normal_force, 1e-6);
   }
 }
 
@@ -135,8 +136,8 @@ TEST(Water, SlideWithATensionCrackCarriesEffectiveForces) {
   const Slide slide{.level = 3.0};
   Simulation simulation(Communicator::self(), scene_of(slide.toml(1.0, 4.0, "local_damping = 0.8\n")));
   run(simulation);
-  ASSERT_EQ(simulation.contacts().regions().size(), 1U);
-  const RegionForce &joint = simulation.contacts().regions()[0];
+  ASSERT_EQ(regions_of(simulation).size(), 1U);
+  const RegionForce joint = regions_of(simulation)[0];
   // The slide sinks by 2e-4 m, and its water is deeper by as much.
   expect_value("water: plane failure with tension crack, effective normal force, N/m", slide.normal(),
                joint.normal_force, 2e-4);

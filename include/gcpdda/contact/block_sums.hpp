@@ -28,21 +28,14 @@ struct ContactCount {
   ContactCount &operator+=(const ContactCount &other);
 };
 
-/// Which blocks wait for finish(): those that have to, or all, whose regions may be changed before.
-enum class Keep { waiting, all };
-
-/// The regions of all pairs with their details; ranges by pair.
-struct AllRegions {
-  std::span<const RegionRange> ranges;
-  std::span<const RegionForce> regions;
-};
-
 /// One rank counts what is known of a pair.
 bool counts_here(const BlockSystem &system, BlockIndex lower);
 
 class BlockSums {
 public:
-  void start(const BlockSystem &system, const Candidates &candidates, Keep keep);
+  void start(const BlockSystem &system, const Candidates &candidates);
+  /// The same regions are added once more, because they have changed: kept ones stay where they are.
+  void start_again(const BlockSystem &system);
 
   /// Place for what the only region of a plain pair of the group at hand does.
   RegionSums &open(std::uint32_t pair, bool born) {
@@ -56,11 +49,12 @@ public:
   /// All regions of some other pair.
   /// @param dyads  theirs, or none
   void keep(std::uint32_t pair, std::span<const RegionForce> regions, std::span<const RegionDyads> dyads);
-  /// What waits. May be called again after a change.
-  /// @param all  read if all blocks wait
-  ContactCount finish(const BlockSystem &system, const Candidates &candidates, const AllRegions &all);
+  /// What waits.
+  ContactCount finish(const BlockSystem &system, const Candidates &candidates);
 
-  /// Of region `number` of a pair, if they are kept; null where no block deforms.
+  /// Region `number` of a pair that is not plain, as it is kept.
+  RegionSums &kept(std::uint32_t pair, std::size_t number) { return kept_[kept_range_[pair].begin + number]; }
+  /// Null where no block deforms.
   RegionDyads *kept_dyads(std::uint32_t pair, std::size_t number) {
     return has_dyads_ ? &kept_dyads_[kept_range_[pair].begin + number] : nullptr;
   }
@@ -86,7 +80,7 @@ private:
     if (row.value >= is_added_.size()) {
       return When::never;
     }
-    return keep_ == Keep::all || is_added_[row.value] == 0 ? When::later : When::at_once;
+    return is_added_[row.value] == 0 ? When::later : When::at_once;
   }
   /// visit(number, its region, was it born) for the pairs of the group at hand that touch.
   template <class Visit> void for_touched(std::uint32_t group, Visit &&visit) const;
@@ -96,9 +90,10 @@ private:
   /// The only region of a pair of the group at hand.
   void keep_plain(std::uint32_t pair, const RegionSums &region, bool born);
   void add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads);
+  void clear_sums(const BlockSystem &system);
 
-  Keep keep_ = Keep::all;
   bool has_dyads_ = false;
+  bool is_again_ = false;
   std::span<const std::uint8_t> is_added_; ///< Candidates::is_added
   std::vector<BlockContactSum> sums_;
   std::vector<BlockGradientSum> gradients_;
@@ -109,9 +104,8 @@ private:
   std::vector<RegionSums> group_;
   std::vector<RegionDyads> group_dyads_; ///< if some block deforms
   std::array<std::uint8_t, PlainPair::pairs_in_group> seen_{};
-  // Regions on blocks that wait; if all do, their dyads alone, which stand nowhere else.
+  // Regions on blocks that wait.
   std::vector<RegionRange> kept_range_; ///< by pair
-  std::uint32_t num_kept_ = 0;
   std::vector<KeptRegion> kept_;
   std::vector<RegionDyads> kept_dyads_;
 };

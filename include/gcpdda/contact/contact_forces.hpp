@@ -106,9 +106,6 @@ struct PlainScene;
 struct PlainLanes;
 struct PlainResults;
 
-/// When RegionDetails are found: with the sums, or if find_details() asks for them.
-enum class Details { now, on_demand };
-
 /// Evaluates pairs; buffers live as long as it does.
 class ContactForces {
 public:
@@ -123,51 +120,92 @@ public:
   [[nodiscard]] const ContactParameters &parameters() const { return parameters_; }
 
   /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory,
-  /// which moves on to this configuration. Sums of all regions are kept.
+  /// which moves on to this configuration.
   ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history) {
     find_motions(system, 0, system.num_owned);
-    evaluate_interior(system, candidates, history, Details::now, Keep::all);
+    evaluate_interior(system, candidates, history);
     return evaluate_border(system, candidates, history);
   }
   /// How rows [first, last) move, from their trial configurations and velocities: once these are known, and
   /// of all owned rows before what follows.
   void find_motions(const BlockSystem &system, std::size_t first, std::size_t last);
   /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
-  void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
-                         Details details, Keep keep);
+  void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history);
   /// ... and then the rest.
   ForceReport evaluate_border(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history);
 
   /// What the regions do to the blocks; of blocks that wait only once it is finished.
   [[nodiscard]] BlockSums &sums() { return sums_; }
-  ContactCount finish_sums(const BlockSystem &system, const Candidates &candidates) {
-    return sums_.finish(system, candidates, {ranges_, regions()});
-  }
   [[nodiscard]] const BlockSums &sums() const { return sums_; }
-
-  /// The details of all regions, if they were not found with the last evaluation: as long as trial
-  /// configuration and candidates are those of it.
-  void find_details(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history);
-
-  /// All touching regions, those of a pair together, which must have been found with their details.
-  [[nodiscard]] std::span<const RegionForce> regions() const { return {forces_.data(), num_forces_}; }
-  /// Which of its pair's regions that is, in the order of ContactHistory.
-  [[nodiscard]] std::size_t number_in_pair(std::size_t region) const {
-    return region - ranges_[forces_[region].pair].begin;
+  ContactCount finish_sums(const BlockSystem &system, const Candidates &candidates) {
+    return sums_.finish(system, candidates);
   }
-  /// Those of one pair.
-  [[nodiscard]] std::span<const RegionForce> of_pair(std::size_t pair) const {
-    return {forces_.data() + ranges_[pair].begin, ranges_[pair].count};
+
+  // Regions with their details are found group by group, from what the last evaluation left behind: as long
+  // as trial configuration and candidates are those of it.
+
+  /// visit(pair, its regions) for those of pairs [first, last) that touch, in ascending order. Regions are
+  /// numbered as in ContactHistory.
+  template <class Visit>
+  void for_regions(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
+                   std::uint32_t first, std::uint32_t last, Visit &&visit) {
+    for (std::uint32_t begin = first, end = first; begin < last; begin = end) {
+      end = std::min(last, (begin / PlainPair::pairs_in_group + 1) * PlainPair::pairs_in_group);
+      find_details(system, candidates, history, begin, end);
+      for (std::uint32_t pair = begin; pair < end; ++pair) {
+        if (const std::span<RegionForce> regions = at_hand(candidates, pair); !regions.empty()) {
+          visit(pair, std::span<const RegionForce>(regions));
+        }
+      }
+    }
+  }
+
+  /// The shear of a region may be replaced by friction alone, also in its memory: for the initial state.
+  class ShearToSet {
+  public:
+    ShearToSet(const BlockSystem &system, const CandidatePair &pair, RegionForce &force, RegionDyads *dyads,
+               RegionState &memory);
+    /// @param shear  N/m
+    void set(double shear);
+
+    const CandidatePair &pair;
+    const RegionForce &force;
+    RegionState &memory;
+    Vec2 tangent;
+    Vec2 arm_lower; ///< of x_r from the trial centroids
+    Vec2 arm_higher;
+
+  private:
+    RegionForce &changing_;
+    RegionDyads *dyads_; ///< of deformable blocks
+  };
+  /// change(ShearToSet) for all regions; sums are made anew and to be finished once more.
+  template <class Change>
+  void change_shear(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
+                    Change &&change) {
+    const auto all = static_cast<std::uint32_t>(candidates.pairs.size());
+    sums_.start_again(system);
+    is_changing_ = true;
+    for (std::uint32_t begin = 0, end = 0; begin < all; begin = end) {
+      end = std::min(all, begin + PlainPair::pairs_in_group);
+      find_details(system, candidates, history, begin, end);
+      for (std::uint32_t pair = begin; pair < end; ++pair) {
+        const std::span<RegionForce> regions = at_hand(candidates, pair);
+        for (std::size_t k = 0; k < regions.size(); ++k) {
+          change(ShearToSet(system, candidates.pairs[pair], regions[k],
+                            dyads_at_hand(system, candidates, pair, k), history.state(pair, k)));
+          put_sums(candidates, pair, k, regions[k]);
+        }
+      }
+      sums_.close_group(system, candidates, begin / PlainPair::pairs_in_group);
+    }
+    is_changing_ = false;
   }
 
   /// What slip has done against the pressure in the last evaluation, off the work of friction in the ledger
   /// of each block.
   void add_dilation_works(const Candidates &candidates, BlockSystem &system);
-
-  /// Replace the shear of a region, friction alone; for the initial state, where all are kept. Arms of x_r
-  /// from the trial centroids.
-  void set_shear(std::size_t region, double shear, Vec2 lower_arm, Vec2 higher_arm);
 
 private:
   struct RelativeVelocity;
@@ -207,10 +245,17 @@ private:
   PlainResults open_regions(const PlainLanes &lanes, unsigned touching, PlainOverlap overlap);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, PlainOverlap overlap);
-  /// What lanes do not know of them.
-  static void note_details(std::uint32_t pair, bool is_born, RegionDetails &details);
   /// Once more, with details.
   void store_again(const PlainLanes &lanes, unsigned touching);
+  /// Of pairs [first, last), which are of one group.
+  void find_details(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
+                    std::uint32_t first, std::uint32_t last);
+  /// Those of a pair of the group at hand.
+  std::span<RegionForce> at_hand(const Candidates &candidates, std::uint32_t pair);
+  RegionDyads *dyads_at_hand(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
+                             std::size_t number);
+  void put_sums(const Candidates &candidates, std::uint32_t pair, std::size_t number,
+                const RegionForce &force);
   /// Visit entries of Candidates::plain that are alike, as many at a time as there are lanes.
   template <class Visit>
   void for_batches(const Candidates &candidates, const ContactHistory &history,
@@ -271,16 +316,15 @@ private:
   std::vector<std::uint32_t> births_;    ///< plain pairs whose new regions must choose among laws
   std::array<CandidatePair, 8> own_;     ///< constants of mixed pairs at hand, by lane
   BlockSums sums_;
-  // The first num_forces_; the others are of evaluations before and spare making new ones. No longer than
-  // regions with details need.
+  // The regions of pairs that are not plain are the first num_forces_; those of plain pairs of the group at
+  // hand follow. The others are of evaluations before and spare making new ones.
   std::vector<RegionForce> forces_;
   std::size_t num_forces_ = 0;
-  Details details_ = Details::now; ///< asked for with the evaluation
-  bool has_details_ = true;
-  bool is_again_ = false; ///< find_details() is at work
-  /// Of forces_, one a pair; without details only of those that are not plain.
-  std::vector<RegionRange> ranges_;
-  ForceReport report_; ///< of what has been evaluated so far
+  std::vector<RegionRange> ranges_;   ///< of forces_, by pair that is not plain
+  std::vector<std::uint32_t> places_; ///< in forces_, by plain pair of the group at hand
+  bool is_again_ = false;             ///< find_details() is at work
+  bool is_changing_ = false;          ///< change_shear() is
+  ForceReport report_;                ///< of what has been evaluated so far
   /// What the history becomes, but for ContactHistory::plain, whose entries are written where they are read;
   /// afterwards what it was.
   ContactHistory next_;
@@ -302,15 +346,8 @@ private:
   ClosedPair closed_;                 ///< the same, with one of these taken out
 };
 
-/// Of one block, in the order of the other blocks' ids.
-BlockContactSum sum_contacts(const Candidates &candidates, const ContactForces &contacts, std::size_t row);
-
 /// int t X^T with X = F^-1 (x - x_c) of what BlockSums has added.
 BlockGradientSum in_reference_axes(const BlockGradientSum &sum, const Mat2 &to_reference);
-
-/// (1/area) int sym(x f) of a block's contacts about its trial centroid: xx, yy, xy in Pa, tension positive.
-std::array<double, 3> mean_stress(const BlockSystem &system, const Candidates &candidates,
-                                  const ContactForces &contacts, std::size_t row);
 
 /// One region's part of a block's force and dyad about the block's trial centroid.
 struct ContactPart {
@@ -324,7 +361,7 @@ std::vector<TrialIncrement> trial_increments(const BlockSystem &system);
 
 /// Slide along t_r of the last evaluation's contact point when the system has moved on to its next trial
 /// configuration, by these increments.
-double coming_slide(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
+double coming_slide(const BlockSystem &system, const CandidatePair &pair, Vec2 point, Vec2 normal,
                     std::span<const TrialIncrement> increments);
 
 /// Material point X of a block that is now at x, in the trial configuration.

@@ -63,7 +63,8 @@ std::vector<Vec2> find_swelling(const BlockSystem &system,
 /// Move the vertices of a row, and let what follows from the shape follow; its mass and area stay.
 void swell(BlockSystem &system, std::size_t row, std::span<const Vec2> by);
 
-/// Put the shear of the in-situ stress into all regions with friction and all bonds of the evaluated pairs.
+/// Put the shear of the in-situ stress into all regions with friction and all bonds of the evaluated pairs;
+/// sums of contacts are to be finished after that.
 ///
 /// @return largest share of such a shear that its strength cuts off, and 0 where none is cut
 double put_in_situ_shear(const BlockSystem &system, const Candidates &candidates, const InSituStress &stress,

@@ -18,50 +18,41 @@ namespace gcpdda {
 class InitialStick {
 public:
   /// Regions with friction among the evaluated pairs; sliding ones are put on their cap at once. The
-  /// arguments are to outlive it.
+  /// arguments are to outlive it. Whenever shear has changed, here and below, sums of contacts are to be
+  /// finished once more.
   InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
                ContactHistory &history);
 
   /// Frictional contacts of each row; correct for owned rows, to be copied to ghosts by the caller.
   [[nodiscard]] std::vector<double> &contact_counts() { return contact_counts_; }
-  [[nodiscard]] bool empty() const { return sticking_.empty(); }
 
-  /// Largest change of relative tangential acceleration (m/s2) that a full correction of one region, cut at
-  /// its cap, would still make. Accelerations of owned rows and ghosts stand in the system.
-  [[nodiscard]] double residual(const BlockSystem &system) const;
-  /// One sweep over all sticking regions.
-  void sweep(const BlockSystem &system);
+  /// One sweep over all sticking regions, from accelerations of owned rows and ghosts in the system.
+  /// @return largest change of relative tangential acceleration (m/s2) that a full correction of one region,
+  /// cut at its cap, would have made; if zero, nothing has changed
+  double sweep();
   /// Back to no stick force anywhere.
-  void reset(const BlockSystem &system);
+  void reset();
 
 private:
-  struct Region {
-    std::size_t number = 0; ///< of the region
-    RegionState *memory = nullptr;
-    Vec2 tangent;
-    Vec2 arm_lower;
-    Vec2 arm_higher;
-    double cap = 0.0;
-    std::size_t lower = 0;
-    std::size_t higher = 0;
-  };
-
+  using Region = ContactForces::ShearToSet;
+  /// Relative velocity along the tangent, m/s; 0 up to rounding.
+  [[nodiscard]] double sliding_of(const Region &region) const;
+  [[nodiscard]] bool sticks(const Region &region) const;
+  /// Give change(region) to all that stick.
+  template <class Change> void change_sticking(Change &&change);
   /// w of both blocks, 1/kg; 0 of a fixed one.
   struct Yields {
     double lower = 0.0;
     double higher = 0.0;
   };
-  static Yields yields_of(const BlockSystem &system, const Region &region);
-  static double tangential_acceleration(const BlockSystem &system, const Region &region);
+  [[nodiscard]] Yields yields_of(const Region &region) const;
+  [[nodiscard]] double tangential_acceleration(const Region &region) const;
   static double corrected(const Region &region, double change);
-  /// Made from its details each time: there are as many as contacts.
-  [[nodiscard]] Region region_of(const BlockSystem &system, std::size_t number) const;
-  void set_shear(const Region &region, double shear);
 
-  ContactForces &forces_;
+  const BlockSystem &system_;
   const Candidates &candidates_;
+  ContactForces &forces_;
   ContactHistory &history_;
-  std::vector<std::uint32_t> sticking_; ///< numbers of regions
   std::vector<double> contact_counts_;
 };
 

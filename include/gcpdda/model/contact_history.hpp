@@ -78,6 +78,12 @@ struct ContactHistory {
     return ranges.empty() ? std::span<RegionMemory>()
                           : std::span(regions).subspan(ranges[pair].begin, ranges[pair].count);
   }
+  /// Does it touch, or hold by a bond?
+  [[nodiscard]] bool is_living(std::size_t pair) const { return has_plain(pair) || !of_other(pair).empty(); }
+  [[nodiscard]] bool empty() const {
+    return regions.empty() &&
+           std::ranges::all_of(overlaps, [](PlainOverlap overlap) { return overlap == PlainOverlap::none; });
+  }
   /// visit(memory) for the regions and bonds of a pair.
   template <class Visit> void for_pair(std::size_t pair, Visit &&visit) const {
     if (has_plain(pair)) {

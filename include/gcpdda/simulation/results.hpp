@@ -37,8 +37,12 @@ public:
   void append(std::int64_t first, std::int64_t last, std::vector<ContactRow> &rows) const override;
 
 private:
-  /// act(pair) for this rank's touching pairs with a lower id in the range.
-  template <class Act> void for_each_pair(std::int64_t first, std::int64_t last, Act act) const;
+  struct Pairs {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+  /// Those with a lower id in [first, last).
+  [[nodiscard]] Pairs pairs_from(std::int64_t first, std::int64_t last) const;
 
   const Simulation &simulation_;
 };

@@ -15,11 +15,13 @@
 #include "gcpdda/partition/domain_map.hpp"
 #include "gcpdda/simulation/balance.hpp"
 #include "gcpdda/simulation/bolts.hpp"
+#include "gcpdda/simulation/contact_digest.hpp"
 #include "gcpdda/simulation/stages.hpp"
 #include "gcpdda/simulation/time_plan.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -140,10 +142,19 @@ public:
   [[nodiscard]] const BlockSystem &blocks() const { return blocks_; }
   [[nodiscard]] const Candidates &candidates() const { return candidates_; }
   [[nodiscard]] const ContactHistory &history() const { return history_; }
-  /// With all details.
-  [[nodiscard]] const ContactForces &contacts() const {
-    contacts_.find_details(blocks_, candidates_, history_);
-    return contacts_;
+  [[nodiscard]] const ContactForces &contacts() const { return contacts_; }
+  /// Of the last evaluation: to be asked for before the trial configuration or the neighbourhood changes.
+  [[nodiscard]] const ContactDigest &contact_digest() const {
+    if (!is_digested_) {
+      digest_.find(blocks_, candidates_, history_, contacts_);
+      is_digested_ = true;
+    }
+    return digest_;
+  }
+  /// visit(pair, its regions) for those of pairs [first, last) that touch, with the same restriction.
+  template <class Visit> void for_regions(std::size_t first, std::size_t last, Visit &&visit) const {
+    contacts_.for_regions(blocks_, candidates_, history_, static_cast<std::uint32_t>(first),
+                          static_cast<std::uint32_t>(last), visit);
   }
   [[nodiscard]] const BlockForces &forces() const { return forces_; }
   [[nodiscard]] const Bolts &bolts() const { return bolts_; }
@@ -175,12 +186,12 @@ public:
   [[nodiscard]] std::vector<RegionRecord> contacts_that_count_here() const;
 
   /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On
-  /// return the state is as before.
+  /// return the state is as before, and what contacts say as well.
   template <class Look> void look_ahead(Look &&look) {
     const std::vector<RigidDof> trial = blocks_.trial;
     const std::vector<RigidDof> previous = blocks_.trial_previous;
     const std::vector<Deformation> deformation = blocks_.deformation;
-    predict_own();
+    predict_own(false);
     finish_ghosts();
     look(blocks_);
     blocks_.trial = trial;
@@ -251,9 +262,10 @@ private:
   [[nodiscard]] std::vector<RegionRecord> remembered_contacts() const;
   void refresh(std::vector<RegionRecord> memory);
   bool rebalance_if_uneven();
-  void predict_own();
+  /// @param for_contacts  which are to be evaluated there
+  void predict_own(bool for_contacts);
   void finish_ghosts();
-  void prescribe_trials();
+  void prescribe_trials(const std::function<void(std::size_t first, std::size_t last)> &then);
   void prescribe_motion();
   void evaluate_contacts();
   void evaluate_bolts();
@@ -293,6 +305,8 @@ private:
   Candidates candidates_;
   ContactHistory history_;
   mutable ContactForces contacts_; ///< details are found when somebody asks
+  mutable ContactDigest digest_;
+  mutable bool is_digested_ = false;
   Bolts bolts_;
   BlockForces forces_; ///< at the last evaluation
   /// What free blocks' AppliedForces follow from, if nothing has touched them or their masses since.
