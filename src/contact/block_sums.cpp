@@ -91,10 +91,9 @@ void BlockSums::start(const BlockSystem &system, const Candidates &candidates) {
   clear_sums(system);
   group_.resize(PlainPair::pairs_in_group);
   group_dyads_.resize(has_dyads_ ? PlainPair::pairs_in_group : 0);
-  kept_range_.resize(candidates.pairs.size());
-  for (const std::uint32_t pair : candidates.waiting) {
-    kept_range_[pair] = {};
-  }
+  waiting_ = candidates.waiting;
+  kept_range_.assign(waiting_.size(), {});
+  last_asked_ = 0;
   kept_.clear();
   kept_dyads_.clear();
 }
@@ -190,6 +189,13 @@ void BlockSums::close_group(const BlockSystem &system, const Candidates &candida
   seen_.fill(0);
 }
 
+RegionRange &BlockSums::range_of(std::uint32_t pair) {
+  const bool is_behind = waiting_[last_asked_] <= pair;
+  const auto from = waiting_.begin() + static_cast<std::ptrdiff_t>(is_behind ? last_asked_ : 0);
+  last_asked_ = static_cast<std::size_t>(std::lower_bound(from, waiting_.end(), pair) - waiting_.begin());
+  return kept_range_[last_asked_];
+}
+
 void BlockSums::keep_plain(std::uint32_t pair, const RegionSums &region, bool born) {
   const RegionDyads *dyads = has_dyads_ ? &group_dyads_[pair % PlainPair::pairs_in_group] : nullptr;
   if (is_again_) {
@@ -199,7 +205,7 @@ void BlockSums::keep_plain(std::uint32_t pair, const RegionSums &region, bool bo
     }
     return;
   }
-  kept_range_[pair] = {static_cast<std::uint32_t>(kept_.size()), 1};
+  range_of(pair) = {static_cast<std::uint32_t>(kept_.size()), 1};
   kept_.push_back({region, born});
   if (dyads != nullptr) {
     kept_dyads_.push_back(*dyads);
@@ -208,7 +214,7 @@ void BlockSums::keep_plain(std::uint32_t pair, const RegionSums &region, bool bo
 
 void BlockSums::keep(std::uint32_t pair, std::span<const RegionForce> regions,
                      std::span<const RegionDyads> dyads) {
-  kept_range_[pair] = {static_cast<std::uint32_t>(kept_.size()), static_cast<std::uint32_t>(regions.size())};
+  range_of(pair) = {static_cast<std::uint32_t>(kept_.size()), static_cast<std::uint32_t>(regions.size())};
   for (const RegionForce &region : regions) {
     kept_.push_back({region, region.born});
   }
@@ -234,10 +240,10 @@ ContactCount BlockSums::finish(const BlockSystem &system, const Candidates &cand
       }
     }
   };
-  for (const std::uint32_t number : candidates.waiting) {
-    const RegionRange range = kept_range_[number];
+  for (std::size_t k = 0; k < waiting_.size(); ++k) {
+    const RegionRange range = kept_range_[k];
     if (range.count > 0) {
-      const CandidatePair &pair = candidates.pairs[number];
+      const CandidatePair &pair = candidates.pairs[waiting_[k]];
       count += counted(system, pair, kept_[range.begin].born);
       for (std::uint32_t i = 0; i < range.count; ++i) {
         add(pair, range.begin + i);

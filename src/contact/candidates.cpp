@@ -357,30 +357,6 @@ void append_places(bool is_plain, PlainOverlap overlap, std::size_t begin, Conta
   }
 }
 
-/// Pairs ascend by (lower, higher): a block meets all lower partners, by id, before all higher ones, by id.
-void list_contacts_of_blocks(const BlockSystem &system, Candidates &candidates) {
-  candidates.contact_begin.assign(system.num_owned + 1, 0);
-  const auto for_owned_ends = [&](auto &&visit) {
-    for (std::size_t k = 0; k < candidates.pairs.size(); ++k) {
-      const auto pair = static_cast<std::uint32_t>(k);
-      if (candidates.pairs[k].higher.value < system.num_owned) {
-        visit(candidates.pairs[k].higher.value, BlockContact(pair, false));
-      }
-      if (candidates.pairs[k].lower.value < system.num_owned) {
-        visit(candidates.pairs[k].lower.value, BlockContact(pair, true));
-      }
-    }
-  };
-  for_owned_ends([&](std::uint32_t row, BlockContact) { ++candidates.contact_begin[row + 1]; });
-  for (std::size_t i = 0; i < system.num_owned; ++i) {
-    candidates.contact_begin[i + 1] += candidates.contact_begin[i];
-  }
-  candidates.block_contacts.resize(candidates.contact_begin.back());
-  std::vector<std::uint32_t> next(candidates.contact_begin.begin(), candidates.contact_begin.end() - 1);
-  for_owned_ends(
-      [&](std::uint32_t row, BlockContact contact) { candidates.block_contacts[next[row]++] = contact; });
-}
-
 } // namespace
 
 std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin) {
@@ -486,7 +462,6 @@ Candidates make_candidates(const BlockSystem &system,
     history.ranges = {};
   }
   find_waiting(system, candidates);
-  list_contacts_of_blocks(system, candidates);
   return candidates;
 }
 

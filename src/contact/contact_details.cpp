@@ -29,25 +29,17 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
   others_.clear();
   places_.assign(PlainPair::pairs_in_group, no_place);
   std::size_t num_forces = num_forces_;
-  const std::vector<PlainPair> &plain = candidates.plain;
-  const auto note_known = [&](std::size_t begin, std::size_t end) {
-    const auto from = plain.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto to = plain.begin() + static_cast<std::ptrdiff_t>(end);
-    const std::uint32_t group = first / PlainPair::pairs_in_group;
-    auto at = std::partition_point(from, to, [&](const PlainPair &p) { return p.group() < group; });
-    for (; at != to && at->group() == group; ++at) {
-      const PlainOverlap overlap = history.overlaps[at->pair];
-      if (overlap != PlainOverlap::none && first <= at->pair && at->pair < last) {
-        places_[at->pair % PlainPair::pairs_in_group] = static_cast<std::uint32_t>(num_forces++);
-        (overlap == PlainOverlap::corners ? corners_
-         : overlap == PlainOverlap::face  ? faces_
-                                          : others_)
-            .push_back(static_cast<std::uint32_t>(at - plain.begin()));
-      }
+  candidates.for_plain_of_group(first / PlainPair::pairs_in_group, [&](std::size_t entry) {
+    const std::uint32_t pair = candidates.plain[entry].pair;
+    const PlainOverlap overlap = history.overlaps[pair];
+    if (overlap != PlainOverlap::none && first <= pair && pair < last) {
+      places_[pair % PlainPair::pairs_in_group] = static_cast<std::uint32_t>(num_forces++);
+      (overlap == PlainOverlap::corners ? corners_
+       : overlap == PlainOverlap::face  ? faces_
+                                        : others_)
+          .push_back(static_cast<std::uint32_t>(entry));
     }
-  };
-  note_known(0, candidates.num_interior_plain);
-  note_known(candidates.num_interior_plain, plain.size());
+  });
   grow(forces_, num_forces);
   is_again_ = true;
   evaluate_known({system, candidates, history, motions_, deforming_, parameters_.damping_ratio,

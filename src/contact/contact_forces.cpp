@@ -387,18 +387,18 @@ void ContactForces::note_depth(const BlockSystem &system, const CandidatePair &p
   }
 }
 
-std::vector<TrialIncrement> trial_increments(const BlockSystem &system) {
-  std::vector<TrialIncrement> increments(system.num_rows());
+ComingConfiguration::ComingConfiguration(const BlockSystem &system)
+    : increments(system.num_rows()), centroids(system.trial_centroid) {
   for (std::size_t row = 0; row < system.first_fixed(); ++row) {
     increments[row] = trial_increment(system, row);
   }
-  return increments;
 }
 
-double coming_slide(const BlockSystem &system, const CandidatePair &pair, Vec2 point, Vec2 normal,
-                    std::span<const TrialIncrement> increments) {
-  return dot(slide_at(system, pair, point, increments[pair.lower.value], increments[pair.higher.value]),
-             perp(normal));
+double ComingConfiguration::slide(const CandidatePair &pair, Vec2 point, Vec2 normal) const {
+  const auto increment_of = [&](BlockIndex row) {
+    return increment_at(increments[row.value], point - centroids[row.value]);
+  };
+  return dot(increment_of(pair.lower) - increment_of(pair.higher), perp(normal));
 }
 
 } // namespace gcpdda

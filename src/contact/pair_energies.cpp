@@ -28,7 +28,7 @@ std::vector<const PlainPair *> fill(const std::vector<const PlainPair *> &pairs,
     const PlainBatch::Energies found = evaluate(lanes);
     for (std::size_t i = 0; i < lanes.count; ++i) {
       if ((found.known >> i & 1U) != 0) {
-        energies[lanes.pair[i]->pair] = found.energy[i];
+        energies[lanes.pair[i]->pair % PlainPair::pairs_in_group] = found.energy[i];
       } else {
         left.push_back(lanes.pair[i]);
       }
@@ -39,29 +39,32 @@ std::vector<const PlainPair *> fill(const std::vector<const PlainPair *> &pairs,
 
 } // namespace
 
-std::vector<double> find_energies(const BlockSystem &system, const Candidates &candidates,
-                                  Instructions instructions) {
-  std::vector<double> energies(candidates.pairs.size(), std::numeric_limits<double>::quiet_NaN());
-  std::vector<const PlainPair *> corners;
-  std::vector<const PlainPair *> others;
+PairEnergies::PairEnergies(Instructions instructions) : batch_(make_plain_batch(instructions)) {}
+PairEnergies::~PairEnergies() = default;
+
+std::span<const double> PairEnergies::of_group(const BlockSystem &system, const Candidates &candidates,
+                                               std::uint32_t group) {
+  energies_.assign(PlainPair::pairs_in_group, std::numeric_limits<double>::quiet_NaN());
+  corners_.clear();
+  others_.clear();
   const auto is_simple = [&](BlockIndex row) { return system.num_vertices(row.value) <= most_corner_edges; };
-  for (const PlainPair &plain : candidates.plain) {
+  candidates.for_plain_of_group(group, [&](std::size_t entry) {
+    const PlainPair &plain = candidates.plain[entry];
     const CandidatePair &pair = candidates.pairs[plain.pair];
     if (!plain.kind.is_deformable && is_simple(pair.lower) && is_simple(pair.higher) &&
         system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
-      (plain.kind.may_be_corners() ? corners : others).push_back(&plain);
+      (plain.kind.may_be_corners() ? corners_ : others_).push_back(&plain);
     }
-  }
-  const std::unique_ptr<PlainBatch> batch = make_plain_batch(instructions);
+  });
   const auto left = fill(
-      corners, batch->width(),
-      [&](const PlainLanes &lanes) { return batch->find_corner_energies(system, candidates, lanes); },
-      energies);
-  others.insert(others.end(), left.begin(), left.end());
+      corners_, batch_->width(),
+      [&](const PlainLanes &lanes) { return batch_->find_corner_energies(system, candidates, lanes); },
+      energies_);
+  others_.insert(others_.end(), left.begin(), left.end());
   fill(
-      others, batch->width(),
-      [&](const PlainLanes &lanes) { return batch->find_energies(system, candidates, lanes); }, energies);
-  return energies;
+      others_, batch_->width(),
+      [&](const PlainLanes &lanes) { return batch_->find_energies(system, candidates, lanes); }, energies_);
+  return energies_;
 }
 
 } // namespace gcpdda

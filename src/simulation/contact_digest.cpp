@@ -3,10 +3,9 @@
 namespace gcpdda {
 
 void ContactDigest::find(const BlockSystem &blocks, const Candidates &candidates,
-                         const ContactHistory &history, ContactForces &contacts) {
+                         const ContactHistory &history, ContactForces &contacts, const Look &look) {
   on_rows.assign(blocks.num_owned, {});
   on_fixed.clear();
-  springs.clear();
   const auto add = [&](const CandidatePair &pair, const RegionForce &force, bool is_lower) {
     const std::uint32_t row = (is_lower ? pair.lower : pair.higher).value;
     if (row >= blocks.num_owned && !blocks.is_fixed(row)) {
@@ -23,14 +22,11 @@ void ContactDigest::find(const BlockSystem &blocks, const Candidates &candidates
   const auto all = static_cast<std::uint32_t>(candidates.pairs.size());
   contacts.for_regions(blocks, candidates, history, 0, all,
                        [&](std::uint32_t number, std::span<const RegionForce> regions) {
-                         const CandidatePair &pair = candidates.pairs[number];
-                         const bool counts = counts_here(blocks, pair.lower);
-                         for (std::uint32_t k = 0; k < regions.size(); ++k) {
-                           const RegionForce &force = regions[k];
-                           add(pair, force, true);
-                           add(pair, force, false);
-                           if (counts && (force.bonded || history.state(number, k).shear != 0.0)) {
-                             springs.push_back({number, k, force.point, force.normal});
+                         for (std::size_t k = 0; k < regions.size(); ++k) {
+                           add(candidates.pairs[number], regions[k], true);
+                           add(candidates.pairs[number], regions[k], false);
+                           if (look) {
+                             look(number, k, regions[k]);
                            }
                          }
                        });

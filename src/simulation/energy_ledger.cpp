@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace gcpdda {
 
@@ -121,7 +122,8 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
 
 void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
   const BlockSystem &blocks = simulation.blocks();
-  const std::vector<double> known = find_energies(blocks, simulation.candidates());
+  PairEnergies energies;
+  std::span<const double> of_group;
   const ContactHistory &history = simulation.history();
   const auto half_stiffness_of = [&](std::int32_t law) {
     return simulation.contacts().parameters().constants(law).half_stiffness;
@@ -131,15 +133,21 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
     const bool is_dilated = history.is_dilated(k);
+    const std::size_t place = k % PlainPair::pairs_in_group;
+    if (place == 0) {
+      of_group = energies.of_group(blocks, simulation.candidates(),
+                                   static_cast<std::uint32_t>(k / PlainPair::pairs_in_group));
+    }
     if (!simulation.counts_here(pair) || !(is_dilated || blocks.box[a].meets(blocks.box[b]))) {
       continue;
     }
-    const bool is_known = !std::isnan(known[k]) && !is_dilated;
+    const double energy = of_group[place];
+    const bool is_known = !std::isnan(energy) && !is_dilated;
     const bool has_plain = history.has_plain(k); // one region, whose law does not change
     const std::int32_t law = has_plain && pair.is_mixed ? history.plain[k].law : pair.law;
     const bool has_one_law = has_plain || !pair.is_mixed;
-    if (is_known && (has_one_law || known[k] == 0.0)) {
-      sum.add(share * half_stiffness_of(law) * known[k]);
+    if (is_known && (has_one_law || energy == 0.0)) {
+      sum.add(share * half_stiffness_of(law) * energy);
       continue;
     }
     const BlockView first = view_of(blocks, a);
@@ -149,46 +157,80 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
     } else {
       const double half_stiffness =
           has_one_law ? half_stiffness_of(law) : mean_stiffness(simulation, k, first, second);
-      sum.add(share * half_stiffness * (is_known ? known[k] : overlap_energy(first, second)));
+      sum.add(share * half_stiffness * (is_known ? energy : overlap_energy(first, second)));
     }
   }
+}
+
+// Energy of the stick springs and of open bonds; in the middle of two trial configurations F_n F_{n+1}/(2 k),
+// the form that the leapfrog conserves exactly. Slipping springs keep theirs.
+
+struct Spring {
+  double stiffness = 0.0; ///< k_t, N/m2
+  double half_stiffness = 0.0;
+};
+
+Spring spring_of(const Simulation &simulation, const CandidatePair &pair, const RegionState &memory) {
+  const LawConstants constants =
+      simulation.contacts().parameters().constants(memory.law >= 0 ? memory.law : pair.law);
+  return {constants.tangential_stiffness * memory.longest, constants.half_stiffness};
+}
+
+/// visit(pair, memory) for all regions and bonds that count here.
+template <class Visit> void for_memories(const Simulation &simulation, Visit &&visit) {
+  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
+    const CandidatePair &pair = simulation.candidates().pairs[k];
+    if (simulation.counts_here(pair)) {
+      simulation.history().for_pair(k, [&](const RegionMemory &memory) { visit(pair, memory); });
+    }
+  }
+}
+
+void add_stick(const Simulation &simulation, ExactSum &sum) {
+  for_memories(simulation, [&](const CandidatePair &pair, const RegionMemory &memory) {
+    const Spring spring = spring_of(simulation, pair, memory);
+    if (memory.is_bond()) {
+      sum.add(2.0 * spring.half_stiffness * bond_energy(simulation.blocks(), pair, memory, false));
+    }
+    if (memory.shear != 0.0) {
+      sum.add(0.5 * memory.shear * memory.shear / spring.stiffness);
+    }
+  });
+}
+
+/// In the middle, while the coming configuration is looked at.
+void add_bonds(const Simulation &simulation, ExactSum &sum) {
+  for_memories(simulation, [&](const CandidatePair &pair, const RegionMemory &bond) {
+    if (!bond.is_bond()) {
+      return;
+    }
+    const Spring spring = spring_of(simulation, pair, bond);
+    sum.add(2.0 * spring.half_stiffness * bond_energy(simulation.blocks(), pair, bond, true));
+    if (bond.shear != 0.0) {
+      const double slide = opening_of(simulation.blocks(), pair, bond, Configuration::trial).slide;
+      const double next =
+          bond.shear + (bond.state == ContactState::slip ? 0.0 : spring.stiffness * (slide - bond.slip));
+      sum.add(0.5 * bond.shear * next / spring.stiffness);
+    }
+  });
+}
+
+/// In the middle, of all but bonds.
+void add_coming_stick(const Simulation &simulation, const ComingConfiguration &coming, ExactSum &sum) {
+  simulation.digest_contacts([&](std::uint32_t number, std::size_t k, const RegionForce &force) {
+    const CandidatePair &pair = simulation.candidates().pairs[number];
+    const RegionState &memory = simulation.history().state(number, k);
+    if (force.bonded || memory.shear == 0.0 || !simulation.counts_here(pair)) {
+      return;
+    }
+    const Spring spring = spring_of(simulation, pair, memory);
+    const double slide =
+        memory.state == ContactState::slip ? 0.0 : coming.slide(pair, force.point, force.normal);
+    sum.add(0.5 * memory.shear * (memory.shear + spring.stiffness * slide) / spring.stiffness);
+  });
 }
 
 enum class Moment { now, middle };
-
-/// Energy of the stick springs and of open bonds; in the middle of two trial configurations F_n F_{n+1}/(2
-/// k), the form that the leapfrog conserves exactly. Slipping springs keep theirs.
-void add_stick(const Simulation &simulation, const std::vector<ContactDigest::Spring> &springs, Moment moment,
-               ExactSum &sum) {
-  const ContactParameters &parameters = simulation.contacts().parameters();
-  const ContactHistory &history = simulation.history();
-  const std::vector<TrialIncrement> increments =
-      moment == Moment::middle ? trial_increments(simulation.blocks()) : std::vector<TrialIncrement>();
-  for (const ContactDigest::Spring &spring : springs) {
-    const CandidatePair &pair = simulation.candidates().pairs[spring.pair];
-    const RegionState &memory = history.state(spring.pair, spring.number);
-    const LawConstants constants = parameters.constants(memory.law >= 0 ? memory.law : pair.law);
-    const RegionMemory *other =
-        history.has_plain(spring.pair) ? nullptr : &history.of_other(spring.pair)[spring.number];
-    const RegionMemory *bond = other != nullptr && other->is_bond() ? other : nullptr;
-    if (bond != nullptr) {
-      sum.add(2.0 * constants.half_stiffness *
-              bond_energy(simulation.blocks(), pair, *bond, moment == Moment::middle));
-    }
-    if (memory.shear == 0.0) {
-      continue;
-    }
-    const double stiffness = constants.tangential_stiffness * memory.longest;
-    double next = memory.shear;
-    if (moment == Moment::middle && memory.state != ContactState::slip) {
-      next += stiffness *
-              (bond != nullptr
-                   ? opening_of(simulation.blocks(), pair, *bond, Configuration::trial).slide - memory.slip
-                   : coming_slide(simulation.blocks(), pair, spring.point, spring.normal, increments));
-    }
-    sum.add(0.5 * memory.shear * next / stiffness);
-  }
-}
 
 /// Strain energy of owned rows. In the middle of two trial configurations that of the elastic force applied
 /// at the first one and half its work on the way: with implicit elasticity the energy at F* itself says
@@ -221,7 +263,7 @@ Terms initial_terms(const Simulation &simulation) {
   }
   add_strain(blocks, Moment::now, terms.strain);
   add_normal(simulation, 1.0, terms.normal);
-  add_stick(simulation, simulation.contact_digest().springs, Moment::now, terms.stick);
+  add_stick(simulation, terms.stick);
   simulation.bolts().add_energies(1.0, terms.support);
   return terms;
 }
@@ -229,7 +271,7 @@ Terms initial_terms(const Simulation &simulation) {
 Terms current_terms(Simulation &simulation) {
   Terms terms;
   const double time_step = simulation.plan().time_step;
-  const std::vector<ContactDigest::Spring> &springs = simulation.contact_digest().springs;
+  std::optional<ComingConfiguration> coming;
   simulation.look_ahead([&](const BlockSystem &blocks) {
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
       const BlockLedger &ledger = blocks.ledger[row];
@@ -244,9 +286,11 @@ Terms current_terms(Simulation &simulation) {
     }
     add_strain(blocks, Moment::middle, terms.strain);
     add_normal(simulation, 0.5, terms.normal);
-    add_stick(simulation, springs, Moment::middle, terms.stick);
+    add_bonds(simulation, terms.stick);
     simulation.bolts().add_energies_at(blocks, 0.5, terms.support);
+    coming.emplace(blocks);
   });
+  add_coming_stick(simulation, *coming, terms.stick);
   add_normal(simulation, 0.5, terms.normal);
   simulation.bolts().add_energies(0.5, terms.support);
   return terms;

@@ -50,7 +50,6 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(blocks.normal);
   add(blocks.box);
   add(simulation.candidates().pairs);
-  add(simulation.candidates().block_contacts);
   add(simulation.candidates().plain);
   add(simulation.candidates().chains);
   add(simulation.history().overlaps);
@@ -59,7 +58,6 @@ std::int64_t state_bytes(const Simulation &simulation) {
   bytes += blocks.num_rows() * sizeof(BlockMotion);
   const ContactDigest &digest = simulation.contact_digest();
   add(digest.on_rows);
-  add(digest.springs);
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);
 }

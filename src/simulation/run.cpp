@@ -267,6 +267,9 @@ private:
     }
     const auto scope = simulation_.phases().measure(Phase::output);
     const double cpu_start = cpu_seconds();
+    if (history_due && !failed) {          // the energies of a broken state say nothing
+      energy_ = ledger_->row(simulation_); // first: frames take what it has seen of the contacts
+    }
     if (output_due) {
       const int index = num_frames_++;
       frames_->write(index, simulation_.time(), SimulationFrame(simulation_));
@@ -311,9 +314,6 @@ private:
     const std::vector<BlockHistoryRow> rows = collect_monitors(simulation_);
     const std::vector<BoltHistoryRow> bolts = collect_bolts(simulation_);
     contacts_at_end_ = count_contacts();
-    if (!failed) { // the energies of a broken state say nothing
-      energy_ = ledger_->row(simulation_);
-    }
     on_root(communicator_, [&] {
       for (std::size_t m = 0; m < rows.size(); ++m) {
         if (simulation_.is_removed(simulation_.scene().monitors[m].block)) {

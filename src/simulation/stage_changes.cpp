@@ -15,6 +15,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 
 namespace gcpdda {
 
@@ -302,33 +303,31 @@ void Simulation::excavate(const std::vector<std::int64_t> &ids, double relax) {
 // What the excavated blocks put on each of the others, summed in the order of their ids, and what each bolt
 // from them pulls with: what it was grouted in goes as gradually as the rock does.
 void Simulation::unload(const std::vector<std::int64_t> &removed, double duration) {
-  std::vector<Unloading> mine;
-  for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    const BlockProperties &block = blocks_.properties[row];
-    Unloading load{block.id.value, {}, {}, time(), duration};
-    bool touches = false;
-    for (std::uint32_t c = candidates_.contact_begin[row]; c < candidates_.contact_begin[row + 1]; ++c) {
-      const std::uint32_t number = candidates_.block_contacts[c].pair();
-      const bool is_lower = candidates_.block_contacts[c].is_lower();
-      const CandidatePair &pair = candidates_.pairs[number];
-      const std::size_t other = (is_lower ? pair.higher : pair.lower).value;
-      if (!holds(removed, blocks_.properties[other].id.value)) {
-        continue;
+  std::map<std::uint32_t, Unloading> loads; // by row
+  const auto add = [&](const CandidatePair &pair, std::span<const RegionForce> regions, bool is_lower) {
+    const std::uint32_t row = (is_lower ? pair.lower : pair.higher).value;
+    const std::uint32_t other = (is_lower ? pair.higher : pair.lower).value;
+    const std::int64_t id = blocks_.properties[row].id.value;
+    if (row >= blocks_.num_owned || holds(removed, id) ||
+        !holds(removed, blocks_.properties[other].id.value)) {
+      return;
+    }
+    Unloading &load = loads.try_emplace(row, Unloading{id, {}, {}, time(), duration}).first->second;
+    for (const RegionForce &force : regions) {
+      const ContactPart part = contact_part(force, is_lower, blocks_.trial_centroid[row]);
+      load.rigid += {part.force, part.dyad.xy - part.dyad.yx};
+      if (blocks_.is_deformable(row)) {
+        load.gradient += transposed(blocks_.trial_inverse[blocks_.deformation_begin[row]] * part.dyad);
       }
-      for_regions(number, number + 1, [&](std::uint32_t, std::span<const RegionForce> regions) {
-        for (const RegionForce &force : regions) {
-          const ContactPart part = contact_part(force, is_lower, blocks_.trial_centroid[row]);
-          load.rigid += {part.force, part.dyad.xy - part.dyad.yx};
-          if (blocks_.is_deformable(row)) {
-            load.gradient += transposed(blocks_.trial_inverse[blocks_.deformation_begin[row]] * part.dyad);
-          }
-        }
-        touches = true;
-      });
     }
-    if (touches && !holds(removed, block.id.value)) {
-      mine.push_back(load);
-    }
+  };
+  for_regions(0, candidates_.pairs.size(), [&](std::uint32_t pair, std::span<const RegionForce> regions) {
+    add(candidates_.pairs[pair], regions, true);
+    add(candidates_.pairs[pair], regions, false);
+  });
+  std::vector<Unloading> mine;
+  for (const auto &[row, load] : loads) {
+    mine.push_back(load);
   }
   const auto goes = [&](std::int64_t id) { return holds(removed, id); };
   for (const LinkPull &pull : bolts_.pulls_from(goes, blocks_)) {

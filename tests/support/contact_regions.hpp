@@ -34,10 +34,12 @@ public:
   }
   /// visit(region, is the block the lower one) in the order of the other blocks' ids.
   template <class Visit> void for_block(const Candidates &candidates, std::size_t row, Visit &&visit) const {
-    for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
-      const BlockContact contact = candidates.block_contacts[c];
-      for (const RegionForce &force : of_pair(contact.pair())) {
-        visit(force, contact.is_lower());
+    for (std::size_t k = 0; k < ranges_.size(); ++k) {
+      const CandidatePair &pair = candidates.pairs[k];
+      if (pair.lower.value == row || pair.higher.value == row) {
+        for (const RegionForce &force : of_pair(k)) {
+          visit(force, pair.lower.value == row);
+        }
       }
     }
   }

@@ -143,40 +143,6 @@ TEST(ReachBoxes, InflateMobileBlocksByHalfTheSkin) {
   EXPECT_EQ(boxes[1].high, (Vec2{6.0, 6.0}));
 }
 
-TEST(MakeCandidates, ContactsOfABlockAscendByPartner) {
-  std::mt19937 engine(56);
-  BlockSystem system = system_of(random_boxes(engine, 80, 6.0), random_boxes(engine, 10, 6.0));
-  system.num_ghosts = 30;
-  system.num_owned = 50;
-  shuffle_ids(system, engine);
-  ContactHistory history;
-  const Pairs pairs = find_pairs(system, reach_boxes(system, 0.1));
-  const Candidates candidates =
-      make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, {}, history, testing::infinite_skin);
-  ASSERT_EQ(candidates.contact_begin.size(), system.num_owned + 1);
-  EXPECT_EQ(history.overlaps.size(), pairs.size());
-  EXPECT_TRUE(testing::memories(history).empty()) << "nothing remembered";
-  std::size_t ends = 0;
-  for (std::uint32_t row = 0; row < system.num_owned; ++row) {
-    BlockId last{-1};
-    for (std::uint32_t c = candidates.contact_begin[row]; c < candidates.contact_begin[row + 1]; ++c) {
-      const BlockContact contact = candidates.block_contacts[c];
-      const CandidatePair &pair = candidates.pairs[contact.pair()];
-      EXPECT_EQ((contact.is_lower() ? pair.lower : pair.higher).value, row);
-      const BlockId partner = system.properties[(contact.is_lower() ? pair.higher : pair.lower).value].id;
-      EXPECT_LT(last, partner);
-      last = partner;
-      ++ends;
-    }
-  }
-  std::size_t owned_ends = 0;
-  for (const auto &[lower, higher] : pairs) {
-    owned_ends += (lower.value < system.num_owned ? 1U : 0U) + (higher.value < system.num_owned ? 1U : 0U);
-  }
-  EXPECT_EQ(ends, owned_ends);
-  EXPECT_EQ(candidates.block_contacts.size(), owned_ends);
-}
-
 TEST(MakeCandidates, MemoryIsMatchedByIds) {
   std::mt19937 engine(57);
   BlockSystem system = system_of(random_boxes(engine, 60, 6.0), {});

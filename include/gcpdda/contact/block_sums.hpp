@@ -53,10 +53,10 @@ public:
   ContactCount finish(const BlockSystem &system, const Candidates &candidates);
 
   /// Region `number` of a pair that is not plain, as it is kept.
-  RegionSums &kept(std::uint32_t pair, std::size_t number) { return kept_[kept_range_[pair].begin + number]; }
+  RegionSums &kept(std::uint32_t pair, std::size_t number) { return kept_[range_of(pair).begin + number]; }
   /// Null where no block deforms.
   RegionDyads *kept_dyads(std::uint32_t pair, std::size_t number) {
-    return has_dyads_ ? &kept_dyads_[kept_range_[pair].begin + number] : nullptr;
+    return has_dyads_ ? &kept_dyads_[range_of(pair).begin + number] : nullptr;
   }
 
   // By row of the owned blocks, and by entry of BlockSystem::deformation.
@@ -104,8 +104,13 @@ private:
   std::vector<RegionSums> group_;
   std::vector<RegionDyads> group_dyads_; ///< if some block deforms
   std::array<std::uint8_t, PlainPair::pairs_in_group> seen_{};
+  /// Of a pair that waits: mostly one that follows the last one asked for.
+  RegionRange &range_of(std::uint32_t pair);
+
   // Regions on blocks that wait.
-  std::vector<RegionRange> kept_range_; ///< by pair
+  std::span<const std::uint32_t> waiting_; ///< Candidates::waiting
+  std::vector<RegionRange> kept_range_;    ///< of each of them
+  std::size_t last_asked_ = 0;
   std::vector<KeptRegion> kept_;
   std::vector<RegionDyads> kept_dyads_;
 };

@@ -57,26 +57,10 @@ struct PlainPair {
   }
 };
 
-/// A candidate pair as one of its blocks sees it.
-class BlockContact {
-public:
-  BlockContact() = default;
-  BlockContact(std::uint32_t pair, bool is_lower) : packed_(2 * pair + (is_lower ? 1 : 0)) {}
-  [[nodiscard]] std::uint32_t pair() const { return packed_ / 2; }
-  [[nodiscard]] bool is_lower() const { return packed_ % 2 != 0; }
-
-private:
-  std::uint32_t packed_ = 0;
-};
-
 /// Which pairs may touch, as flat lists.
 struct Candidates {
   std::vector<CandidatePair> pairs; ///< with at least one owned block, by (lower id, higher id)
-  /// Contacts of owned row i: block_contacts[contact_begin[i] .. contact_begin[i + 1]), by the other block's
-  /// id.
-  std::vector<std::uint32_t> contact_begin;
-  std::vector<BlockContact> block_contacts;
-  std::vector<LawConstants> laws; ///< by CandidatePair::law
+  std::vector<LawConstants> laws;   ///< by CandidatePair::law
   // In the order in which they are evaluated: first those without a ghost, whose number stands beside.
   std::vector<PlainPair> plain; ///< by groups, in each those of like numbers of edges together
   std::size_t num_interior_plain = 0;
@@ -88,6 +72,22 @@ struct Candidates {
   std::vector<std::uint8_t> is_added;
   std::vector<std::uint32_t> waiting;  ///< numbers of the pairs of the others, in order
   std::vector<std::uint8_t> are_added; ///< by PlainPair::group: none of its pairs is one of these
+
+  /// visit(entry of `plain`) for all pairs of a group.
+  template <class Visit> void for_plain_of_group(std::uint32_t group, Visit &&visit) const {
+    const auto visit_run = [&](std::size_t begin, std::size_t end) {
+      const auto from = plain.begin() + static_cast<std::ptrdiff_t>(begin);
+      const auto to = plain.begin() + static_cast<std::ptrdiff_t>(end);
+      const auto first =
+          std::partition_point(from, to, [&](const PlainPair &p) { return p.group() < group; });
+      for (auto k = static_cast<std::size_t>(first - plain.begin()); k < end && plain[k].group() == group;
+           ++k) {
+        visit(k);
+      }
+    };
+    visit_run(0, num_interior_plain);
+    visit_run(num_interior_plain, plain.size());
+  }
 };
 
 /// Most edges of one block of a plain pair.

@@ -356,13 +356,16 @@ struct ContactPart {
 };
 ContactPart contact_part(const RegionForce &force, bool is_lower, Vec2 centroid);
 
-/// By row, how the last two trial configurations differ.
-std::vector<TrialIncrement> trial_increments(const BlockSystem &system);
+/// The trial configuration that comes next, by row.
+struct ComingConfiguration {
+  std::vector<TrialIncrement> increments; ///< from the last one
+  std::vector<Vec2> centroids;
 
-/// Slide along t_r of the last evaluation's contact point when the system has moved on to its next trial
-/// configuration, by these increments.
-double coming_slide(const BlockSystem &system, const CandidatePair &pair, Vec2 point, Vec2 normal,
-                    std::span<const TrialIncrement> increments);
+  /// @param system  has moved on to it
+  explicit ComingConfiguration(const BlockSystem &system);
+  /// Slide along t_r of what is the contact point with this normal in the last one.
+  [[nodiscard]] double slide(const CandidatePair &pair, Vec2 point, Vec2 normal) const;
+};
 
 /// Material point X of a block that is now at x, in the trial configuration.
 Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x);

@@ -16,15 +16,32 @@
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/contact_forces.hpp"
 
+#include <memory>
+#include <span>
 #include <vector>
 
 namespace gcpdda {
 
-/// overlap_energy() (m3) by number of pair, as the blocks are posed, for plain pairs of rigid blocks with no
-/// more than most_corner_edges edges: those that overlap with one corner of each, as above, most others as
-/// src/contact/lane_energies.hpp says. Not a number for all others. Which those are, and every bit, depends
-/// on the shapes alone, not on the edges that a refresh leaves in a chain.
-std::vector<double> find_energies(const BlockSystem &system, const Candidates &candidates,
-                                  Instructions instructions = Instructions::widest);
+/// overlap_energy() (m3), as the blocks are posed, of plain pairs of rigid blocks with no more than
+/// most_corner_edges edges: those that overlap with one corner of each, as above, most others as
+/// src/contact/lane_energies.hpp says. Which those are, and every bit, depends on the shapes alone, not on
+/// the edges that a refresh leaves in a chain.
+class PairEnergies {
+public:
+  explicit PairEnergies(Instructions instructions = Instructions::widest);
+  ~PairEnergies();
+  PairEnergies(const PairEnergies &) = delete;
+  PairEnergies &operator=(const PairEnergies &) = delete;
+
+  /// Of one PlainPair::group, by number of the pair in it. Not a number for all other pairs.
+  std::span<const double> of_group(const BlockSystem &system, const Candidates &candidates,
+                                   std::uint32_t group);
+
+private:
+  std::unique_ptr<PlainBatch> batch_;
+  std::vector<const PlainPair *> corners_;
+  std::vector<const PlainPair *> others_;
+  std::vector<double> energies_;
+};
 
 } // namespace gcpdda

@@ -146,10 +146,14 @@ public:
   /// Of the last evaluation: to be asked for before the trial configuration or the neighbourhood changes.
   [[nodiscard]] const ContactDigest &contact_digest() const {
     if (!is_digested_) {
-      digest_.find(blocks_, candidates_, history_, contacts_);
-      is_digested_ = true;
+      digest_contacts({});
     }
     return digest_;
+  }
+  /// It is made then, while `look` is at all regions.
+  void digest_contacts(const ContactDigest::Look &look) const {
+    digest_.find(blocks_, candidates_, history_, contacts_, look);
+    is_digested_ = true;
   }
   /// visit(pair, its regions) for those of pairs [first, last) that touch, with the same restriction.
   template <class Visit> void for_regions(std::size_t first, std::size_t last, Visit &&visit) const {
