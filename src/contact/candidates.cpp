@@ -294,6 +294,32 @@ void find_waiting(const BlockSystem &system, Candidates &candidates) {
   }
 }
 
+/// Ids ascend with the lower blocks of pairs, which may be ghosts or fixed, and with the owned rows.
+void find_rows_of_groups(const BlockSystem &system, Candidates &candidates) {
+  const std::size_t num_groups = candidates.pairs.size() / PlainPair::pairs_in_group + 1;
+  const auto all = static_cast<std::uint32_t>(system.num_owned);
+  const auto id_of = [&](std::uint32_t row) { return system.properties[row].id; };
+  Candidates::GroupRows rows;
+  candidates.group_rows.clear();
+  for (std::size_t group = 0; group < num_groups; ++group) {
+    const std::span<const CandidatePair> left =
+        std::span(candidates.pairs).subspan(group * PlainPair::pairs_in_group);
+    const std::span<const CandidatePair> own =
+        left.first(std::min<std::size_t>(left.size(), PlainPair::pairs_in_group));
+    for (const CandidatePair &pair : own) {
+      for (const BlockIndex row : {pair.lower, pair.higher}) {
+        rows.end = row.value < all ? std::max(rows.end, row.value + 1) : rows.end;
+      }
+    }
+    const bool is_last = own.size() == left.size();
+    while (rows.done < all && (is_last || id_of(rows.done) < id_of(left[own.size()].lower.value))) {
+      ++rows.done;
+    }
+    rows.end = std::max(rows.end, rows.done); // those without a pair come along
+    candidates.group_rows.push_back(rows);
+  }
+}
+
 /// The ends of a chain's edges.
 void append_chain(const BlockSystem &system, std::size_t row, const EdgeChain &chain,
                   std::vector<std::uint8_t> &vertices) {
@@ -462,6 +488,7 @@ Candidates make_candidates(const BlockSystem &system,
     history.ranges = {};
   }
   find_waiting(system, candidates);
+  find_rows_of_groups(system, candidates);
   return candidates;
 }
 

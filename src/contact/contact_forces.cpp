@@ -270,7 +270,8 @@ void ContactForces::find_meeting(const Candidates &candidates, const ContactHist
 }
 
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
-                                         ContactHistory &history, std::size_t first, std::size_t last) {
+                                         ContactHistory &history, std::size_t first, std::size_t last,
+                                         const Front &front) {
   const PlainScene scene{system,
                          candidates,
                          history,
@@ -288,6 +289,9 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     end = static_cast<std::size_t>(
         std::partition_point(from, from + most, [&](const PlainPair &p) { return p.group() == group; }) -
         candidates.plain.begin());
+    if (front.before) {
+      front.before(candidates.group_rows[group].end);
+    }
     find_meeting(candidates, history, begin, end);
     evaluate_known(scene);
     evaluate_strangers(scene);
@@ -296,6 +300,9 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     }
     births_.clear();
     sums_.close_group(system, candidates, group);
+    if (front.after) {
+      front.after(candidates.group_rows[group].done);
+    }
   }
   const PlainBatch::Extremes seen = batch_->take_extremes();
   report_.normals_undefined += seen.normals_undefined;
@@ -343,7 +350,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
 }
 
 void ContactForces::evaluate_interior(const BlockSystem &system, const Candidates &candidates,
-                                      ContactHistory &history) {
+                                      ContactHistory &history, const Front &front) {
   find_motions(system, system.first_fixed(), system.num_rows());
   num_forces_ = 0;
   dilation_works_.clear();
@@ -356,7 +363,10 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
   }
   sums_.start(system, candidates);
   report_ = {};
-  evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain);
+  evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain, front);
+  if (front.before) {
+    front.before(system.num_owned);
+  }
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).first(candidates.num_interior_general));
 }

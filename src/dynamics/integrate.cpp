@@ -104,35 +104,67 @@ void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last) {
   deformable.flush();
 }
 
-void predict(BlockSystem &system, const Scheme &scheme, double time_step,
+namespace {
+
+/// x* - x_n by v_n and a_n.
+struct TrialFactors {
+  double by_velocity;
+  double by_acceleration;
+
+  TrialFactors(const Scheme &scheme, double time_step)
+      : by_velocity(scheme.trial_velocity * time_step),
+        by_acceleration(scheme.trial_acceleration * time_step * time_step) {}
+  template <class T>
+  [[nodiscard]] T operator()(const T &state, const T &velocity, const T &acceleration) const {
+    return state + (by_velocity * velocity + by_acceleration * acceleration);
+  }
+};
+
+TrialConfiguration next_trial(const BlockSystem &system, const TrialFactors &next, std::size_t row) {
+  TrialConfiguration trial{next(system.displacement[row], system.velocity[row], system.acceleration[row]),
+                           {}};
+  if (system.is_deformable(row)) {
+    const Deformation &d = system.deformation_of(row);
+    trial.gradient = next(d.gradient, d.rate, d.acceleration);
+    trial.motion.r = system.displacement[row].r + angle_between(d.gradient, trial.gradient);
+  }
+  return trial;
+}
+
+} // namespace
+
+TrialConfiguration next_trial(const BlockSystem &system, const Scheme &scheme, double time_step,
+                              std::size_t row) {
+  return next_trial(system, TrialFactors(scheme, time_step), row);
+}
+
+void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpan rows,
              const std::function<void(std::size_t first, std::size_t last)> &then) {
   constexpr std::size_t rows_at_once = 64; // they are posed from the cache
   pose(system, 0, 0);                      // lists have their lengths
-  const double by_velocity = scheme.trial_velocity * time_step;
-  const double by_acceleration = scheme.trial_acceleration * time_step * time_step;
+  const TrialFactors next(scheme, time_step);
   const BlockLanes lanes = block_lanes(Instructions::widest);
   const auto are_deformable = [&](std::size_t row, std::size_t last) {
     return row + lanes.width <= last &&
            system.deformation_begin[row + lanes.width] - system.deformation_begin[row] == lanes.width;
   };
-  for (std::size_t first = 0; first < system.num_owned; first += rows_at_once) {
-    const std::size_t last = std::min(system.num_owned, first + rows_at_once);
+  for (std::size_t first = rows.first; first < rows.last; first += rows_at_once) {
+    const std::size_t last = std::min(rows.last, first + rows_at_once);
     for (std::size_t i = first; i < last; ++i) {
       while (are_deformable(i, last)) {
-        lanes.predict_deformables(system, i, by_velocity, by_acceleration);
+        lanes.predict_deformables(system, i, next.by_velocity, next.by_acceleration);
         i += lanes.width;
       }
       if (i == last) {
         break;
       }
+      const TrialConfiguration trial = next_trial(system, next, i);
       system.trial_previous[i] = system.trial[i];
-      system.trial[i] = system.displacement[i] +
-                        (by_velocity * system.velocity[i] + by_acceleration * system.acceleration[i]);
+      system.trial[i] = trial.motion;
       if (system.is_deformable(i)) {
         Deformation &d = system.deformation_of(i);
         d.trial_previous = d.trial;
-        d.trial = d.gradient + (by_velocity * d.rate + by_acceleration * d.acceleration);
-        system.trial[i].r = system.displacement[i].r + angle_between(d.gradient, d.trial);
+        d.trial = trial.gradient;
       }
     }
     pose_in_lanes(system, first, last);

@@ -321,14 +321,15 @@ void Ghosts::copy_accelerations(BlockSystem &system) {
       });
 }
 
-void Ghosts::begin(const BlockSystem &system) {
+void Ghosts::begin(const BlockSystem &system,
+                   const std::function<TrialConfiguration(std::uint32_t)> &trial_of) {
   for (Neighbour &n : neighbours_) {
     std::byte *to = n.send.data();
     for (const std::uint32_t row : n.send_rows) {
-      to = put(to, GhostMotion{system.trial[row], system.velocity[row]});
+      const TrialConfiguration trial = trial_of(row);
+      to = put(to, GhostMotion{trial.motion, system.velocity[row]});
       if (system.is_deformable(row)) {
-        const Deformation &d = system.deformation_of(row);
-        to = put(to, GhostDeformation{d.trial, d.rate});
+        to = put(to, GhostDeformation{trial.gradient, system.deformation_of(row).rate});
       }
     }
   }

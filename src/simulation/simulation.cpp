@@ -17,16 +17,6 @@ constexpr double needs_refresh = 1.0;
 constexpr double asked_to_stop = 2.0; // a refresh does no harm then
 constexpr double failed = 3.0;
 
-/// Row of a block if this rank owns it.
-std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
-  const auto end = blocks.properties.begin() + static_cast<std::ptrdiff_t>(blocks.num_owned);
-  const auto found = std::lower_bound(blocks.properties.begin(), end, id,
-                                      [](const BlockProperties &p, BlockId wanted) { return p.id < wanted; });
-  return found == end || found->id != id
-             ? std::nullopt
-             : std::optional(static_cast<std::size_t>(found - blocks.properties.begin()));
-}
-
 } // namespace
 
 void Simulation::step() {
@@ -35,8 +25,8 @@ void Simulation::step() {
     refresh(remembered_contacts());
   }
   load_time_ = time() + scheme_.load_time * plan_.time_step;
-  predict_own(true);
-  evaluate_contacts();
+  send_trials();
+  evaluate_contacts(); // blocks move on and on behind it
   sum_contacts_of_blocks();
   move_blocks();
   ++step_count_;
@@ -146,55 +136,21 @@ Diagnostics Simulation::warnings() const {
   return warnings;
 }
 
-// Ghosts are on their way then.
-void Simulation::predict_own(bool for_contacts) {
-  {
-    const auto scope = phases_.measure(Phase::predict);
-    const auto find_motions = [&](std::size_t first, std::size_t last) {
-      if (for_contacts) {
-        contacts_.find_motions(blocks_, first, last);
-      }
-    };
-    predict(blocks_, scheme_, plan_.time_step, find_motions);
-    prescribe_trials(find_motions);
-  }
-  const auto scope = phases_.measure(Phase::ghosts);
-  ghosts_.begin(blocks_);
-}
-
 void Simulation::finish_ghosts() {
   const auto scope = phases_.measure(Phase::ghosts);
   ghosts_.finish(blocks_);
 }
 
-// At t_n + c1 dt, where the family takes x* of constant velocity.
-void Simulation::prescribe_trials(const std::function<void(std::size_t, std::size_t)> &then) {
-  const double when = time() + scheme_.trial_velocity * plan_.time_step;
-  for (const auto &[block, motion] : prescribed_) {
-    if (const auto row = owned_row(blocks_, block)) {
-      blocks_.trial[*row] = motion.displacement(when);
-      pose(blocks_, *row, *row + 1);
-      then(*row, *row + 1);
-    }
-  }
-}
-
-// The acceleration is the mean one of the coming step: what is asked how far the block may go in it.
-void Simulation::prescribe_motion() {
-  const double dt = plan_.time_step;
-  for (const auto &[block, motion] : prescribed_) {
-    if (const auto row = owned_row(blocks_, block)) {
-      blocks_.displacement[*row] = motion.displacement(time());
-      blocks_.velocity[*row] = motion.velocity(time());
-      blocks_.acceleration[*row] = (1.0 / dt) * (motion.velocity(time() + dt) - blocks_.velocity[*row]);
-    }
-  }
-}
-
 void Simulation::evaluate_contacts() {
+  begin_moving();
+  Front front;
+  front.before = [this](std::size_t end) { predict_to(end); };
+  if (bolts_.empty()) { // else their forces come last
+    front.after = [this](std::size_t end) { move_to(end); };
+  }
   {
     const auto scope = phases_.measure(Phase::forces);
-    contacts_.evaluate_interior(blocks_, candidates_, history_);
+    contacts_.evaluate_interior(blocks_, candidates_, history_, front);
   }
   finish_ghosts();
   const auto scope = phases_.measure(Phase::forces);
@@ -222,137 +178,7 @@ void Simulation::sum_contacts_of_blocks() {
   contact_count_ = contacts_.finish_sums(blocks_, candidates_);
   contacts_.add_dilation_works(candidates_, blocks_);
   bolts_.add_forces(blocks_, contacts_.sums().of_blocks());
-  forces_.rigid.resize(blocks_.num_owned);
-  forces_.gradient.resize(blocks_.deformation.size());
-  forces_.wave = incoming_wave();
-  forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
-}
-
-// Some blocks at a time: what one pass reads is in the cache for the next.
-void Simulation::move_blocks() {
-  constexpr std::size_t rows_at_once = 64;
-  const BodyForces body{gravity(), ground_acceleration()};
-  const double dt = plan_.time_step;
-  std::optional<std::size_t> broken;
-  restless_.clear();
-  for (std::size_t first = move_free_blocks(0, body, broken); first < blocks_.num_owned;) {
-    const std::size_t last = std::min(blocks_.num_owned, first + rows_at_once);
-    gather_forces(first, last, body);
-    {
-      const auto scope = phases_.measure(Phase::update);
-      if (const auto row = solve_and_update(blocks_, forces_, scheme_, dt, scene_.run.elasticity, first, last,
-                                            calm_motion(), &restless_)) {
-        broken = std::min(*row, broken.value_or(*row));
-      }
-    }
-    first = move_free_blocks(last, body, broken);
-  }
-  standing_ = has_free_rows() ? std::optional(body) : std::nullopt;
-  if (broken) {
-    keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*broken].id, {}, 0.0, 0.0});
-  }
-}
-
-// Most blocks of most scenes are rigid, and only others act on them: with all that follows in one go.
-std::size_t Simulation::move_free_blocks(std::size_t first, const BodyForces &body,
-                                         std::optional<std::size_t> &broken) {
-  if (!has_free_rows()) {
-    return first;
-  }
-  const auto scope = phases_.measure(Phase::update);
-  return advance_free_rows(blocks_, free_rows(body), scheme_, plan_.time_step, first, blocks_.num_owned,
-                           broken, restless_);
-}
-
-bool Simulation::has_free_rows() const {
-  return scene_.water.empty() && stage_.unloading.empty() && scene_.run.rayleigh.mass_damping == 0.0;
-}
-
-FreeRows Simulation::free_rows(const BodyForces &body) {
-  return {contacts_.sums().of_blocks(),
-          forces_.rigid,
-          body.gravity,
-          body.shaking,
-          standing_ == body,
-          local_damping_,
-          calm_motion(),
-          contacts_.sums().of_gradients(),
-          forces_.gradient};
-}
-
-// The works of the ledger go by the trapezoid over increments of x*: half with the forces of the last
-// evaluation, half with those of this one.
-void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
-  const auto scope = phases_.measure(Phase::forces);
-  const bool are_gathered_together = has_free_rows() && bolts_.empty();
-  for (std::size_t row = first; row < last; ++row) {
-    if (are_gathered_together) {
-      row = gather_free_deformables(blocks_, free_rows(body), row, last);
-      if (row == last) {
-        break;
-      }
-    }
-    BlockLedger &ledger = blocks_.ledger[row];
-    const BlockLedger before = ledger;
-    const AppliedForces applied_before = blocks_.applied[row];
-    const HalfWorks stretched =
-        blocks_.is_deformable(row) ? half_works_on_gradient(blocks_.deformation_of(row)) : HalfWorks{};
-    ledger.load_work += anchor_half_work(blocks_, row);
-    const BlockContactSum &contacts = contacts_.sums().of_blocks()[row];
-    ledger.shear_force = contacts.shear;
-    ledger.damping_force = contacts.damping;
-    forces_.rigid[row] = contacts.force;
-    const WaterLoad water =
-        scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -body.gravity.y);
-    gather_block(row, body, water);
-    if (blocks_.is_deformable(row)) {
-      gather_gradient(row, water);
-    }
-    apply_mass_damping(blocks_, row, forces_, scene_.run.rayleigh.mass_damping);
-    apply_local_damping(blocks_, row, forces_, local_damping_);
-    add_works(blocks_, row, before, applied_before, stretched);
-  }
-}
-
-void Simulation::gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water) {
-  const BlockProperties &block = blocks_.properties[row];
-  AppliedForces &applied = blocks_.applied[row];
-  if (block.keeps_its_velocity()) {
-    applied.load = -1.0 * forces_.rigid[row];
-    forces_.rigid[row] = {};
-    return;
-  }
-  applied.gravity = block.heavy_mass() * body.gravity;
-  applied.load = stage_.unloading.empty() ? RigidDof{} : unloading_of(block.id).rigid;
-  for (const MaterialLoad &load : blocks_.loads_of(row)) {
-    const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
-    applied.load += {load.force, cross(arm, load.force)};
-  }
-  applied.load += {water.force - block.mass * body.shaking, water.torque()};
-  forces_.rigid[row] += applied.load;
-  forces_.rigid[row].u += applied.gravity;
-}
-
-// What works on F; the moments of the rigid part are in it.
-void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
-  Deformation &d = blocks_.deformation_of(row);
-  BlockLedger &ledger = blocks_.ledger[row];
-  const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
-  const BlockGradientSum sum =
-      in_reference_axes(contacts_.sums().of_gradients()[blocks_.deformation_begin[row]], to_reference);
-  d.shear_force = sum.shear;
-  d.damping_force = sum.damping;
-  d.load_force = unloading_of(blocks_.properties[row].id).gradient + water.dyad * transposed(to_reference);
-  for (const MaterialLoad &load : blocks_.loads_of(row)) {
-    d.load_force += outer(load.force, load.point);
-  }
-  forces_.gradient[blocks_.deformation_begin[row]] = sum.force + d.load_force;
-  if (!bolts_.empty()) {
-    forces_.gradient[blocks_.deformation_begin[row]] += bolts_.gradient_force(blocks_.deformation_begin[row]);
-  }
-  for (RigidDof *force : {&ledger.shear_force, &ledger.damping_force, &blocks_.applied[row].load}) {
-    force->r = 0.0;
-  }
+  prepare_forces();
 }
 
 // One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop. It runs while

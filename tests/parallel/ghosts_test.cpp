@@ -180,8 +180,15 @@ Mat2 stretched(std::size_t id, int round) {
   return {1.0 + number(3), number(4), number(5), 1.0 + number(6)};
 }
 
+void begin(Case &c) {
+  c.ghosts.begin(c.mine, [&](std::uint32_t row) {
+    return TrialConfiguration{c.mine.trial[row],
+                              c.mine.is_deformable(row) ? c.mine.deformation_of(row).trial : Mat2{}};
+  });
+}
+
 void update(Case &c) {
-  c.ghosts.begin(c.mine);
+  begin(c);
   c.ghosts.finish(c.mine);
 }
 
@@ -275,7 +282,7 @@ TEST(Ghosts, AreOldUntilTheUpdateIsFinished) {
   for (std::size_t row = 0; row < c.mine.num_owned; ++row) {
     c.mine.trial[row] = moved(c.id_of(row), 3);
   }
-  c.ghosts.begin(c.mine);
+  begin(c);
   std::vector<std::int64_t> ids(c.mine.num_rows(), -1);
   for (std::size_t row = 0; row < c.mine.num_owned; ++row) {
     ids[row] = c.mine.properties[row].id.value;

@@ -12,27 +12,39 @@ enum class Phase { refresh, predict, ghosts, forces, update, report, output, cou
 inline constexpr std::array<const char *, static_cast<std::size_t>(Phase::count)> phase_names{
     "refresh", "predict", "ghosts", "forces", "update", "report", "output"};
 
-/// Wall seconds per phase on this rank.
+/// Wall seconds per phase on this rank, each without those that are measured within it; but output with
+/// all that is done for it.
 class PhaseTimes {
 public:
   class Scope {
   public:
-    explicit Scope(double &sum) : sum_(sum), start_(Clock::now()) {}
-    ~Scope() { sum_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Scope(PhaseTimes &times, Phase phase) : times_(times), outer_(times.running_) {
+      times_.go_over_to(outer_ == Phase::output ? outer_ : phase);
+    }
+    ~Scope() { times_.go_over_to(outer_); }
     Scope(const Scope &) = delete;
     Scope &operator=(const Scope &) = delete;
 
   private:
-    using Clock = std::chrono::steady_clock;
-    double &sum_;
-    Clock::time_point start_;
+    PhaseTimes &times_;
+    Phase outer_;
   };
 
-  [[nodiscard]] Scope measure(Phase phase) { return Scope(seconds_[static_cast<std::size_t>(phase)]); }
+  [[nodiscard]] Scope measure(Phase phase) { return {*this, phase}; }
   [[nodiscard]] double seconds(Phase phase) const { return seconds_[static_cast<std::size_t>(phase)]; }
 
 private:
-  std::array<double, static_cast<std::size_t>(Phase::count)> seconds_{};
+  using Clock = std::chrono::steady_clock;
+  void go_over_to(Phase phase) {
+    const Clock::time_point now = Clock::now();
+    seconds_[static_cast<std::size_t>(running_)] += std::chrono::duration<double>(now - since_).count();
+    running_ = phase;
+    since_ = now;
+  }
+
+  std::array<double, static_cast<std::size_t>(Phase::count) + 1> seconds_{};
+  Phase running_ = Phase::count; ///< none
+  Clock::time_point since_ = Clock::now();
 };
 
 } // namespace gcpdda

@@ -72,6 +72,13 @@ struct Candidates {
   std::vector<std::uint8_t> is_added;
   std::vector<std::uint32_t> waiting;  ///< numbers of the pairs of the others, in order
   std::vector<std::uint8_t> are_added; ///< by PlainPair::group: none of its pairs is one of these
+  /// Of the owned rows, a group and those before it have none from `end` on, and those behind it have none
+  /// below `done`, which is not beyond `end`.
+  struct GroupRows {
+    std::uint32_t end = 0;
+    std::uint32_t done = 0;
+  };
+  std::vector<GroupRows> group_rows; ///< by PlainPair::group
 
   /// visit(entry of `plain`) for all pairs of a group.
   template <class Visit> void for_plain_of_group(std::uint32_t group, Visit &&visit) const {

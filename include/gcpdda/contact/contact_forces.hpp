@@ -38,6 +38,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -101,6 +102,16 @@ struct ForceReport {
   std::optional<Fault> fault;     ///< the one with the smallest ids
 };
 
+/// Who moves the blocks, while pairs are evaluated in the order of their blocks and both are in the cache.
+struct Front {
+  /// Owned rows below this one are about to be read: their trial configurations are posed and their motions
+  /// found on return.
+  std::function<void(std::size_t end)> before;
+  /// Contacts of those below this one are added, but of rows that wait (Candidates::is_added), and are not
+  /// read again: their velocities may change.
+  std::function<void(std::size_t end)> after;
+};
+
 class PlainBatch;
 struct PlainScene;
 struct PlainLanes;
@@ -126,11 +137,12 @@ public:
     evaluate_interior(system, candidates, history);
     return evaluate_border(system, candidates, history);
   }
-  /// How rows [first, last) move, from their trial configurations and velocities: once these are known, and
-  /// of all owned rows before what follows.
+  /// How rows [first, last) move, from their trial configurations and velocities: of all owned rows before
+  /// what follows, or once their trial configurations are known there.
   void find_motions(const BlockSystem &system, std::size_t first, std::size_t last);
   /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
-  void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history);
+  void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
+                         const Front &front = {});
   /// ... and then the rest.
   ForceReport evaluate_border(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history);
@@ -227,7 +239,7 @@ private:
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
   /// Entries [first, last) of Candidates::plain.
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
-                            std::size_t first, std::size_t last);
+                            std::size_t first, std::size_t last, const Front &front = {});
   /// How a pair is looked at: as one corner of each block; as corners of one in a face of the other; as one
   /// that was neither in the step before; as one that is neither.
   enum class Way { corners, face, other_as_before, other };

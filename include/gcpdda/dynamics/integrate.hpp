@@ -49,12 +49,20 @@ struct RowSpan {
   std::size_t last = 0;
 };
 
-/// Trial configuration of rows [0, num_owned); the one before becomes trial_previous. Vertices are posed. The
-/// angles r of a deformable row, of displacement and trial, are those of F's rotation, unwrapped.
+/// The next trial configuration of a row. Angles r of a deformable row, of displacement and trial, are those
+/// of F's rotation, unwrapped.
+TrialConfiguration next_trial(const BlockSystem &system, const Scheme &scheme, double time_step,
+                              std::size_t row);
+
+/// It is set in rows [first, last), and the one before becomes trial_previous. Vertices are posed.
 ///
-/// @param then  is told of rows [first, last) as soon as they are posed and still in the cache
-void predict(BlockSystem &system, const Scheme &scheme, double time_step,
+/// @param then  is told of some rows as soon as they are posed and still in the cache
+void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpan rows,
              const std::function<void(std::size_t first, std::size_t last)> &then = {});
+/// The same of all owned rows.
+inline void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
+  predict(system, scheme, time_step, {0, system.num_owned});
+}
 
 /// As pose() of rows [first, last), all of which have been posed before; quadrilaterals several at a time.
 void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last);

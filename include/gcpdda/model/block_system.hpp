@@ -152,6 +152,12 @@ struct AppliedForces {
                    ///< Deformation
 };
 
+/// Where contact forces are taken.
+struct TrialConfiguration {
+  RigidDof motion; ///< x* - x_0
+  Mat2 gradient;   ///< F* of a deformable block
+};
+
 /// Where a block was (x - x_0) when a stage began and when its motion was last looked at.
 struct BlockMark {
   RigidDof stage;

@@ -15,6 +15,7 @@
 #include "gcpdda/partition/domain_map.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -39,8 +40,9 @@ public:
   void rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span<const FarGhost> far = {});
 
   /// Owners' trial configurations and velocities set out to their ghosts, by requests that were prepared at
-  /// the rebuild. Until finish() ghost rows keep the old ones, and owned rows may be read.
-  void begin(const BlockSystem &system);
+  /// the rebuild. Until finish() ghost rows keep the old ones.
+  /// @param trial_of  what it is going to be, by owned row
+  void begin(const BlockSystem &system, const std::function<TrialConfiguration(std::uint32_t)> &trial_of);
   /// They have arrived; ghosts are posed.
   void finish(BlockSystem &system);
 

@@ -195,7 +195,8 @@ public:
     const std::vector<RigidDof> trial = blocks_.trial;
     const std::vector<RigidDof> previous = blocks_.trial_previous;
     const std::vector<Deformation> deformation = blocks_.deformation;
-    predict_own(false);
+    send_trials();
+    predict_rows(0, blocks_.num_owned, false);
     finish_ghosts();
     look(blocks_);
     blocks_.trial = trial;
@@ -266,10 +267,18 @@ private:
   [[nodiscard]] std::vector<RegionRecord> remembered_contacts() const;
   void refresh(std::vector<RegionRecord> memory);
   bool rebalance_if_uneven();
+  void send_trials();
+  void find_prescribed_rows();
   /// @param for_contacts  which are to be evaluated there
-  void predict_own(bool for_contacts);
+  void predict_rows(std::size_t first, std::size_t last, bool for_contacts);
+  void begin_moving();
+  void predict_to(std::size_t end);
+  void move_to(std::size_t end);
+  void move_rows(std::size_t first, std::size_t end);
+  /// @return the first row that is not free
+  std::size_t move_free_rows(std::size_t first, std::size_t end);
+  void prepare_forces();
   void finish_ghosts();
-  void prescribe_trials(const std::function<void(std::size_t first, std::size_t last)> &then);
   void prescribe_motion();
   void evaluate_contacts();
   void evaluate_bolts();
@@ -286,7 +295,6 @@ private:
   /// May there be any?
   [[nodiscard]] bool has_free_rows() const;
   [[nodiscard]] FreeRows free_rows(const BodyForces &body);
-  std::size_t move_free_blocks(std::size_t first, const BodyForces &body, std::optional<std::size_t> &broken);
   void gather_forces(std::size_t first, std::size_t last, const BodyForces &body);
   void gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);
@@ -315,6 +323,16 @@ private:
   BlockForces forces_; ///< at the last evaluation
   /// What free blocks' AppliedForces follow from, if nothing has touched them or their masses since.
   std::optional<BodyForces> standing_;
+  /// How far a step has come with the owned rows.
+  struct Moving {
+    BodyForces body;
+    std::size_t predicted = 0; ///< rows below have their trial configurations
+    std::size_t moved = 0;     ///< those below are at the end of the step, but for ...
+    std::optional<std::size_t> broken;
+    std::vector<RowSpan> waiting; ///< ... these
+  };
+  Moving moving_;
+  std::vector<std::pair<std::size_t, RigidDof>> prescribed_rows_; ///< trial displacements in the step at hand
   std::vector<RowSpan> restless_; ///< owned rows whose motion in the last step has to be looked at
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;

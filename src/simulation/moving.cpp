@@ -1,0 +1,271 @@
+// How owned blocks go through a step, close behind one another.
+//
+// Pairs are evaluated in the order of their blocks' ids (contact/candidates.hpp). So only rows up to the last
+// one of the next group of pairs need their trial configurations before it, and those below the first one of
+// the group after it are over with their contacts and can go on to the end of the step. Between the two stand
+// a few hundred rows; what they are made of is written, read and written again in the cache, and a large
+// model is read from memory once a step instead of three times. Where ids do not follow places, all rows are
+// predicted before the first group and moved behind the last one.
+//
+// Three things keep a row from going on with the others: a pair without a ghost that is evaluated on its own
+// or a pair with a ghost (it waits, Candidates::is_added), and bolts anywhere, whose forces come last. Ghosts
+// need the trial configurations of border rows first; they follow from x_n, v_n and a_n alone and are sent
+// before they stand in their rows. Each row does the same operations on the same numbers whenever it does
+// them, so the order changes no bit.
+
+#include "gcpdda/simulation/half_works.hpp"
+#include "gcpdda/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr std::size_t rows_at_once = 64; ///< they are moved from the cache
+constexpr std::size_t rows_together = 8; ///< most that are in the lanes
+
+/// Row of a block if this rank owns it.
+std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
+  const auto end = blocks.properties.begin() + static_cast<std::ptrdiff_t>(blocks.num_owned);
+  const auto found = std::lower_bound(blocks.properties.begin(), end, id,
+                                      [](const BlockProperties &p, BlockId wanted) { return p.id < wanted; });
+  return found == end || found->id != id
+             ? std::nullopt
+             : std::optional(static_cast<std::size_t>(found - blocks.properties.begin()));
+}
+
+} // namespace
+
+// Before they are found here.
+void Simulation::send_trials() {
+  const auto scope = phases_.measure(Phase::ghosts);
+  find_prescribed_rows();
+  ghosts_.begin(blocks_, [&](std::uint32_t row) {
+    for (const auto &[prescribed, motion] : prescribed_rows_) {
+      if (prescribed == row) {
+        return TrialConfiguration{motion, {}};
+      }
+    }
+    return next_trial(blocks_, scheme_, plan_.time_step, row);
+  });
+}
+
+// At t_n + c1 dt, where the family takes x* of constant velocity.
+void Simulation::find_prescribed_rows() {
+  const double when = time() + scheme_.trial_velocity * plan_.time_step;
+  prescribed_rows_.clear();
+  for (const auto &[block, motion] : prescribed_) {
+    if (const auto row = owned_row(blocks_, block)) {
+      prescribed_rows_.emplace_back(*row, motion.displacement(when));
+    }
+  }
+}
+
+void Simulation::predict_rows(std::size_t first, std::size_t last, bool for_contacts) {
+  const auto scope = phases_.measure(Phase::predict);
+  const auto find_motions = [&](std::size_t from, std::size_t to) {
+    for (const auto &[row, motion] : prescribed_rows_) {
+      if (from <= row && row < to) {
+        blocks_.trial[row] = motion;
+        pose(blocks_, row, row + 1);
+      }
+    }
+    if (for_contacts) {
+      contacts_.find_motions(blocks_, from, to);
+    }
+  };
+  predict(blocks_, scheme_, plan_.time_step, {first, last}, find_motions);
+}
+
+// The acceleration is the mean one of the coming step: what is asked how far the block may go in it.
+void Simulation::prescribe_motion() {
+  const double dt = plan_.time_step;
+  for (const auto &[block, motion] : prescribed_) {
+    if (const auto row = owned_row(blocks_, block)) {
+      blocks_.displacement[*row] = motion.displacement(time());
+      blocks_.velocity[*row] = motion.velocity(time());
+      blocks_.acceleration[*row] = (1.0 / dt) * (motion.velocity(time() + dt) - blocks_.velocity[*row]);
+    }
+  }
+}
+
+void Simulation::prepare_forces() {
+  forces_.rigid.resize(blocks_.num_owned);
+  forces_.gradient.resize(blocks_.deformation.size());
+  forces_.wave = incoming_wave();
+  forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
+}
+
+void Simulation::begin_moving() {
+  prepare_forces();
+  moving_.body = {gravity(), ground_acceleration()};
+  moving_.predicted = 0;
+  moving_.moved = 0;
+  moving_.broken.reset();
+  moving_.waiting.clear();
+  restless_.clear();
+}
+
+void Simulation::predict_to(std::size_t end) {
+  if (end > moving_.predicted) {
+    const std::size_t last =
+        std::min(blocks_.num_owned, (end + rows_at_once - 1) / rows_at_once * rows_at_once);
+    predict_rows(moving_.predicted, last, true);
+    moving_.predicted = last;
+  }
+}
+
+// But rows that wait, and with them those that are in the same registers.
+void Simulation::move_to(std::size_t end) {
+  const std::size_t last = end == blocks_.num_owned ? end : end / rows_at_once * rows_at_once;
+  const auto at = [&](std::size_t row) {
+    return candidates_.is_added.begin() + static_cast<std::ptrdiff_t>(row);
+  };
+  for (std::size_t first = moving_.moved; first < last;) {
+    const auto found = static_cast<std::size_t>(std::find(at(first), at(last), 0) - at(0));
+    const std::size_t stop = found == last ? last : std::max(first, found / rows_together * rows_together);
+    move_rows(first, stop);
+    first = found == last ? last : std::min(last, stop + rows_together);
+    std::vector<RowSpan> &waiting = moving_.waiting;
+    if (!waiting.empty() && waiting.back().last == stop) {
+      waiting.back().last = first;
+    } else if (stop < first) {
+      waiting.push_back({stop, first});
+    }
+  }
+  moving_.moved = std::max(moving_.moved, last);
+}
+
+// Those that are left.
+void Simulation::move_blocks() {
+  for (const RowSpan &rows : moving_.waiting) {
+    move_rows(rows.first, rows.last);
+  }
+  move_rows(moving_.moved, blocks_.num_owned);
+  standing_ = has_free_rows() ? std::optional(moving_.body) : std::nullopt;
+  if (moving_.broken) {
+    keep_first(local_fault_,
+               {Fault::Cause::not_finite, blocks_.properties[*moving_.broken].id, {}, 0.0, 0.0});
+  }
+}
+
+// Some blocks at a time: what one pass reads is in the cache for the next.
+void Simulation::move_rows(std::size_t first, std::size_t end) {
+  for (first = move_free_rows(first, end); first < end;) {
+    const std::size_t last = std::min(end, first + rows_at_once);
+    gather_forces(first, last, moving_.body);
+    {
+      const auto scope = phases_.measure(Phase::update);
+      if (const auto row = solve_and_update(blocks_, forces_, scheme_, plan_.time_step, scene_.run.elasticity,
+                                            first, last, calm_motion(), &restless_)) {
+        moving_.broken = std::min(*row, moving_.broken.value_or(*row));
+      }
+    }
+    first = move_free_rows(last, end);
+  }
+}
+
+// Most blocks of most scenes are rigid, and only others act on them: with all that follows in one go.
+std::size_t Simulation::move_free_rows(std::size_t first, std::size_t end) {
+  if (!has_free_rows()) {
+    return first;
+  }
+  const auto scope = phases_.measure(Phase::update);
+  return advance_free_rows(blocks_, free_rows(moving_.body), scheme_, plan_.time_step, first, end,
+                           moving_.broken, restless_);
+}
+
+bool Simulation::has_free_rows() const {
+  return scene_.water.empty() && stage_.unloading.empty() && scene_.run.rayleigh.mass_damping == 0.0;
+}
+
+FreeRows Simulation::free_rows(const BodyForces &body) {
+  return {contacts_.sums().of_blocks(),
+          forces_.rigid,
+          body.gravity,
+          body.shaking,
+          standing_ == body,
+          local_damping_,
+          calm_motion(),
+          contacts_.sums().of_gradients(),
+          forces_.gradient};
+}
+
+// The works of the ledger go by the trapezoid over increments of x*: half with the forces of the last
+// evaluation, half with those of this one.
+void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
+  const auto scope = phases_.measure(Phase::forces);
+  const bool are_gathered_together = has_free_rows() && bolts_.empty();
+  for (std::size_t row = first; row < last; ++row) {
+    if (are_gathered_together) {
+      row = gather_free_deformables(blocks_, free_rows(body), row, last);
+      if (row == last) {
+        break;
+      }
+    }
+    BlockLedger &ledger = blocks_.ledger[row];
+    const BlockLedger before = ledger;
+    const AppliedForces applied_before = blocks_.applied[row];
+    const HalfWorks stretched =
+        blocks_.is_deformable(row) ? half_works_on_gradient(blocks_.deformation_of(row)) : HalfWorks{};
+    ledger.load_work += anchor_half_work(blocks_, row);
+    const BlockContactSum &contacts = contacts_.sums().of_blocks()[row];
+    ledger.shear_force = contacts.shear;
+    ledger.damping_force = contacts.damping;
+    forces_.rigid[row] = contacts.force;
+    const WaterLoad water =
+        scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -body.gravity.y);
+    gather_block(row, body, water);
+    if (blocks_.is_deformable(row)) {
+      gather_gradient(row, water);
+    }
+    apply_mass_damping(blocks_, row, forces_, scene_.run.rayleigh.mass_damping);
+    apply_local_damping(blocks_, row, forces_, local_damping_);
+    add_works(blocks_, row, before, applied_before, stretched);
+  }
+}
+
+void Simulation::gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water) {
+  const BlockProperties &block = blocks_.properties[row];
+  AppliedForces &applied = blocks_.applied[row];
+  if (block.keeps_its_velocity()) {
+    applied.load = -1.0 * forces_.rigid[row];
+    forces_.rigid[row] = {};
+    return;
+  }
+  applied.gravity = block.heavy_mass() * body.gravity;
+  applied.load = stage_.unloading.empty() ? RigidDof{} : unloading_of(block.id).rigid;
+  for (const MaterialLoad &load : blocks_.loads_of(row)) {
+    const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
+    applied.load += {load.force, cross(arm, load.force)};
+  }
+  applied.load += {water.force - block.mass * body.shaking, water.torque()};
+  forces_.rigid[row] += applied.load;
+  forces_.rigid[row].u += applied.gravity;
+}
+
+// What works on F; the moments of the rigid part are in it.
+void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
+  Deformation &d = blocks_.deformation_of(row);
+  BlockLedger &ledger = blocks_.ledger[row];
+  const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
+  const BlockGradientSum sum =
+      in_reference_axes(contacts_.sums().of_gradients()[blocks_.deformation_begin[row]], to_reference);
+  d.shear_force = sum.shear;
+  d.damping_force = sum.damping;
+  d.load_force = unloading_of(blocks_.properties[row].id).gradient + water.dyad * transposed(to_reference);
+  for (const MaterialLoad &load : blocks_.loads_of(row)) {
+    d.load_force += outer(load.force, load.point);
+  }
+  forces_.gradient[blocks_.deformation_begin[row]] = sum.force + d.load_force;
+  if (!bolts_.empty()) {
+    forces_.gradient[blocks_.deformation_begin[row]] += bolts_.gradient_force(blocks_.deformation_begin[row]);
+  }
+  for (RigidDof *force : {&ledger.shear_force, &ledger.damping_force, &blocks_.applied[row].load}) {
+    force->r = 0.0;
+  }
+}
+
+} // namespace gcpdda
