@@ -43,12 +43,11 @@ void Simulation::send_trials() {
   const auto scope = phases_.measure(Phase::ghosts);
   find_prescribed_rows();
   ghosts_.begin(blocks_, [&](std::uint32_t row) {
+    TrialConfiguration trial = next_trial(blocks_, scheme_, plan_.time_step, row);
     for (const auto &[prescribed, motion] : prescribed_rows_) {
-      if (prescribed == row) {
-        return TrialConfiguration{motion, {}};
-      }
+      trial.motion = prescribed == row ? motion : trial.motion;
     }
-    return next_trial(blocks_, scheme_, plan_.time_step, row);
+    return trial;
   });
 }
 
