@@ -56,8 +56,7 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(simulation.history().plain);
   add(simulation.history().regions);
   bytes += blocks.num_rows() * sizeof(BlockMotion);
-  const ContactDigest &digest = simulation.contact_digest();
-  add(digest.on_rows);
+  bytes += blocks.num_owned * (sizeof(BlockContactSum) + sizeof(RigidDof) + sizeof(ContactDigest::OnRow));
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);
 }

@@ -26,7 +26,7 @@ void Simulation::step() {
   }
   load_time_ = time() + scheme_.load_time * plan_.time_step;
   send_trials();
-  evaluate_contacts(); // blocks move on and on behind it
+  evaluate_contacts(); // blocks are predicted just before it and move on close behind it
   sum_contacts_of_blocks();
   move_blocks();
   ++step_count_;

@@ -91,6 +91,8 @@ private:
   void keep_plain(std::uint32_t pair, const RegionSums &region, bool born);
   void add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads);
   void clear_sums(const BlockSystem &system);
+  /// Of a pair that waits: mostly one that follows the last one asked for.
+  RegionRange &range_of(std::uint32_t pair);
 
   bool has_dyads_ = false;
   bool is_again_ = false;
@@ -104,9 +106,6 @@ private:
   std::vector<RegionSums> group_;
   std::vector<RegionDyads> group_dyads_; ///< if some block deforms
   std::array<std::uint8_t, PlainPair::pairs_in_group> seen_{};
-  /// Of a pair that waits: mostly one that follows the last one asked for.
-  RegionRange &range_of(std::uint32_t pair);
-
   // Regions on blocks that wait.
   std::span<const std::uint32_t> waiting_; ///< Candidates::waiting
   std::vector<RegionRange> kept_range_;    ///< of each of them

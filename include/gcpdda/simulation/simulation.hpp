@@ -271,8 +271,11 @@ private:
   void find_prescribed_rows();
   /// @param for_contacts  which are to be evaluated there
   void predict_rows(std::size_t first, std::size_t last, bool for_contacts);
+  // How owned rows go through a step, see moving.cpp.
   void begin_moving();
+  /// Those below `end` have their trial configurations then.
   void predict_to(std::size_t end);
+  /// Contacts of those below `end` are all added: they go to the end of the step, unless they wait.
   void move_to(std::size_t end);
   void move_rows(std::size_t first, std::size_t end);
   /// @return the first row that is not free
