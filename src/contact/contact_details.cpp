@@ -26,6 +26,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
                                  const ContactHistory &history, std::uint32_t first, std::uint32_t last) {
   corners_.clear();
   faces_.clear();
+  sides_.clear();
   others_.clear();
   places_.assign(PlainPair::pairs_in_group, no_place);
   std::size_t num_forces = num_forces_;
@@ -36,6 +37,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
       places_[pair % PlainPair::pairs_in_group] = static_cast<std::uint32_t>(num_forces++);
       (overlap == PlainOverlap::corners ? corners_
        : overlap == PlainOverlap::face  ? faces_
+       : overlap == PlainOverlap::sides ? sides_
                                         : others_)
           .push_back(static_cast<std::uint32_t>(entry));
     }

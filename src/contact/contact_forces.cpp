@@ -115,28 +115,37 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   const auto leave = [&](unsigned which, std::vector<std::uint32_t> &to) {
     for_bits(which & given, [&](std::size_t i) { to.push_back(entries[i]); });
   };
-  const PlainPair::Kind kind = lanes.pair[0]->kind;
   PlainBatch::Seen seen;
   PlainOverlap overlap = PlainOverlap::other;
-  if (way == Way::corners) {
+  switch (way) {
+  case Way::corners:
     seen = batch_->evaluate_corners(scene, lanes);
     overlap = PlainOverlap::corners;
-    leave(seen.with_face, faces_);
-    leave(~(seen.touching | seen.apart | seen.with_face), left_);
-  } else if (way == Way::face) {
+    break;
+  case Way::face:
     seen = batch_->evaluate_faces(scene, lanes);
     overlap = PlainOverlap::face;
-    const unsigned to_corners = kind.may_be_corners() ? seen.with_corners : 0U;
-    leave(to_corners, corners_);
-    leave(~(seen.touching | seen.apart | to_corners), left_);
-  } else {
+    break;
+  case Way::sides:
+    seen = batch_->evaluate_sides(scene, lanes);
+    overlap = PlainOverlap::sides;
+    break;
+  default:
     seen = batch_->evaluate(scene, lanes);
-    if (way == Way::other_as_before) { // those that may not be so any more
-      const unsigned to_corners = kind.may_be_corners() ? seen.with_corners : 0U;
-      const unsigned to_faces = kind.may_be_face() ? seen.with_face : 0U;
-      leave(to_corners, corners_);
-      leave(to_faces, faces_);
-      seen.touching &= ~(to_corners | to_faces);
+  }
+  if (way != Way::other) {
+    const PlainPair::Kind kind = lanes.pair[0]->kind;
+    const unsigned to_corners = kind.may_be_corners() ? seen.with_corners : 0U;
+    const unsigned to_faces = kind.may_be_face() ? seen.with_face : 0U;
+    const unsigned to_sides = kind.may_be_sides() ? seen.with_sides : 0U;
+    leave(to_corners, corners_);
+    leave(to_faces, faces_);
+    leave(to_sides, sides_);
+    const unsigned elsewhere = to_corners | to_faces | to_sides;
+    if (way == Way::other_as_before) { // they may not be so any more
+      seen.touching &= ~elsewhere;
+    } else {
+      leave(~(seen.touching | seen.apart | elsewhere), left_);
     }
   }
   const unsigned touching = seen.touching & given;
@@ -213,19 +222,23 @@ void ContactForces::evaluate_all(const PlainScene &scene, const std::vector<std:
               [&](std::span<const std::uint32_t> batch) { evaluate_alike(scene, batch, way); });
 }
 
-// Mostly each list does with its own way. Both ways never fit one pair (lane_faces.hpp), so which one takes
-// it does not depend on the list it came from, and faces that are left to corners do not come back.
+// Mostly each list does with its own way. By the corners that are inside no two of the ways fit one pair
+// (lane_faces.hpp, lane_sides.hpp), so which one takes it does not depend on the list it came from, and what
+// one way leaves to another does not come back.
 void ContactForces::evaluate_by_shape(const PlainScene &scene) {
   left_.clear();
+  evaluate_all(scene, sides_, Way::sides);
+  sides_.clear();
   evaluate_all(scene, faces_, Way::face);
   faces_.clear();
   evaluate_all(scene, corners_, Way::corners);
   evaluate_all(scene, faces_, Way::face);
+  evaluate_all(scene, sides_, Way::sides);
   evaluate_all(scene, left_, Way::other);
 }
 
-// Those with a region. What was neither mostly stays so: to see that no corner is inside costs less than to
-// look for the other ways in vain, and changes nothing.
+// Those with a region. What was none of these mostly stays so: to see that no corner is inside costs less
+// than to look for the other ways in vain, and changes nothing.
 void ContactForces::evaluate_known(const PlainScene &scene) {
   evaluate_all(scene, others_, Way::other_as_before);
   evaluate_by_shape(scene);
@@ -234,6 +247,7 @@ void ContactForces::evaluate_known(const PlainScene &scene) {
 void ContactForces::evaluate_strangers(const PlainScene &scene) {
   corners_.clear();
   faces_.clear();
+  sides_.clear();
   others_.clear();
   for (const std::uint32_t entry : strangers_) {
     (scene.candidates.plain[entry].kind.may_be_corners() ? corners_ : others_).push_back(entry);
@@ -244,8 +258,8 @@ void ContactForces::evaluate_strangers(const PlainScene &scene) {
 // Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
 void ContactForces::find_meeting(const Candidates &candidates, const ContactHistory &history,
                                  std::size_t first, std::size_t last) {
-  std::array<std::vector<std::uint32_t> *, 4> lists{&strangers_, &corners_, &faces_, &others_};
-  std::array<std::uint32_t *, 4> ends{};
+  std::array<std::vector<std::uint32_t> *, 5> lists{&strangers_, &corners_, &faces_, &sides_, &others_};
+  std::array<std::uint32_t *, lists.size()> ends{};
   for (std::size_t i = 0; i < lists.size(); ++i) {
     lists[i]->resize(last - first);
     ends[i] = lists[i]->data();

@@ -48,11 +48,17 @@ struct LaneCorner {
          (max(abs(side.low.x), abs(side.high.x)) + max(abs(side.low.y), abs(side.high.y)));
 }
 
+/// @param beyond  what counts as in the box besides it, m
+[[gnu::always_inline]] inline Mask is_in_box(const LaneVec &x, const LaneSide &side, const Lanes &beyond) {
+  return (side.low.x - beyond <= x.x) & (x.x <= side.high.x + beyond) & (side.low.y - beyond <= x.y) &
+         (x.y <= side.high.y + beyond);
+}
+
 /// @param rounding  of the other block: sides in one line have no corner that is clearly inside, and it would
 ///                  be in vain to look at what rounding puts there
 template <std::size_t lines>
 [[gnu::always_inline]] inline Mask is_inside(const LaneVec &x, const LaneSide &other, const Lanes &rounding) {
-  Mask inside = (other.low.x <= x.x) & (x.x <= other.high.x) & (other.low.y <= x.y) & (x.y <= other.high.y);
+  Mask inside = is_in_box(x, other, 0.0);
   each<lines>([&](auto j) { inside = inside & (dot(other.slope[j], other.vertex[j] - x) > rounding); });
   return inside;
 }
@@ -60,19 +66,25 @@ template <std::size_t lines>
 /// How many corners of one block are inside the other one.
 struct CornersInside {
   Mask any{};
-  Mask two{};   ///< at least
-  Mask three{}; ///< at least
+  Mask two{};       ///< at least
+  Mask three{};     ///< at least
+  Mask two_touch{}; ///< at least two are inside or, but for rounding, on the boundary
 };
 
 inline CornersInside count_corners(const LaneSide &own, const LaneSide &other) {
   const Lanes rounding = rounding_of(other);
   CornersInside count;
+  Mask one_touches{};
   for (std::size_t k = 1; k < own.edges; ++k) {
     const LaneVec &x = own.vertex[k];
-    Mask inside = (other.low.x <= x.x) & (x.x <= other.high.x) & (other.low.y <= x.y) & (x.y <= other.high.y);
-    for (std::size_t j = 0; j < other.edges; ++j) {
-      inside = inside & (dot(other.slope[j], other.vertex[j] - x) > rounding);
+    Lanes least = dot(other.slope[0], other.vertex[0] - x);
+    for (std::size_t j = 1; j < other.edges; ++j) {
+      least = min(least, dot(other.slope[j], other.vertex[j] - x));
     }
+    const Mask inside = is_in_box(x, other, 0.0) & (least > rounding);
+    const Mask touches = is_in_box(x, other, rounding) & (least >= -rounding);
+    count.two_touch = count.two_touch | (one_touches & touches);
+    one_touches = one_touches | touches;
     count.three = count.three | (count.two & inside);
     count.two = count.two | (count.any & inside);
     count.any = count.any | inside;

@@ -77,6 +77,7 @@ template <std::size_t lines>
 /// The boundary of such an overlap.
 template <std::size_t edges> struct FaceOverlap {
   Mask with_corners; ///< both blocks have a corner inside the other one
+  Mask with_none;    ///< neither has
 
   [[nodiscard]] const LaneVec &origin() const { return first_; }
 
@@ -251,6 +252,7 @@ Mask FaceOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, co
   const Mask lower_is_own = find_inside(lower, lower_edges, higher, inside);
   const Mask higher_is_own = find_inside(higher, higher_edges, lower, higher_inside);
   with_corners = lower_is_own & higher_is_own;
+  with_none = !(lower_is_own | higher_is_own);
   Mask valid = lower_is_own ^ higher_is_own;
   if (!valid.any()) {
     return valid;

@@ -7,6 +7,7 @@
 #include "lane_faces.hpp"
 #include "lane_motion.hpp"
 #include "lane_region.hpp"
+#include "lane_sides.hpp"
 #include "lane_stretch.hpp"
 #include "plain_batch.hpp"
 
@@ -33,6 +34,7 @@ public:
   Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Seen evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
   Seen evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) override;
+  Seen evaluate_sides(const PlainScene &scene, const PlainLanes &lanes) override;
   Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
                                 const PlainLanes &lanes) override;
   Energies find_energies(const BlockSystem &system, const Candidates &candidates,
@@ -49,6 +51,7 @@ private:
   template <class AnyMotion> void add_dashpot(const LaneConstants &constants, const AnyMotion &motion);
   template <std::size_t edges> Seen evaluate_corners(const PlainScene &scene, const Pairs &pairs);
   template <std::size_t edges> Seen evaluate_faces(const PlainScene &scene, const Pairs &pairs);
+  template <std::size_t edges> Seen evaluate_sides(const PlainScene &scene, const Pairs &pairs);
   /// Of the lanes whose overlap is known, which touch.
   template <class Overlap>
   unsigned evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
@@ -263,6 +266,8 @@ inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const Plain
   seen.meeting = meets.by_lane();
   seen.with_corners = (meets & of_lower.any & of_higher.any & !(of_lower.two | of_higher.two)).by_lane();
   seen.with_face = (meets & (of_lower.any ^ of_higher.any) & !(of_lower.three | of_higher.three)).by_lane();
+  seen.with_sides =
+      (meets & of_lower.two_touch & of_higher.two_touch & !(of_lower.any | of_higher.any)).by_lane();
   if (seen.touching == 0) {
     return seen;
   }
@@ -378,6 +383,7 @@ PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pair
     const Mask apart = are_apart<edges>(sides.lower, sides.higher);
     seen.with_face = with_face.by_lane();
     seen.apart |= (apart & !valid & !with_face).by_lane();
+    seen.with_sides = (meets & !apart & !(overlap.lower_has | overlap.higher_has)).by_lane();
     if (!valid.any()) {
       return seen;
     }
@@ -397,6 +403,25 @@ PlainBatch::Seen LaneBatch::evaluate_faces(const PlainScene &scene, const Pairs 
   seen.meeting = meets.by_lane();
   seen.apart = (!meets).by_lane();
   seen.with_corners = (meets & overlap.with_corners).by_lane();
+  seen.with_sides = (meets & overlap.with_none).by_lane();
+  if (valid.any()) {
+    seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
+  }
+  return seen;
+}
+
+template <std::size_t edges>
+PlainBatch::Seen LaneBatch::evaluate_sides(const PlainScene &scene, const Pairs &pairs) {
+  const PairSides<edges> sides(scene, pairs);
+  SideOverlap<edges> overlap;
+  const Mask meets = boxes_meet(sides.lower, sides.higher);
+  const Mask valid =
+      meets & overlap.find(sides.lower, sides.last_lower + 1, sides.higher, sides.last_higher + 1);
+  Seen seen;
+  seen.meeting = meets.by_lane();
+  seen.apart = (!meets).by_lane();
+  seen.with_corners = (meets & overlap.lower_has & overlap.higher_has).by_lane();
+  seen.with_face = (meets & (overlap.lower_has ^ overlap.higher_has)).by_lane();
   if (valid.any()) {
     seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
   }
@@ -423,6 +448,12 @@ inline PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, con
 inline PlainBatch::Seen LaneBatch::evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
   return with_few_edges(pairs.first, [&](auto edges) { return evaluate_faces<edges>(scene, pairs); });
+}
+
+inline PlainBatch::Seen LaneBatch::evaluate_sides(const PlainScene &scene, const PlainLanes &lanes) {
+  const Pairs pairs(scene, lanes);
+  return pairs.first.kind.has_three_edges_each() ? evaluate_sides<3>(scene, pairs)
+                                                 : evaluate_sides<4>(scene, pairs);
 }
 
 inline PlainBatch::Energies LaneBatch::by_lane(const Mask &known, const Lanes &energy) {

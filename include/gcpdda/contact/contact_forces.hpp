@@ -240,16 +240,16 @@ private:
   /// Entries [first, last) of Candidates::plain.
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                             std::size_t first, std::size_t last, const Front &front = {});
-  /// How a pair is looked at: as one corner of each block; as corners of one in a face of the other; as one
-  /// that was neither in the step before; as one that is neither.
-  enum class Way { corners, face, other_as_before, other };
+  /// How a pair is looked at: as one corner of each block; as corners of one in a face of the other; as
+  /// whole edges on each other; as one that was none of these in the step before; as one that is none.
+  enum class Way { corners, face, sides, other_as_before, other };
   PlainLanes lanes_of(const PlainScene &scene, std::span<const std::uint32_t> entries);
   void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way);
   /// Entries [first, last) whose boxes meet.
   void find_meeting(const Candidates &candidates, const ContactHistory &history, std::size_t first,
                     std::size_t last);
   void evaluate_all(const PlainScene &scene, const std::vector<std::uint32_t> &entries, Way way);
-  /// Those of corners_ and faces_, and what is left of them.
+  /// Those of corners_, faces_ and sides_, and what is left of them.
   void evaluate_by_shape(const PlainScene &scene);
   void evaluate_known(const PlainScene &scene);
   void evaluate_strangers(const PlainScene &scene);
@@ -322,8 +322,9 @@ private:
   // Entries of Candidates::plain whose boxes meet, by what they are looked at as.
   std::vector<std::uint32_t> corners_;
   std::vector<std::uint32_t> faces_;
-  std::vector<std::uint32_t> others_;    ///< they were neither
-  std::vector<std::uint32_t> left_;      ///< they are neither
+  std::vector<std::uint32_t> sides_;
+  std::vector<std::uint32_t> others_;    ///< they were none of these
+  std::vector<std::uint32_t> left_;      ///< they are none of these
   std::vector<std::uint32_t> strangers_; ///< without a region so far
   std::vector<std::uint32_t> births_;    ///< plain pairs whose new regions must choose among laws
   std::array<CandidatePair, 8> own_;     ///< constants of mixed pairs at hand, by lane
