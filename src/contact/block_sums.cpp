@@ -110,12 +110,21 @@ void BlockSums::clear_sums(const BlockSystem &system) {
   largest_squared_ = 0.0;
 }
 
-inline void BlockSums::add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads) {
-  if (system.is_deformable(row.value)) {
-    BlockGradientSum &sum = gradients_[system.deformation_begin[row.value]];
-    sum.force += dyads.force;
-    sum.shear += dyads.shear;
-    sum.damping += dyads.damping;
+inline void BlockSums::add_dyads(const BlockSystem &system, const CandidatePair &pair, std::size_t k,
+                                 const RegionDyads &dyads, const RegionSums &region) {
+  const std::uint32_t row = (k == 0 ? pair.lower : pair.higher).value;
+  if (system.is_deformable(row)) {
+    const auto add = [&](const BlockGradientSum &part) {
+      BlockGradientSum &sum = gradients_[system.deformation_begin[row]];
+      sum.force += part.force;
+      sum.shear += part.shear;
+      sum.damping += part.damping;
+    };
+    if (k == 0) {
+      add(dyads);
+    } else {
+      add(on_higher(dyads, region, system.trial_centroid[pair.lower.value] - system.trial_centroid[row]));
+    }
   }
 }
 
@@ -165,7 +174,7 @@ void BlockSums::add_group(const BlockSystem &system, const Candidates &candidate
       const RegionDyads &dyads = group_dyads_[number % PlainPair::pairs_in_group];
       each_side([&](auto k) {
         if ((k == 0 ? lower_time : higher_time) == When::at_once) {
-          add_dyads(system, k == 0 ? pair.lower : pair.higher, dyads[k]);
+          add_dyads(system, pair, k, dyads, region);
         }
       });
     }
@@ -235,7 +244,7 @@ ContactCount BlockSums::finish(const BlockSystem &system, const Candidates &cand
       if (when(rows[k]) == When::later) {
         add_region(region, k, sums_[rows[k].value]);
         if (has_dyads_) {
-          add_dyads(system, rows[k], kept_dyads_[number][k]);
+          add_dyads(system, pair, k, kept_dyads_[number], region);
         }
       }
     }

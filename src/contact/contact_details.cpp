@@ -112,14 +112,11 @@ void ContactForces::ShearToSet::set(double shear) {
   f.damping_force += drag;
   add_torques(f.damping_torque, drag);
   const Vec2 elastic = -shear * tangent;
-  for (const std::size_t k : {0U, 1U}) {
-    if (dyads_ != nullptr) {
-      const Vec2 arm = k == 0 ? arm_lower : -arm_higher;
-      BlockGradientSum &sum = (*dyads_)[k];
-      sum.force += outer(arm, change);
-      sum.damping += outer(arm, drag);
-      sum.shear = f.bonded ? sum.shear + outer(arm, elastic - f.shear_force) : outer(arm, elastic);
-    }
+  if (dyads_ != nullptr) {
+    dyads_->force += outer(arm_lower, change);
+    dyads_->damping += outer(arm_lower, drag);
+    dyads_->shear =
+        f.bonded ? dyads_->shear + outer(arm_lower, elastic - f.shear_force) : outer(arm_lower, elastic);
   }
   f.shear = shear;
   f.shear_force = elastic;

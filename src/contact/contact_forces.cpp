@@ -73,9 +73,7 @@ void ContactForces::find_motions(const BlockSystem &system, std::size_t first, s
     }
     if (system.is_deformable(row)) {
       const std::size_t k = system.deformation_begin[row];
-      const Mat2 &to_reference = system.trial_inverse[k];
-      deforming_[k] = {determinant(to_reference) * transposed(to_reference),
-                       system.deformation[k].rate * to_reference};
+      deforming_[k] = {system.deformation[k].rate * system.trial_inverse[k]};
     }
   }
 }

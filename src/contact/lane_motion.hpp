@@ -48,40 +48,29 @@ template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, L
   return LaneVec::of([&](std::size_t i) { return vertex + blocks.vertex(i, k); });
 }
 
-/// Edge `number` of the chains as edge k of the side.
-[[gnu::always_inline]] inline void load_edge(const BlockSystem &system, const LaneBlocks &blocks,
-                                             std::size_t number, std::size_t k, LaneSide &side) {
+/// Edge `number` of the chains as edge k of the side, of pairs where a block deforms or none.
+[[gnu::always_inline]] inline void load_edge(const BlockSystem &system, const PlainPair::Kind &kind,
+                                             const LaneBlocks &blocks, std::size_t number, std::size_t k,
+                                             LaneSide &side) {
   std::array<std::size_t, num_lanes> at;
   for (std::size_t i = 0; i < num_lanes; ++i) {
     at[i] = blocks.vertex(i, number);
   }
   const Vec2 *vertex = system.vertex.data();
+  side.vertex[k] = LaneVec::of([&](std::size_t i) { return vertex + at[i]; });
+  if (kind.is_deformable) {
+    const DeformedEdge *edge = system.deformed_edge.data();
+    const FourLanes four = load_by_lane([&](std::size_t i) { return &edge[at[i]].slope.x; });
+    side.slope[k] = {four[0], four[1]};
+    side.length[k] = four[2];
+    side.normal[k] = four[3] * side.slope[k];
+    return;
+  }
   const Vec2 *normal = system.normal.data();
   const double *length = system.edge_length.data();
-  side.vertex[k] = LaneVec::of([&](std::size_t i) { return vertex + at[i]; });
   side.normal[k] = LaneVec::of([&](std::size_t i) { return normal + at[i]; });
   side.slope[k] = side.normal[k];
   side.length[k] = Lanes::of([&](std::size_t i) { return length[at[i]]; });
-}
-
-/// Depths inside a deformable block are those in its reference polygon over J.
-/// Edges of the side behind number `last` are copies of it.
-inline void load_deformed_slopes(const PlainScene &scene, const LaneBlocks &blocks, std::size_t last,
-                                 LaneSide &side) {
-  static constexpr Mat2 identity = Mat2::identity();
-  const BlockSystem &system = scene.system;
-  std::array<const Vec2 *, num_lanes> normals;
-  std::array<const Mat2 *, num_lanes> slopes;
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    const bool deforms = system.is_deformable(blocks.row[i]);
-    normals[i] = deforms ? system.reference_normal.data() : system.normal.data();
-    slopes[i] = deforms ? &scene.deforming[system.deformation_begin[blocks.row[i]]].slopes : &identity;
-  }
-  const LaneMat of_normals = LaneMat::of([&](std::size_t i) { return slopes[i]; });
-  for (std::size_t k = 0; k < side.edges; ++k) {
-    side.slope[k] = of_normals(
-        LaneVec::of([&](std::size_t i) { return normals[i] + blocks.vertex(i, std::min(k, last)); }));
-  }
 }
 
 /// How two blocks move, as far as it does not matter whether they deform.
@@ -158,15 +147,19 @@ struct DeformingMotion : TranslatingMotion {
   DeformingMotion(const PlainScene &scene, const LaneBlocks &lower, const LaneBlocks &higher)
       : TranslatingMotion(lower, higher) {
     const BlockSystem &system = scene.system;
-    const auto rates_of = [&](const LaneBlocks &blocks) {
-      std::array<Mat2, num_lanes> rates;
+    const auto rates_of = [&](const LaneBlocks &blocks) __attribute__((always_inline)) {
+      std::array<Mat2, num_lanes> turning; // of rigid blocks
+      std::array<const Mat2 *, num_lanes> rates;
       for (std::size_t i = 0; i < num_lanes; ++i) {
-        const double spin = blocks.motion[i]->spin;
-        rates[i] = system.is_deformable(blocks.row[i])
-                       ? scene.deforming[system.deformation_begin[blocks.row[i]]].rate
-                       : Mat2{0.0, -spin, spin, 0.0};
+        rates[i] = &turning[i];
+        if (system.is_deformable(blocks.row[i])) {
+          rates[i] = &scene.deforming[system.deformation_begin[blocks.row[i]]].rate;
+        } else {
+          const double spin = blocks.motion[i]->spin;
+          turning[i] = {0.0, -spin, spin, 0.0};
+        }
       }
-      return LaneMat::of([&](std::size_t i) { return &rates[i]; });
+      return LaneMat::of([&](std::size_t i) { return rates[i]; });
     };
     lower_rate = rates_of(lower);
     higher_rate = rates_of(higher);
@@ -230,7 +223,6 @@ inline void find_deforming_motions(const BlockSystem &system, std::size_t first,
   const LaneVec centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[first + i]; });
   const LaneMat to_reference = LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
   const LaneMat turn = (load(&Deformation::trial) - load(&Deformation::trial_previous)) * to_reference;
-  const LaneMat slopes = determinant(to_reference) * transposed(to_reference);
   const LaneMat rate = load(&Deformation::rate) * to_reference;
   std::array<std::byte *, num_lanes> to;
   std::array<std::byte *, num_lanes> to_deforming;
@@ -242,9 +234,7 @@ inline void find_deforming_motions(const BlockSystem &system, std::size_t first,
   store_by_lane(to, 0, centroid.x, centroid.y, velocity[0], velocity[1]);
   store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], turn.xx(), turn.xy());
   store_by_lane(to, 8 * sizeof(double), turn.yx(), turn.yy(), velocity[2], 0.0);
-  static_assert(offsetof(DeformingBlock, slopes) == 0 && offsetof(DeformingBlock, rate) == sizeof(Mat2));
-  store_by_lane(to_deforming, 0, slopes.xx(), slopes.xy(), slopes.yx(), slopes.yy());
-  store_by_lane(to_deforming, sizeof(Mat2), rate.xx(), rate.xy(), rate.yx(), rate.yy());
+  store_by_lane(to_deforming, offsetof(DeformingBlock, rate), rate.xx(), rate.xy(), rate.yx(), rate.yy());
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -107,7 +107,7 @@ public:
   void add_dashpot(const Lanes &total, const LaneVec &moment, const AnyMotion &motion);
   /// With all forces in place.
   template <class AnyMotion> void find_torques(const AnyMotion &motion);
-  void find_dyads(const LaneVec &centroid, double sign, std::array<FourLanes, 3> &dyads) const;
+  void find_dyads(const LaneVec &centroid);
   unsigned store(const PlainResults &results);
   PlainBatch::Extremes take_extremes();
 
@@ -135,8 +135,8 @@ private:
   Lanes cap_;
   Mask slips_;
   LaneVec damping_force_;
-  FourLanes damping_dyad_; ///< this and the next of pairs with a deformable block
-  std::array<std::array<FourLanes, 3>, 2> on_gradient_; ///< RegionDyads
+  FourLanes damping_dyad_;               ///< this and the next of pairs with a deformable block
+  std::array<FourLanes, 3> on_gradient_; ///< RegionDyads
   Torques torque_;
   Torques shear_torque_;
   Torques damping_torque_;
@@ -238,23 +238,16 @@ template <class AnyMotion> void LaneRegions::find_torques(const AnyMotion &motio
   torque_[0] = about_origin + cross(origin - motion.lower_centroid, force_);
   torque_[1] = -about_origin - cross(origin - motion.higher_centroid, force_);
   if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
-    find_dyads(motion.lower_centroid, 1.0, on_gradient_[0]);
-    find_dyads(motion.higher_centroid, -1.0, on_gradient_[1]);
+    find_dyads(motion.lower_centroid);
   }
 }
 
-inline void LaneRegions::find_dyads(const LaneVec &centroid, double sign,
-                                    std::array<FourLanes, 3> &dyads) const {
+inline void LaneRegions::find_dyads(const LaneVec &centroid) {
   const LaneVec arm = origin - centroid;
-  dyads = {dyad_, {0.0, 0.0, 0.0, 0.0}, damping_dyad_};
-  add_outer(dyads[0], arm, force_);
-  add_outer(dyads[1], point_ - centroid, -elastic_ * perp(normal_));
-  add_outer(dyads[2], arm, damping_force_);
-  for (FourLanes &dyad : dyads) {
-    for (Lanes &entry : dyad) {
-      entry = Lanes(sign) * entry;
-    }
-  }
+  on_gradient_ = {dyad_, {0.0, 0.0, 0.0, 0.0}, damping_dyad_};
+  add_outer(on_gradient_[0], arm, force_);
+  add_outer(on_gradient_[1], point_ - centroid, -elastic_ * perp(normal_));
+  add_outer(on_gradient_[2], arm, damping_force_);
 }
 
 /// RegionState's law, the only one a pair can have, and state in the place of one number.
@@ -298,10 +291,10 @@ inline unsigned LaneRegions::store(const PlainResults &results) {
                   select(undefined, 0.0, extent_end_));
   }
   if (results.has_dyads) {
-    static_assert(sizeof(RegionDyads) == 6 * sizeof(Mat2));
+    static_assert(sizeof(RegionDyads) == 3 * sizeof(Mat2));
     const Places known = places(results.dyads, unwanted_dyads_);
-    for (std::size_t k = 0; k < 6; ++k) {
-      const FourLanes &m = on_gradient_[k / 3][k % 3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const FourLanes &m = on_gradient_[k];
       store_by_lane(known, k * sizeof(Mat2), m[0], m[1], m[2], m[3]);
     }
   }

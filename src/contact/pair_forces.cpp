@@ -235,14 +235,11 @@ void ContactForces::note_dyads(const BlockSystem &system, const CandidatePair &p
   }
   const std::size_t number = num_forces_ - 1 - first_of_pair_;
   grow(dyads_, number + 1);
-  for (const std::size_t k : {0U, 1U}) {
-    const Vec2 centroid = system.trial_centroid[(k == 0 ? pair.lower : pair.higher).value];
-    const double sign = k == 0 ? 1.0 : -1.0;
-    const Vec2 arm = force.origin - centroid;
-    dyads_[number][k] = {sign * (force.dyad + outer(arm, force.force)),
-                         sign * (outer(force.point - centroid, force.shear_force) + beyond),
-                         sign * (damping_dyad_ + outer(arm, force.damping_force))};
-  }
+  const Vec2 centroid = system.trial_centroid[pair.lower.value];
+  const Vec2 arm = force.origin - centroid;
+  dyads_[number] = {force.dyad + outer(arm, force.force),
+                    outer(force.point - centroid, force.shear_force) + beyond,
+                    damping_dyad_ + outer(arm, force.damping_force)};
 }
 
 void ContactForces::find_regions(const BlockSystem &system, const Candidates &candidates,

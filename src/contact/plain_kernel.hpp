@@ -57,8 +57,8 @@ private:
   unsigned evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
                             const Mask &known);
   template <std::size_t edges> struct PairSides;
-  static void load_chain(const BlockSystem &system, const LaneBlocks &blocks, std::size_t edges,
-                         LaneSide &side);
+  static void load_chain(const BlockSystem &system, const PlainPair::Kind &kind, const LaneBlocks &blocks,
+                         std::size_t edges, LaneSide &side);
   static Energies by_lane(const Mask &known, const Lanes &energy);
   /// visit(edges) with the number of edges of the longer chain, where there are few.
   template <class Visit> static auto with_few_edges(const PlainPair &pair, Visit &&visit);
@@ -234,11 +234,11 @@ void LaneBatch::add_friction_and_dashpots(const PlainScene &scene, const Pairs &
   }
 }
 
-inline void LaneBatch::load_chain(const BlockSystem &system, const LaneBlocks &blocks, std::size_t edges,
-                                  LaneSide &side) {
+inline void LaneBatch::load_chain(const BlockSystem &system, const PlainPair::Kind &kind,
+                                  const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
   side.edges = edges;
   for (std::size_t k = 0; k < edges; ++k) {
-    load_edge(system, blocks, k, k, side);
+    load_edge(system, kind, blocks, k, k, side);
   }
   side.vertex[edges] = load_vertex(system, blocks, edges);
 }
@@ -246,11 +246,8 @@ inline void LaneBatch::load_chain(const BlockSystem &system, const LaneBlocks &b
 inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
   const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
-    load_chain(scene.system, blocks, edges, side);
+    load_chain(scene.system, pairs.first.kind, blocks, edges, side);
     load_box(blocks, side);
-    if (pairs.first.kind.is_deformable) {
-      load_deformed_slopes(scene, blocks, edges - 1, side);
-    }
   };
   load(pairs.lower, pairs.first.kind.lower_edges, lower_);
   load(pairs.higher, pairs.first.kind.higher_edges, higher_);
@@ -349,8 +346,9 @@ template <std::size_t edges> struct LaneBatch::PairSides {
       : last_lower(pairs.first.kind.lower_edges - std::size_t{1}),
         last_higher(pairs.first.kind.higher_edges - std::size_t{1}) {
     each<edges>([&](auto k) __attribute__((always_inline)) {
-      load_edge(system, pairs.lower, std::min<std::size_t>(k, last_lower), k, lower);
-      load_edge(system, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
+      const PlainPair::Kind &kind = pairs.first.kind;
+      load_edge(system, kind, pairs.lower, std::min<std::size_t>(k, last_lower), k, lower);
+      load_edge(system, kind, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
     });
   }
   /// As they move.
@@ -358,12 +356,6 @@ template <std::size_t edges> struct LaneBatch::PairSides {
       : PairSides(scene.system, pairs) {
     load_box(pairs.lower, lower);
     load_box(pairs.higher, higher);
-    if (pairs.first.kind.is_deformable) {
-      lower.edges = edges;
-      higher.edges = edges;
-      load_deformed_slopes(scene, pairs.lower, last_lower, lower);
-      load_deformed_slopes(scene, pairs.higher, last_higher, higher);
-    }
   }
 };
 
@@ -481,8 +473,8 @@ inline PlainBatch::Energies LaneBatch::find_corner_energies(const BlockSystem &s
 inline PlainBatch::Energies LaneBatch::find_energies(const BlockSystem &system, const Candidates &candidates,
                                                      const PlainLanes &lanes) {
   const Pairs pairs(system, candidates, lanes);
-  load_chain(system, pairs.lower, pairs.first.kind.lower_edges, lower_);
-  load_chain(system, pairs.higher, pairs.first.kind.higher_edges, higher_);
+  load_chain(system, pairs.first.kind, pairs.lower, pairs.first.kind.lower_edges, lower_);
+  load_chain(system, pairs.first.kind, pairs.higher, pairs.first.kind.higher_edges, higher_);
   load_box(system, pairs.lower, lower_);
   load_box(system, pairs.higher, higher_);
   cut_edges(lower_, higher_, on_lower_);

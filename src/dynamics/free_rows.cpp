@@ -1,5 +1,7 @@
 #include "block_lanes.hpp"
 
+#include "gcpdda/base/prefetch.hpp"
+
 #include <algorithm>
 #include <bit>
 
@@ -30,6 +32,9 @@ std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, s
   };
   while (first + lanes.width <= last && are_deformable(first) &&
          are_free(system, first, first + lanes.width)) {
+    const std::size_t next = first + lanes.width;
+    prefetch(system.deformation.data() + system.deformation_begin[next], lanes.width * sizeof(Deformation));
+    prefetch(system.matrix.data() + system.matrix_begin[first], lanes.width * sizeof(BlockMatrix));
     lanes.gather_deformables(system, first, rows);
     first += lanes.width;
   }

@@ -1,5 +1,7 @@
 #include "gcpdda/dynamics/integrate.hpp"
 
+#include "gcpdda/base/prefetch.hpp"
+
 #include "block_lanes.hpp"
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
@@ -152,6 +154,8 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpa
     const std::size_t last = std::min(rows.last, first + rows_at_once);
     for (std::size_t i = first; i < last; ++i) {
       while (are_deformable(i, last)) {
+        prefetch(system.deformation.data() + system.deformation_begin[i + lanes.width],
+                 lanes.width * sizeof(Deformation));
         lanes.predict_deformables(system, i, next.by_velocity, next.by_acceleration);
         i += lanes.width;
       }

@@ -44,6 +44,14 @@ public:
     const auto to = places([&](std::size_t i) { return &system_.edge_length[first_[i]]; });
     store_by_lane(to, 0, length[0], length[1], length[2], length[3]);
   }
+  [[nodiscard, gnu::always_inline]] std::array<Lanes, 4> load_lengths() const {
+    return load_by_lane([&](std::size_t i) { return &system_.edge_length[first_[i]]; });
+  }
+  [[gnu::always_inline]] void store_deformed(std::size_t k, const LaneVec &slope, const Lanes &length,
+                                             const Lanes &unit) const {
+    store_by_lane(places([&](std::size_t i) { return &system_.deformed_edge[first_[i] + k]; }), 0, slope.x,
+                  slope.y, length, unit);
+  }
   [[gnu::always_inline]] void store_boxes(const std::array<LaneVec, 4> &vertex) const {
     LaneVec low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     LaneVec high = -low;
@@ -89,6 +97,12 @@ inline void pose_rigid_quads(BlockSystem &system, const RowsAtOnce &rows) {
   quads.store(system.vertex, vertex);
   quads.store(system.normal, normal);
   quads.store_boxes(vertex);
+  if (!system.deformed_edge.empty()) {
+    const std::array<Lanes, 4> length = quads.load_lengths();
+    for (std::size_t k = 0; k < 4; ++k) {
+      quads.store_deformed(k, normal[k], length[k], 1.0);
+    }
+  }
 }
 
 inline void pose_deformable_quads(BlockSystem &system, const RowsAtOnce &rows) {
@@ -100,15 +114,20 @@ inline void pose_deformable_quads(BlockSystem &system, const RowsAtOnce &rows) {
                     [&](std::size_t i) { return &system.trial_inverse[system.deformation_begin[row[i]]]; }),
                 0, inverted.xx(), inverted.xy(), inverted.yx(), inverted.yy());
   const LaneVec centre = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[row[i]]; });
+  const LaneMat of_slopes = determinant(inverted) * transposed(inverted);
   const std::array<LaneVec, 4> reference = quads.load(system.reference_vertex);
+  const std::array<LaneVec, 4> reference_normal = quads.load(system.reference_normal);
   std::array<LaneVec, 4> vertex;
   std::array<LaneVec, 4> normal;
   std::array<Lanes, 4> length;
   for (std::size_t k = 0; k < 4; ++k) {
     const LaneVec edge = gradient(reference[(k + 1) % 4] - reference[k]);
     vertex[k] = centre + gradient(reference[k]);
-    length[k] = sqrt(dot(edge, edge));
-    normal[k] = (Lanes(1.0) / length[k]) * LaneVec{edge.y, -edge.x};
+    const LaneVec slope = of_slopes(reference_normal[k]);
+    const Lanes unit = Lanes(1.0) / sqrt(dot(slope, slope));
+    normal[k] = unit * slope;
+    length[k] = dot(edge, perp(normal[k]));
+    quads.store_deformed(k, slope, length[k], unit);
   }
   quads.store(system.vertex, vertex);
   quads.store(system.normal, normal);

@@ -182,6 +182,9 @@ void pose_rigid(BlockSystem &system, std::size_t row) {
     const Packed vertex = centre + turned(system.reference_vertex[k]);
     system.vertex[k] = unpacked(vertex);
     system.normal[k] = unpacked(turned(system.reference_normal[k]));
+    if (!system.deformed_edge.empty()) {
+      system.deformed_edge[k] = {system.normal[k], system.edge_length[k], 1.0};
+    }
     low = vertex < low ? vertex : low;
     high = high < vertex ? vertex : high;
   }
@@ -191,7 +194,9 @@ void pose_rigid(BlockSystem &system, std::size_t row) {
 void pose_deformable(BlockSystem &system, std::size_t row) {
   const Vec2 centre = system.trial_centroid[row];
   const Mat2 &gradient = system.deformation_of(row).trial;
-  system.trial_inverse[system.deformation_begin[row]] = inverse(gradient);
+  const Mat2 inverted = inverse(gradient);
+  const Mat2 of_slopes = determinant(inverted) * transposed(inverted);
+  system.trial_inverse[system.deformation_begin[row]] = inverted;
   Aabb box;
   const std::size_t begin = system.vertex_begin[row];
   const std::size_t end = system.vertex_begin[row + 1];
@@ -199,8 +204,11 @@ void pose_deformable(BlockSystem &system, std::size_t row) {
     const std::size_t next = k + 1 == end ? begin : k + 1;
     const Vec2 edge = gradient(system.reference_vertex[next] - system.reference_vertex[k]);
     system.vertex[k] = centre + gradient(system.reference_vertex[k]);
-    system.edge_length[k] = norm(edge);
-    system.normal[k] = (1.0 / system.edge_length[k]) * Vec2{edge.y, -edge.x};
+    const Vec2 slope = of_slopes(system.reference_normal[k]);
+    const double unit = 1.0 / norm(slope);
+    system.normal[k] = unit * slope;
+    system.edge_length[k] = dot(edge, perp(system.normal[k]));
+    system.deformed_edge[k] = {slope, system.edge_length[k], unit};
     box.include(system.vertex[k]);
   }
   system.box[row] = box;
@@ -214,6 +222,7 @@ void pose(BlockSystem &system, std::size_t first, std::size_t last) {
   system.vertex.resize(system.reference_vertex.size());
   system.normal.resize(system.reference_vertex.size());
   system.trial_inverse.resize(system.deformation.size());
+  system.deformed_edge.resize(system.deformation.empty() ? 0 : system.reference_vertex.size());
   for (std::size_t row = first; row < last; ++row) {
     system.trial_centroid[row] = system.properties[row].centroid + system.trial[row].u;
     if (system.is_deformable(row)) {

@@ -89,7 +89,9 @@ private:
   void add_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
   /// The only region of a pair of the group at hand.
   void keep_plain(std::uint32_t pair, const RegionSums &region, bool born);
-  void add_dyads(const BlockSystem &system, BlockIndex row, const BlockGradientSum &dyads);
+  /// To the lower (k = 0) or the higher block of a pair, if it deforms.
+  void add_dyads(const BlockSystem &system, const CandidatePair &pair, std::size_t k,
+                 const RegionDyads &dyads, const RegionSums &region);
   void clear_sums(const BlockSystem &system);
   /// Of a pair that waits: mostly one that follows the last one asked for.
   RegionRange &range_of(std::uint32_t pair);

@@ -67,8 +67,7 @@ struct alignas(64) BlockMotion {
 
 /// What contacts of a deformable block have in common.
 struct DeformingBlock {
-  Mat2 slopes; ///< F*^-T/J: of a reference normal minus the gradient of the depth below that edge
-  Mat2 rate;   ///< velocity gradient, 1/s
+  Mat2 rate; ///< velocity gradient, 1/s
 };
 
 /// Something a step cannot go on with.

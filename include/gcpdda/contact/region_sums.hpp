@@ -44,8 +44,15 @@ struct RegionDetails {
 
 struct RegionForce : RegionSums, RegionDetails {};
 
-/// BlockGradientSum of one region, with its signs, about the trial centroids of the lower and the higher
-/// block: of pairs with a deformable block.
-using RegionDyads = std::array<BlockGradientSum, 2>;
+/// What one region does to F of the lower block, about its trial centroid: of pairs with a deformable block.
+using RegionDyads = BlockGradientSum;
+
+/// What it does to that of the higher block: the opposite forces at the same points, about another centroid.
+/// @param apart  the trial centroid of the lower block from that of the higher one
+inline BlockGradientSum on_higher(const RegionDyads &on_lower, const RegionSums &sums, Vec2 apart) {
+  return {-1.0 * (on_lower.force + outer(apart, sums.force)),
+          -1.0 * (on_lower.shear + outer(apart, sums.shear_force)),
+          -1.0 * (on_lower.damping + outer(apart, sums.damping_force))};
+}
 
 } // namespace gcpdda

@@ -87,6 +87,14 @@ struct Deformation {
   Mat2 anchor_force;  ///< fixed points
 };
 
+/// An edge of a block in a system where some deform. Four numbers: the lanes read them so
+/// (src/contact/lane_motion.hpp).
+struct DeformedEdge {
+  Vec2 slope;          ///< minus the gradient of the depth below it: F^-T N/J, N the reference normal
+  double length = 0.0; ///< m
+  double unit = 0.0;   ///< 1/|slope|: this times the slope is the normal
+};
+
 /// A dead load at a material point.
 struct MaterialLoad {
   Vec2 point; ///< X, reference axes, m
@@ -214,7 +222,8 @@ struct BlockSystem {
   std::vector<Vec2> vertex;
   std::vector<Vec2> normal;
   std::vector<Aabb> box;
-  std::vector<Mat2> trial_inverse; ///< F*^-1, by entry of `deformation`
+  std::vector<Mat2> trial_inverse;         ///< F*^-1, by entry of `deformation`
+  std::vector<DeformedEdge> deformed_edge; ///< by vertex; empty where no block deforms
 
   [[nodiscard]] std::size_t num_rows() const { return properties.size(); }
   [[nodiscard]] std::size_t num_mobile() const { return num_owned + num_ghosts; }
