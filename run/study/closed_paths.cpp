@@ -76,7 +76,7 @@ public:
     for (const Region &region : overlap_.regions()) {
       const RegionIntegrals sum = overlap_.integrate(region);
       const Mat2 dyad = Mat2{sum.dyad[0], sum.dyad[1], sum.dyad[2], sum.dyad[3]} +
-                        outer(sum.origin - system_.trial_centroid[0], sum.force);
+                        outer(sum.origin - system_.motion[0].centroid, sum.force);
       force.centre += sum.force;
       force.gradient += transposed(inverse(at.gradient) * dyad);
     }

@@ -92,7 +92,7 @@ RigidDof OneBlock::evaluate() {
   const Region &region = overlap_.regions().front();
   const RegionIntegrals sum = overlap_.integrate(region);
   const double half = 0.5 * problem_.normal_stiffness;
-  const Vec2 centroid = system_.trial_centroid[0];
+  const Vec2 centroid = system_.motion[0].centroid;
   Vec2 on_support = half * sum.force;
   double torque = half * (sum.dyad[1] - sum.dyad[2]) + cross(sum.origin - centroid, on_support);
   const double normal_force = norm(on_support);
@@ -146,7 +146,7 @@ Vec2 OneBlock::normal_dashpot(const Region &region, Vec2 normal, Vec2 point, dou
   const double half = 0.5 * problem_.normal_stiffness;
   const double rate = problem_.damping_ratio *
                       std::sqrt(problem_.normal_stiffness * mass() / std::sqrt(system_.properties[0].area));
-  const Vec2 centroid = system_.trial_centroid[0];
+  const Vec2 centroid = system_.motion[0].centroid;
   if (variant_.dashpot == Dashpot::resultant) {
     const double closing = dot(velocity_at(point - centroid), normal);
     const Vec2 force = std::max(-normal_force, 2.0 * rate * extent * closing) * normal;

@@ -123,7 +123,7 @@ inline void BlockSums::add_dyads(const BlockSystem &system, const CandidatePair 
     if (k == 0) {
       add(dyads);
     } else {
-      add(on_higher(dyads, region, system.trial_centroid[pair.lower.value] - system.trial_centroid[row]));
+      add(on_higher(dyads, region, system.motion[pair.lower.value].centroid - system.motion[row].centroid));
     }
   }
 }

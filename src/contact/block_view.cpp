@@ -6,10 +6,10 @@ namespace gcpdda {
 
 BlockView view_of(const BlockSystem &system, std::size_t row) {
   BlockView view{system.of_row(system.vertex, row),      system.of_row(system.normal, row),
-                 system.of_row(system.edge_length, row), system.box[row],
+                 system.of_row(system.edge_length, row), system.motion[row].box,
                  system.properties[row].is_convex,       {}};
   if (system.is_deformable(row)) {
-    view.frame = {system.trial_centroid[row], system.deformation_of(row).trial,
+    view.frame = {system.motion[row].centroid, system.deformation_of(row).trial,
                   system.trial_inverse[system.deformation_begin[row]],
                   system.of_row(system.reference_vertex, row), system.of_row(system.reference_normal, row)};
   }
@@ -17,7 +17,7 @@ BlockView view_of(const BlockSystem &system, std::size_t row) {
 }
 
 Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x) {
-  const Vec2 arm = x - system.trial_centroid[row];
+  const Vec2 arm = x - system.motion[row].centroid;
   return system.is_deformable(row) ? system.trial_inverse[system.deformation_begin[row]](arm)
                                    : Rotation::of(-system.trial[row].r)(arm);
 }

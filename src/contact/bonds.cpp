@@ -277,7 +277,7 @@ void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair 
     for (const std::size_t k : {0U, 1U}) {
       const std::size_t row = (k == 0 ? pair.lower : pair.higher).value;
       const double torque =
-          pull_dyad.xy - pull_dyad.yx + cross(force.point - system.trial_centroid[row], pull);
+          pull_dyad.xy - pull_dyad.yx + cross(force.point - system.motion[row].centroid, pull);
       force.shear_torque[k] += k == 0 ? torque : -torque;
     }
     note_dyads(system, pair, force, pull_dyad);

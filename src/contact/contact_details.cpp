@@ -2,7 +2,7 @@
 //
 // A step needs of a plain pair what its regions do to the blocks, and their memory. Where they act, in which
 // direction, how deep: that is wanted at the start, for frames and for rows of energies. It follows from the
-// trial configuration, the velocities in motions_ and the memory that the evaluation left behind, by the same
+// trial configuration, the velocities in motions and the memory that the evaluation left behind, by the same
 // operations in the same order, but without another slide; so a group of pairs is evaluated once more, read,
 // and overwritten by the next one. Regions of other pairs are kept with all that is known of them.
 
@@ -44,7 +44,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
   });
   grow(forces_, num_forces);
   is_again_ = true;
-  evaluate_known({system, candidates, history, motions_, deforming_, parameters_.damping_ratio,
+  evaluate_known({system, candidates, history, deforming_, parameters_.damping_ratio,
                   parameters_.stiffness_damping, true});
   is_again_ = false;
   batch_->take_extremes(); // they have been told
@@ -96,8 +96,8 @@ void ContactForces::put_sums(const Candidates &candidates, std::uint32_t pair, s
 ContactForces::ShearToSet::ShearToSet(const BlockSystem &system, const CandidatePair &of, RegionForce &force_,
                                       RegionDyads *dyads, RegionState &state)
     : pair(of), force(force_), memory(state), tangent(perp(force_.normal)),
-      arm_lower(force_.point - system.trial_centroid[of.lower.value]),
-      arm_higher(force_.point - system.trial_centroid[of.higher.value]), changing_(force_), dyads_(dyads) {}
+      arm_lower(force_.point - system.motion[of.lower.value].centroid),
+      arm_higher(force_.point - system.motion[of.higher.value].centroid), changing_(force_), dyads_(dyads) {}
 
 void ContactForces::ShearToSet::set(double shear) {
   RegionForce &f = changing_;

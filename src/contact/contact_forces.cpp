@@ -48,16 +48,15 @@ ContactForces::~ContactForces() = default;
 ContactForces::ContactForces(ContactForces &&) noexcept = default;
 ContactForces &ContactForces::operator=(ContactForces &&) noexcept = default;
 
-void ContactForces::find_motions(const BlockSystem &system, std::size_t first, std::size_t last) {
-  motions_.resize(system.num_rows());
+void ContactForces::find_motions(BlockSystem &system, std::size_t first, std::size_t last) {
   deforming_.resize(system.deformation.size());
   const std::size_t width = batch_->width();
   const auto in_lanes = [&](std::size_t row) { // did they?
     const std::size_t deformable = system.deformation_begin[row + width] - system.deformation_begin[row];
     if (deformable == width) {
-      batch_->find_deforming_motions(system, row, motions_, deforming_);
+      batch_->find_deforming_motions(system, row, deforming_);
     }
-    return deformable == width || (deformable == 0 && batch_->find_motions(system, row, motions_));
+    return deformable == width || (deformable == 0 && batch_->find_motions(system, row));
   };
   for (std::size_t row = first; row < last; ++row) {
     while (row + width <= last && last <= system.first_fixed() && in_lanes(row)) {
@@ -67,10 +66,10 @@ void ContactForces::find_motions(const BlockSystem &system, std::size_t first, s
       break;
     }
     const RigidDof &velocity = system.velocity[row];
-    motions_[row] = {system.trial_centroid[row], velocity.u, {}, velocity.r, 0.0, system.box[row]};
-    if (!system.is_fixed(row)) {
-      motions_[row].increment = trial_increment(system, row);
-    }
+    BlockMotion &motion = system.motion[row];
+    motion.velocity = velocity.u;
+    motion.spin = velocity.r;
+    motion.increment = system.is_fixed(row) ? TrialIncrement{} : trial_increment(system, row);
     if (system.is_deformable(row)) {
       const std::size_t k = system.deformation_begin[row];
       deforming_[k] = {system.deformation[k].rate * system.trial_inverse[k]};
@@ -254,15 +253,15 @@ void ContactForces::evaluate_strangers(const PlainScene &scene) {
 }
 
 // Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
-void ContactForces::find_meeting(const Candidates &candidates, const ContactHistory &history,
-                                 std::size_t first, std::size_t last) {
+void ContactForces::find_meeting(const BlockSystem &system, const Candidates &candidates,
+                                 const ContactHistory &history, std::size_t first, std::size_t last) {
   std::array<std::vector<std::uint32_t> *, 5> lists{&strangers_, &corners_, &faces_, &sides_, &others_};
   std::array<std::uint32_t *, lists.size()> ends{};
   for (std::size_t i = 0; i < lists.size(); ++i) {
     lists[i]->resize(last - first);
     ends[i] = lists[i]->data();
   }
-  const BlockMotion *motions = motions_.data();
+  const BlockMotion *motions = system.motion.data();
   for (std::size_t k = first; k < last; ++k) {
     const PlainPair &plain = candidates.plain[k];
     const PlainOverlap overlap = history.overlaps[plain.pair];
@@ -284,14 +283,9 @@ void ContactForces::find_meeting(const Candidates &candidates, const ContactHist
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                                          ContactHistory &history, std::size_t first, std::size_t last,
                                          const Front &front) {
-  const PlainScene scene{system,
-                         candidates,
-                         history,
-                         motions_,
-                         deforming_,
-                         parameters_.damping_ratio,
-                         parameters_.stiffness_damping,
-                         false};
+  const PlainScene scene{
+      system, candidates, history, deforming_, parameters_.damping_ratio, parameters_.stiffness_damping,
+      false};
   plain_memory_ = history.plain;
   for (std::size_t begin = first, end = first; begin < last; begin = end) {
     const std::uint32_t group = candidates.plain[begin].group();
@@ -304,7 +298,7 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
     if (front.before) {
       front.before(candidates.group_rows[group].end);
     }
-    find_meeting(candidates, history, begin, end);
+    find_meeting(system, candidates, history, begin, end);
     evaluate_known(scene);
     evaluate_strangers(scene);
     for (const std::uint32_t number : births_) {
@@ -353,15 +347,15 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
                                            ContactHistory &history, std::span<const std::uint32_t> pairs) {
   for (const std::uint32_t k : pairs) {
     const CandidatePair &pair = candidates.pairs[k];
-    if (system.box[pair.lower.value].meets(system.box[pair.higher.value]) || history.has_bonds(k) ||
-        history.is_dilated(k)) {
+    if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) ||
+        history.has_bonds(k) || history.is_dilated(k)) {
       ++report_.evaluations;
       evaluate_any_pair(system, candidates, k, history.of_other(k));
     }
   }
 }
 
-void ContactForces::evaluate_interior(const BlockSystem &system, const Candidates &candidates,
+void ContactForces::evaluate_interior(BlockSystem &system, const Candidates &candidates,
                                       ContactHistory &history, const Front &front) {
   find_motions(system, system.first_fixed(), system.num_rows());
   num_forces_ = 0;
@@ -383,7 +377,7 @@ void ContactForces::evaluate_interior(const BlockSystem &system, const Candidate
                          std::span(candidates.general).first(candidates.num_interior_general));
 }
 
-ForceReport ContactForces::evaluate_border(const BlockSystem &system, const Candidates &candidates,
+ForceReport ContactForces::evaluate_border(BlockSystem &system, const Candidates &candidates,
                                            ContactHistory &history) {
   find_motions(system, system.num_owned, system.first_fixed());
   evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
@@ -410,7 +404,10 @@ void ContactForces::note_depth(const BlockSystem &system, const CandidatePair &p
 }
 
 ComingConfiguration::ComingConfiguration(const BlockSystem &system)
-    : increments(system.num_rows()), centroids(system.trial_centroid) {
+    : increments(system.num_rows()), centroids(system.num_rows()) {
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    centroids[row] = system.motion[row].centroid;
+  }
   for (std::size_t row = 0; row < system.first_fixed(); ++row) {
     increments[row] = trial_increment(system, row);
   }

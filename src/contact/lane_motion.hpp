@@ -39,7 +39,7 @@ template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, L
 }
 [[gnu::always_inline]] inline void load_box(const BlockSystem &system, const LaneBlocks &blocks,
                                             LaneSide &side) {
-  load_box_of([&](std::size_t i) { return &system.box[blocks.row[i]]; }, side);
+  load_box_of([&](std::size_t i) { return &system.motion[blocks.row[i]].box; }, side);
 }
 
 [[gnu::always_inline]] inline LaneVec load_vertex(const BlockSystem &system, const LaneBlocks &blocks,
@@ -113,9 +113,10 @@ struct RigidMotion : TranslatingMotion {
     return (lower_velocity + lower_spin * perp(x - lower_centroid)) -
            (higher_velocity + higher_spin * perp(x - higher_centroid));
   }
-  /// How that velocity differs at an offset.
-  [[nodiscard, gnu::always_inline]] LaneVec velocity_change(const LaneVec &offset) const {
-    return (lower_spin - higher_spin) * perp(offset);
+  /// The gradient of that velocity along a direction.
+  [[nodiscard, gnu::always_inline]] LaneVec velocity_change_along(const LaneVec &normal) const {
+    const Lanes spin = lower_spin - higher_spin;
+    return {spin * normal.y, -spin * normal.x};
   }
   [[nodiscard, gnu::always_inline]] LaneVec slide_at(const LaneVec &x) const {
     const LaneVec r = x - lower_centroid;
@@ -170,8 +171,8 @@ struct DeformingMotion : TranslatingMotion {
     return (lower_velocity + lower_rate(x - lower_centroid)) -
            (higher_velocity + higher_rate(x - higher_centroid));
   }
-  [[nodiscard, gnu::always_inline]] LaneVec velocity_change(const LaneVec &offset) const {
-    return lower_rate(offset) - higher_rate(offset);
+  [[nodiscard, gnu::always_inline]] LaneVec velocity_change_along(const LaneVec &normal) const {
+    return transposed(lower_rate - higher_rate)(normal);
   }
   [[nodiscard, gnu::always_inline]] LaneVec slide_at(const LaneVec &x) const {
     return (lower_step + lower_turn(x - lower_centroid)) - (higher_step + higher_turn(x - higher_centroid));
@@ -185,7 +186,7 @@ private:
 };
 
 /// What PlainBatch::find_motions() says.
-inline bool find_rigid_motions(const BlockSystem &system, std::size_t first, std::span<BlockMotion> motions) {
+inline bool find_rigid_motions(BlockSystem &system, std::size_t first) {
   static_assert(sizeof(RigidDof) == 3 * sizeof(double));
   const ThreeLanes trial = load_triples(&system.trial[first].u.x);
   const ThreeLanes previous = load_triples(&system.trial_previous[first].u.x);
@@ -195,23 +196,21 @@ inline bool find_rigid_motions(const BlockSystem &system, std::size_t first, std
     return false;
   }
   const auto [sine, versine] = LaneTurn::of(turn);
-  const LaneVec centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[first + i]; });
   std::array<std::byte *, num_lanes> to;
   for (std::size_t i = 0; i < num_lanes; ++i) {
-    to[i] = reinterpret_cast<std::byte *>(&motions[first + i]);
-    motions[first + i].box = system.box[first + i];
+    to[i] = reinterpret_cast<std::byte *>(&system.motion[first + i]);
   }
   static_assert(offsetof(BlockMotion, increment) == 4 * sizeof(double) &&
                 offsetof(BlockMotion, spin) == 10 * sizeof(double));
-  store_by_lane(to, 0, centroid.x, centroid.y, velocity[0], velocity[1]);
+  store_pairs(to, offsetof(BlockMotion, velocity), velocity[0], velocity[1]);
   store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], versine, -sine);
   store_by_lane(to, 8 * sizeof(double), sine, versine, velocity[2], 0.0);
   return true;
 }
 
 /// What PlainBatch::find_deforming_motions() says.
-inline void find_deforming_motions(const BlockSystem &system, std::size_t first,
-                                   std::span<BlockMotion> motions, std::span<DeformingBlock> deforming) {
+inline void find_deforming_motions(BlockSystem &system, std::size_t first,
+                                   std::span<DeformingBlock> deforming) {
   const std::size_t entry = system.deformation_begin[first];
   const Deformation *deformation = &system.deformation[entry];
   const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
@@ -220,18 +219,16 @@ inline void find_deforming_motions(const BlockSystem &system, std::size_t first,
   const ThreeLanes trial = load_triples(&system.trial[first].u.x);
   const ThreeLanes previous = load_triples(&system.trial_previous[first].u.x);
   const ThreeLanes velocity = load_triples(&system.velocity[first].u.x);
-  const LaneVec centroid = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[first + i]; });
   const LaneMat to_reference = LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
   const LaneMat turn = (load(&Deformation::trial) - load(&Deformation::trial_previous)) * to_reference;
   const LaneMat rate = load(&Deformation::rate) * to_reference;
   std::array<std::byte *, num_lanes> to;
   std::array<std::byte *, num_lanes> to_deforming;
   for (std::size_t i = 0; i < num_lanes; ++i) {
-    to[i] = reinterpret_cast<std::byte *>(&motions[first + i]);
+    to[i] = reinterpret_cast<std::byte *>(&system.motion[first + i]);
     to_deforming[i] = reinterpret_cast<std::byte *>(&deforming[entry + i]);
-    motions[first + i].box = system.box[first + i];
   }
-  store_by_lane(to, 0, centroid.x, centroid.y, velocity[0], velocity[1]);
+  store_pairs(to, offsetof(BlockMotion, velocity), velocity[0], velocity[1]);
   store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], turn.xx(), turn.xy());
   store_by_lane(to, 8 * sizeof(double), turn.yx(), turn.yy(), velocity[2], 0.0);
   store_by_lane(to_deforming, offsetof(DeformingBlock, rate), rate.xx(), rate.xy(), rate.yx(), rate.yy());

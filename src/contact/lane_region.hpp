@@ -326,23 +326,26 @@ inline PlainBatch::Extremes LaneRegions::take_extremes() {
 /// positive part of -(p + d), with the pressure p >= 0 that can be released and the dashpot's linear d.
 class LaneDashpot {
 public:
-  LaneDashpot(const LaneRegions &regions, const LaneConstants &constants, const Lanes &facing_pressure)
-      : total(0.0), moment{0.0, 0.0}, regions_(regions), constants_(constants),
+  template <class AnyMotion>
+  LaneDashpot(const LaneRegions &regions, const LaneConstants &constants, const Lanes &facing_pressure,
+              const AnyMotion &motion)
+      : total(0.0), moment{0.0, 0.0}, constants_(constants),
+        velocity_(dot(motion.velocity_at(regions.origin), regions.normal())),
+        velocity_change_(motion.velocity_change_along(regions.normal())),
         releasable_(min(constants.half_stiffness,
                         regions.normal_force() / select(facing_pressure > 0.0, facing_pressure, 1.0))) {}
 
   Lanes total;
   LaneVec moment; ///< about the origin
 
-  /// A stretch from `begin` (from the origin) on along `direction` with the share w of its normal along n_r;
-  /// `velocity` is that of the lower block against the higher one at the origin.
-  template <class AnyMotion, class Pieces>
+  /// A stretch from `begin` (from the origin) on along `direction` with the share w of its normal along n_r.
+  template <class Pieces>
   [[gnu::always_inline]] void add(const LaneVec &begin, const LaneVec &direction, const Pieces &pieces,
-                                  const Lanes &share, const AnyMotion &motion, const LaneVec &velocity) {
+                                  const Lanes &share) {
     const Lanes &length = pieces.length;
     const Lanes rate = constants_.damping * share;
-    const Lanes closing = -rate * dot(velocity + motion.velocity_change(begin), regions_.normal());
-    const Lanes slope = -rate * dot(motion.velocity_change(direction), regions_.normal());
+    const Lanes closing = -rate * (velocity_ + dot(velocity_change_, begin));
+    const Lanes slope = -rate * dot(velocity_change_, direction);
     LaneTraction q;
     q.total = Lanes(0.5) * length * (Lanes(2.0) * closing + slope * length);
     q.along = length * length * (Lanes(3.0) * closing + Lanes(2.0) * slope * length) * Lanes(1.0 / 6.0);
@@ -395,9 +398,10 @@ private:
     }
   }
 
-  const LaneRegions &regions_;
   const LaneConstants &constants_;
-  Lanes releasable_; ///< over the depth at w = 1, Pa/m
+  Lanes velocity_;          ///< along n_r at the origin, of the lower block against the higher one
+  LaneVec velocity_change_; ///< by that dotted into the way from there
+  Lanes releasable_;        ///< over the depth at w = 1, Pa/m
 };
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

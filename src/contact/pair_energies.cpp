@@ -52,7 +52,7 @@ std::span<const double> PairEnergies::of_group(const BlockSystem &system, const 
     const PlainPair &plain = candidates.plain[entry];
     const CandidatePair &pair = candidates.pairs[plain.pair];
     if (!plain.kind.is_deformable && is_simple(pair.lower) && is_simple(pair.higher) &&
-        system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
+        system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box)) {
       (plain.kind.may_be_corners() ? corners_ : others_).push_back(&plain);
     }
   });

@@ -134,8 +134,8 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   if (bonds.released) {
     memory.shear += bonds.shear; // stretched to this configuration already
   } else if (!force.born) {
-    const Vec2 slide = slide_at(system, pair, force.point, motions_[pair.lower.value].increment,
-                                motions_[pair.higher.value].increment);
+    const Vec2 slide = slide_at(system, pair, force.point, system.motion[pair.lower.value].increment,
+                                system.motion[pair.higher.value].increment);
     memory.shear += stiffness * dot(slide, tangent);
   }
   if (std::abs(memory.shear) > force.cap) {
@@ -219,10 +219,10 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
     const std::size_t row = (is_lower ? pair.lower : pair.higher).value;
     const double sign = is_lower ? 1.0 : -1.0;
     const std::size_t k = is_lower ? 0 : 1;
-    const Vec2 arm = force.origin - system.trial_centroid[row];
+    const Vec2 arm = force.origin - system.motion[row].centroid;
     const auto torque = [&](const Mat2 &dyad, Vec2 f) { return sign * (dyad.xy - dyad.yx + cross(arm, f)); };
     force.torque[k] = torque(force.dyad, force.force);
-    force.shear_torque[k] = sign * cross(force.point - system.trial_centroid[row], force.shear_force);
+    force.shear_torque[k] = sign * cross(force.point - system.motion[row].centroid, force.shear_force);
     force.damping_torque[k] = torque(damping_dyad_, force.damping_force);
   }
   note_dyads(system, pair, force);
@@ -235,7 +235,7 @@ void ContactForces::note_dyads(const BlockSystem &system, const CandidatePair &p
   }
   const std::size_t number = num_forces_ - 1 - first_of_pair_;
   grow(dyads_, number + 1);
-  const Vec2 centroid = system.trial_centroid[pair.lower.value];
+  const Vec2 centroid = system.motion[pair.lower.value].centroid;
   const Vec2 arm = force.origin - centroid;
   dyads_[number] = {force.dyad + outer(arm, force.force),
                     outer(force.point - centroid, force.shear_force) + beyond,
@@ -249,7 +249,8 @@ void ContactForces::find_regions(const BlockSystem &system, const Candidates &ca
   std::copy_if(old.begin(), old.end(), std::back_inserter(dilated_),
                [](const RegionMemory &m) { return m.is_dilated(); });
   const bool all_dilated = pair.is_convex && !dilated_.empty(); // its only region
-  const bool touches = !all_dilated && system.box[pair.lower.value].meets(system.box[pair.higher.value]) &&
+  const bool touches = !all_dilated &&
+                       system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) &&
                        overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
                                      parameters_.potential);
   const auto first_bond =

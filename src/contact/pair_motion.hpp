@@ -22,8 +22,8 @@ inline Vec2 increment_at(const TrialIncrement &step, Vec2 r) {
 /// Motion of the lower block's material point now at x relative to the higher one's.
 inline Vec2 slide_at(const BlockSystem &system, const CandidatePair &pair, Vec2 x,
                      const TrialIncrement &lower, const TrialIncrement &higher) {
-  return increment_at(lower, x - system.trial_centroid[pair.lower.value]) -
-         increment_at(higher, x - system.trial_centroid[pair.higher.value]);
+  return increment_at(lower, x - system.motion[pair.lower.value].centroid) -
+         increment_at(higher, x - system.motion[pair.higher.value].centroid);
 }
 
 inline void add_force(RegionForce &force, Vec2 at, Vec2 f) {
@@ -45,7 +45,7 @@ struct ContactForces::RelativeVelocity {
 private:
   void add(const BlockSystem &system, std::size_t row, Vec2 origin, double sign) {
     const RigidDof &v = system.velocity[row];
-    const Vec2 arm = origin - system.trial_centroid[row];
+    const Vec2 arm = origin - system.motion[row].centroid;
     if (system.is_deformable(row)) {
       const Mat2 own = system.deformation_of(row).rate * system.trial_inverse[system.deformation_begin[row]];
       at_origin += sign * (v.u + own(arm));

@@ -19,7 +19,6 @@ struct PlainScene {
   const BlockSystem &system;
   const Candidates &candidates;
   const ContactHistory &history;
-  std::span<const BlockMotion> motions;
   std::span<const DeformingBlock> deforming; ///< by entry of BlockSystem::deformation
   double damping_ratio = 0.0;
   double stiffness_damping = 0.0;
@@ -57,11 +56,9 @@ public:
   [[nodiscard]] virtual std::size_t width() const = 0;
   /// How rigid rows move, as many from `first` on as there are lanes.
   /// @return false, and nothing is written, where one turns by more than a series reaches
-  virtual bool find_motions(const BlockSystem &system, std::size_t first,
-                            std::span<BlockMotion> motions) const = 0;
+  virtual bool find_motions(BlockSystem &system, std::size_t first) const = 0;
   /// The same of deformable rows.
-  virtual void find_deforming_motions(const BlockSystem &system, std::size_t first,
-                                      std::span<BlockMotion> motions,
+  virtual void find_deforming_motions(BlockSystem &system, std::size_t first,
                                       std::span<DeformingBlock> deforming) const = 0;
   /// What one of the ways below says of each lane, by bits.
   struct Seen {

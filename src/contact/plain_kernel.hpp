@@ -23,13 +23,12 @@ class LaneBatch final : public PlainBatch {
 public:
   static_assert(num_lanes <= most_lanes);
   [[nodiscard]] std::size_t width() const override { return num_lanes; }
-  bool find_motions(const BlockSystem &system, std::size_t first,
-                    std::span<BlockMotion> motions) const override {
-    return find_rigid_motions(system, first, motions);
+  bool find_motions(BlockSystem &system, std::size_t first) const override {
+    return find_rigid_motions(system, first);
   }
-  void find_deforming_motions(const BlockSystem &system, std::size_t first, std::span<BlockMotion> motions,
+  void find_deforming_motions(BlockSystem &system, std::size_t first,
                               std::span<DeformingBlock> deforming) const override {
-    gcpdda::GCPDDA_INSTRUCTIONS::find_deforming_motions(system, first, motions, deforming);
+    gcpdda::GCPDDA_INSTRUCTIONS::find_deforming_motions(system, first, deforming);
   }
   Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Seen evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
@@ -104,7 +103,7 @@ struct LaneBatch::Pairs {
   /// And as they move.
   [[gnu::always_inline]] Pairs(const PlainScene &scene, const PlainLanes &given)
       : Pairs(scene.system, scene.candidates, given) {
-    const BlockMotion *motions = scene.motions.data();
+    const BlockMotion *motions = scene.system.motion.data();
     for (std::size_t i = 0; i < num_lanes; ++i) {
       lower.motion[i] = motions + lower.row[i];
       higher.motion[i] = motions + higher.row[i];
@@ -207,11 +206,10 @@ void LaneBatch::add_dashpot(const LaneConstants &constants, const AnyMotion &mot
     share = max(0.0, Lanes(sign) * dot(regions_.normal(), normal));
     facing_pressure += share * stretch.pressure;
   });
-  LaneDashpot dashpot(regions_, constants, facing_pressure);
-  const LaneVec velocity = motion.velocity_at(regions_.origin);
+  LaneDashpot dashpot(regions_, constants, facing_pressure, motion);
   each([&](const LaneStretch &stretch, const LaneVec &normal, const Lanes &share, double) {
     if ((stretch.valid & (share > 0.0)).any()) {
-      dashpot.add(stretch.begin - regions_.origin, perp(normal), stretch, share, motion, velocity);
+      dashpot.add(stretch.begin - regions_.origin, perp(normal), stretch, share);
     }
   });
   regions_.add_dashpot(dashpot.total, dashpot.moment, motion);
@@ -307,10 +305,9 @@ void LaneBatch::add_dashpot(const Overlap &overlap, const LaneConstants &constan
     share[i] = max(0.0, dot(regions_.normal(), push));
     facing_pressure += share[i] * stretch.pressure;
   });
-  LaneDashpot dashpot(regions_, constants, facing_pressure);
-  const LaneVec velocity = motion.velocity_at(regions_.origin);
+  LaneDashpot dashpot(regions_, constants, facing_pressure, motion);
   overlap.for_stretches([&](auto i, const auto &stretch, const LaneVec &) __attribute__((always_inline)) {
-    dashpot.add(stretch.begin, stretch.direction, stretch, share[i], motion, velocity);
+    dashpot.add(stretch.begin, stretch.direction, stretch, share[i]);
   });
   regions_.add_dashpot(dashpot.total, dashpot.moment, motion);
 }

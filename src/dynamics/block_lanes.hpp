@@ -71,7 +71,7 @@ using GatherDeformables = void (*)(BlockSystem &system, std::size_t first, const
 /// Rows, no more than there are lanes.
 using RowsAtOnce = std::span<const std::size_t>;
 
-/// pose() of rigid or of deformable rows with four vertices, whose trial_centroid is known.
+/// pose() of rigid or of deformable rows with four vertices, the centroids of whose motions are known.
 using PoseQuads = void (*)(BlockSystem &system, const RowsAtOnce &rows);
 
 /// Deformable rows [first, first + width) at x + by_velocity x' + by_acceleration x''; the trial

@@ -135,7 +135,7 @@ std::array<PointSpring, 2> springs_of(const LinkLaw &law, const BoltLink &link, 
 }
 
 Vec2 trial_position(const BlockSystem &system, std::size_t row, Vec2 point) {
-  return system.trial_centroid[row] + trial_gradient(system, row)(point);
+  return system.motion[row].centroid + trial_gradient(system, row)(point);
 }
 
 } // namespace gcpdda

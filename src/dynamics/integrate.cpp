@@ -64,7 +64,7 @@ public:
       : system_(system), width_(width), pose_(pose) {}
 
   void add(std::size_t row) {
-    system_.trial_centroid[row] = system_.properties[row].centroid + system_.trial[row].u;
+    system_.motion[row].centroid = system_.properties[row].centroid + system_.trial[row].u;
     rows_[count_++] = row;
     if (count_ == width_) {
       flush();

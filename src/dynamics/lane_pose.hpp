@@ -59,7 +59,7 @@ public:
       low = {min(v.x, low.x), min(v.y, low.y)};
       high = {max(v.x, high.x), max(v.y, high.y)};
     }
-    store_by_lane(places([&](std::size_t i) { return &system_.box[row[i]]; }), 0, low.x, low.y, high.x,
+    store_by_lane(places([&](std::size_t i) { return &system_.motion[row[i]].box; }), 0, low.x, low.y, high.x,
                   high.y);
   }
   /// Where get(i) points to.
@@ -87,7 +87,7 @@ inline void pose_rigid_quads(BlockSystem &system, const RowsAtOnce &rows) {
     c = Lanes::of([&](std::size_t i) { return Rotation::of(angle[i]).c; });
     s = Lanes::of([&](std::size_t i) { return Rotation::of(angle[i]).s; });
   }
-  const LaneVec centre = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[row[i]]; });
+  const LaneVec centre = LaneVec::of([&](std::size_t i) { return &system.motion[row[i]].centroid; });
   std::array<LaneVec, 4> vertex = quads.load(system.reference_vertex);
   std::array<LaneVec, 4> normal = quads.load(system.reference_normal);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -113,7 +113,7 @@ inline void pose_deformable_quads(BlockSystem &system, const RowsAtOnce &rows) {
   store_by_lane(LaneQuads::places(
                     [&](std::size_t i) { return &system.trial_inverse[system.deformation_begin[row[i]]]; }),
                 0, inverted.xx(), inverted.xy(), inverted.yx(), inverted.yy());
-  const LaneVec centre = LaneVec::of([&](std::size_t i) { return &system.trial_centroid[row[i]]; });
+  const LaneVec centre = LaneVec::of([&](std::size_t i) { return &system.motion[row[i]].centroid; });
   const LaneMat of_slopes = determinant(inverted) * transposed(inverted);
   const std::array<LaneVec, 4> reference = quads.load(system.reference_vertex);
   const std::array<LaneVec, 4> reference_normal = quads.load(system.reference_normal);

@@ -73,7 +73,7 @@ WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const
       }
       const Vec2 tangent = perp(normal[k]);
       const PressureIntegral p = pressure_on_edge(of, vertex[k], tangent, length[k], of.density * gravity);
-      const Vec2 moment = p.total * (vertex[k] - system.trial_centroid[row]) + p.along * tangent;
+      const Vec2 moment = p.total * (vertex[k] - system.motion[row].centroid) + p.along * tangent;
       load.force += -p.total * normal[k];
       load.dyad += outer(-1.0 * normal[k], moment);
     }

@@ -172,7 +172,7 @@ Vec2 unpacked(const Packed &a) {
 }
 
 void pose_rigid(BlockSystem &system, std::size_t row) {
-  const Packed centre = packed(system.trial_centroid[row]);
+  const Packed centre = packed(system.motion[row].centroid);
   const Rotation turn = Rotation::of(system.trial[row].r);
   const auto turned = [&](const Vec2 &a) { return turn.c * packed(a) + turn.s * Packed{-a.y, a.x}; };
   const Aabb none;
@@ -188,11 +188,11 @@ void pose_rigid(BlockSystem &system, std::size_t row) {
     low = vertex < low ? vertex : low;
     high = high < vertex ? vertex : high;
   }
-  system.box[row] = {unpacked(low), unpacked(high)};
+  system.motion[row].box = {unpacked(low), unpacked(high)};
 }
 
 void pose_deformable(BlockSystem &system, std::size_t row) {
-  const Vec2 centre = system.trial_centroid[row];
+  const Vec2 centre = system.motion[row].centroid;
   const Mat2 &gradient = system.deformation_of(row).trial;
   const Mat2 inverted = inverse(gradient);
   const Mat2 of_slopes = determinant(inverted) * transposed(inverted);
@@ -211,20 +211,19 @@ void pose_deformable(BlockSystem &system, std::size_t row) {
     system.deformed_edge[k] = {slope, system.edge_length[k], unit};
     box.include(system.vertex[k]);
   }
-  system.box[row] = box;
+  system.motion[row].box = box;
 }
 
 } // namespace
 
 void pose(BlockSystem &system, std::size_t first, std::size_t last) {
-  system.trial_centroid.resize(system.num_rows());
-  system.box.resize(system.num_rows());
+  system.motion.resize(system.num_rows());
   system.vertex.resize(system.reference_vertex.size());
   system.normal.resize(system.reference_vertex.size());
   system.trial_inverse.resize(system.deformation.size());
   system.deformed_edge.resize(system.deformation.empty() ? 0 : system.reference_vertex.size());
   for (std::size_t row = first; row < last; ++row) {
-    system.trial_centroid[row] = system.properties[row].centroid + system.trial[row].u;
+    system.motion[row].centroid = system.properties[row].centroid + system.trial[row].u;
     if (system.is_deformable(row)) {
       pose_deformable(system, row);
     } else {

@@ -31,7 +31,7 @@ std::int64_t num_occupied(const CellGrid &grid, std::span<const Vec2> points) {
 std::vector<std::int64_t> work_of_blocks(const BlockSystem &system, const Candidates &candidates) {
   std::vector<std::int64_t> work(system.num_owned, 2);
   for (const CandidatePair &pair : candidates.pairs) {
-    if (system.box[pair.lower.value].meets(system.box[pair.higher.value])) {
+    if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box)) {
       for (const BlockIndex end : {pair.lower, pair.higher}) {
         if (end.value < system.num_owned) {
           ++work[end.value];

@@ -11,7 +11,7 @@ void ContactDigest::find(const BlockSystem &blocks, const Candidates &candidates
     if (row >= blocks.num_owned && !blocks.is_fixed(row)) {
       return;
     }
-    const ContactPart part = contact_part(force, is_lower, blocks.trial_centroid[row]);
+    const ContactPart part = contact_part(force, is_lower, blocks.motion[row].centroid);
     if (row < blocks.num_owned) {
       on_rows[row].force += RigidDof{part.force, force.torque[is_lower ? 0 : 1]};
       on_rows[row].dyad += part.dyad;

@@ -138,7 +138,7 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
       of_group = energies.of_group(blocks, simulation.candidates(),
                                    static_cast<std::uint32_t>(k / PlainPair::pairs_in_group));
     }
-    if (!simulation.counts_here(pair) || !(is_dilated || blocks.box[a].meets(blocks.box[b]))) {
+    if (!simulation.counts_here(pair) || !(is_dilated || blocks.motion[a].box.meets(blocks.motion[b].box))) {
       continue;
     }
     const double energy = of_group[place];

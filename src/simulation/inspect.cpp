@@ -45,17 +45,15 @@ std::int64_t state_bytes(const Simulation &simulation) {
   std::apply([&](auto... field) { (add(blocks.*field), ...); }, BlockSystem::row_fields());
   const auto add_list = [&](auto... fields) { (add(blocks.*fields), ...); };
   std::apply([&](auto... list) { (std::apply(add_list, list), ...); }, BlockSystem::lists());
-  add(blocks.trial_centroid);
   add(blocks.vertex);
   add(blocks.normal);
-  add(blocks.box);
+  add(blocks.motion);
   add(simulation.candidates().pairs);
   add(simulation.candidates().plain);
   add(simulation.candidates().chains);
   add(simulation.history().overlaps);
   add(simulation.history().plain);
   add(simulation.history().regions);
-  bytes += blocks.num_rows() * sizeof(BlockMotion);
   bytes += blocks.num_owned * (sizeof(BlockContactSum) + sizeof(RigidDof) + sizeof(ContactDigest::OnRow));
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);

@@ -360,9 +360,13 @@ void Simulation::take_blocks(std::vector<SceneBlock> slab) {
 std::vector<std::int64_t> Simulation::count_contact_work() {
   const std::vector<Aabb> boxes = reach_boxes(blocks_, base_skin_);
   ghosts_.rebuild(blocks_, boxes);
-  blocks_.box = reach_boxes(blocks_, 0.1 * base_skin_);
+  const std::vector<Aabb> near = reach_boxes(blocks_, 0.1 * base_skin_);
+  blocks_.motion.resize(blocks_.num_rows());
+  for (std::size_t row = 0; row < blocks_.num_rows(); ++row) {
+    blocks_.motion[row].box = near[row];
+  }
   Candidates candidates;
-  for (const auto &[lower, higher] : find_pairs(blocks_, blocks_.box)) {
+  for (const auto &[lower, higher] : find_pairs(blocks_, near)) {
     candidates.pairs.push_back({.lower = lower, .higher = higher});
   }
   std::vector<Vec2> centroids;

@@ -314,7 +314,7 @@ void Simulation::unload(const std::vector<std::int64_t> &removed, double duratio
     }
     Unloading &load = loads.try_emplace(row, Unloading{id, {}, {}, time(), duration}).first->second;
     for (const RegionForce &force : regions) {
-      const ContactPart part = contact_part(force, is_lower, blocks_.trial_centroid[row]);
+      const ContactPart part = contact_part(force, is_lower, blocks_.motion[row].centroid);
       load.rigid += {part.force, part.dyad.xy - part.dyad.yx};
       if (blocks_.is_deformable(row)) {
         load.gradient += transposed(blocks_.trial_inverse[blocks_.deformation_begin[row]] * part.dyad);

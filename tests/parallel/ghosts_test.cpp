@@ -224,9 +224,9 @@ TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
     expect_bits_of_whole(c);
     for (std::size_t row = c.mine.num_owned; row < c.mine.first_fixed(); ++row) {
       const std::size_t id = c.id_of(row);
-      EXPECT_EQ(c.mine.trial_centroid[row], c.whole.trial_centroid[id]);
-      EXPECT_EQ(c.mine.box[row].low, c.whole.box[id].low);
-      EXPECT_EQ(c.mine.box[row].high, c.whole.box[id].high);
+      EXPECT_EQ(c.mine.motion[row].centroid, c.whole.motion[id].centroid);
+      EXPECT_EQ(c.mine.motion[row].box.low, c.whole.motion[id].box.low);
+      EXPECT_EQ(c.mine.motion[row].box.high, c.whole.motion[id].box.high);
       for (std::size_t k = 0; k < c.mine.num_vertices(row); ++k) {
         EXPECT_EQ(c.mine.of_row(c.mine.vertex, row)[k], c.whole.of_row(c.whole.vertex, id)[k]);
         EXPECT_EQ(c.mine.of_row(c.mine.normal, row)[k], c.whole.of_row(c.whole.normal, id)[k]);

@@ -26,7 +26,7 @@ std::array<double, 2> imbalance(const Incline &incline, BlockSystem &system, dou
   const Vec2 normal = (1.0 / norm(normal_force)) * normal_force;
   const Vec2 friction = (norm(normal_force) * std::tan(incline.friction_deg * degree)) * perp(normal);
   const Vec2 point = region.origin + (1.0 / region.pressure) * region.pressure_moment;
-  const Vec2 centroid = system.trial_centroid[0];
+  const Vec2 centroid = system.motion[0].centroid;
   const double moment = half * (region.dyad[1] - region.dyad[2]) +
                         cross(region.origin - centroid, normal_force) + cross(point - centroid, friction);
   return {dot(normal_force + friction, incline.outward()) -

@@ -418,14 +418,20 @@ TEST(Predict, PosesEveryBlockAsPoseDoes) {
   predict(system, usual_scheme(), 1e-3);
   BlockSystem one_by_one = system;
   pose(one_by_one, 0, one_by_one.num_rows());
-  EXPECT_EQ(system.trial_centroid, one_by_one.trial_centroid);
   EXPECT_EQ(system.vertex, one_by_one.vertex);
   EXPECT_EQ(system.normal, one_by_one.normal);
   EXPECT_EQ(system.edge_length, one_by_one.edge_length);
   EXPECT_EQ(system.trial_inverse, one_by_one.trial_inverse);
+  ASSERT_EQ(system.deformed_edge.size(), system.vertex.size());
+  for (std::size_t k = 0; k < system.vertex.size(); ++k) {
+    EXPECT_EQ(system.deformed_edge[k].slope, one_by_one.deformed_edge[k].slope);
+    EXPECT_EQ(system.deformed_edge[k].length, one_by_one.deformed_edge[k].length);
+    EXPECT_EQ(system.deformed_edge[k].unit, one_by_one.deformed_edge[k].unit);
+  }
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
-    EXPECT_EQ(system.box[row].low, one_by_one.box[row].low);
-    EXPECT_EQ(system.box[row].high, one_by_one.box[row].high);
+    EXPECT_EQ(system.motion[row].centroid, one_by_one.motion[row].centroid);
+    EXPECT_EQ(system.motion[row].box.low, one_by_one.motion[row].box.low);
+    EXPECT_EQ(system.motion[row].box.high, one_by_one.motion[row].box.high);
     EXPECT_NE(system.trial[row].u, system.displacement[row].u) << "it has moved";
   }
 }

@@ -38,7 +38,7 @@ struct OneBlock {
 OneBlock contacts_of(const Simulation &simulation, const Regions &regions, std::size_t row) {
   OneBlock block;
   regions.for_block(simulation.candidates(), row, [&](const RegionForce &force, bool is_lower) {
-    block.dyad += contact_part(force, is_lower, simulation.blocks().trial_centroid[row]).dyad;
+    block.dyad += contact_part(force, is_lower, simulation.blocks().motion[row].centroid).dyad;
     block.size += norm(force.force);
     block.largest = std::max(block.largest, norm(force.force));
   });

@@ -72,13 +72,13 @@ TEST(BlockSystem, PoseTurnsAboutTheCentroid) {
     EXPECT_NEAR(norm(system.vertex[k] - triangle[k]), 0.0, 4.0 * epsilon);
   }
   const Vec2 centre{16.0, 3.5};
-  EXPECT_NEAR(norm(system.trial_centroid[1] - centre), 0.0, 32.0 * epsilon);
+  EXPECT_NEAR(norm(system.motion[1].centroid - centre), 0.0, 32.0 * epsilon);
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 expected = centre + perp(triangle[k] - Vec2{1.0, 0.5});
     EXPECT_NEAR(norm(system.vertex[3 + k] - expected), 0.0, 64.0 * epsilon);
     EXPECT_NEAR(norm(system.normal[3 + k] - perp(system.reference_normal[k])), 0.0, 4.0 * epsilon);
-    EXPECT_GE(system.vertex[3 + k].x, system.box[1].low.x);
-    EXPECT_LE(system.vertex[3 + k].y, system.box[1].high.y);
+    EXPECT_GE(system.vertex[3 + k].x, system.motion[1].box.low.x);
+    EXPECT_LE(system.vertex[3 + k].y, system.motion[1].box.high.y);
   }
   // The state of t_n is another configuration than the trial one.
   const std::vector<Vec2> current = current_vertices(system, 1);
@@ -153,7 +153,7 @@ TEST(BlockSystem, PoseOfADeformableBlock) {
     const Vec2 edge = system.vertex[(k + 1) % 3] - system.vertex[k];
     EXPECT_NEAR(system.edge_length[k], norm(edge), 16.0 * epsilon);
     EXPECT_NEAR(norm(edge - system.edge_length[k] * perp(system.normal[k])), 0.0, 16.0 * epsilon);
-    EXPECT_GE(system.vertex[k].x, system.box[0].low.x);
+    EXPECT_GE(system.vertex[k].x, system.motion[0].box.low.x);
     const Vec2 sheared = Vec2{1.0, 0.5} + d.gradient(triangle[k] - Vec2{1.0, 0.5});
     EXPECT_NEAR(norm(current_vertices(system, 0)[k] - sheared), 0.0, 16.0 * epsilon);
   }

@@ -323,8 +323,8 @@ TEST(Momentum, ForcesAndTorquesCancelWithinEveryPair) {
     ++touching;
     const auto lower = bench.regions.sum_contacts(bench.candidates, 0);
     const auto higher = bench.regions.sum_contacts(bench.candidates, 1);
-    const Vec2 c0 = bench.system.trial_centroid[0];
-    const Vec2 c1 = bench.system.trial_centroid[1];
+    const Vec2 c0 = bench.system.motion[0].centroid;
+    const Vec2 c1 = bench.system.motion[1].centroid;
     const double size = norm(force.force);
     EXPECT_EQ(lower.force.u + higher.force.u, Vec2{});
     const double torque =

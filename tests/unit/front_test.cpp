@@ -37,7 +37,7 @@ struct Progress {
   std::vector<BlockContactSum> sums;
 };
 
-Front front_of(const BlockSystem &system, ContactForces &forces, Progress &progress) {
+Front front_of(BlockSystem &system, ContactForces &forces, Progress &progress) {
   return {[&](std::size_t end) {
             EXPECT_LE(end, system.num_owned);
             if (end > progress.predicted) {
@@ -55,7 +55,7 @@ Front front_of(const BlockSystem &system, ContactForces &forces, Progress &progr
           }};
 }
 
-Progress evaluate(const BlockSystem &system) {
+Progress evaluate(BlockSystem system) {
   ContactForces forces({one_law(1e6, 0.3), 0.1, PotentialKind::exact});
   ContactHistory history;
   const auto pairs = find_pairs(system, reach_boxes(system, 0.1));

@@ -144,7 +144,7 @@ double largest_slip_rate(const Simulation &run) {
   for (const RegionForce &force : regions_of(run)) {
     const auto at = [&](BlockIndex row) {
       const RigidDof &a = blocks.acceleration[row.value];
-      return a.u + a.r * perp(force.point - blocks.trial_centroid[row.value]);
+      return a.u + a.r * perp(force.point - blocks.motion[row.value].centroid);
     };
     const CandidatePair &pair = run.candidates().pairs[force.pair];
     if (std::abs(force.shear) < 0.999 * force.cap) {

@@ -401,7 +401,7 @@ TEST(Bond, DoesNoNetWorkOnAClosedPath) {
       }
       last_force[b] = contact.force;
       sum += contact.force.u;
-      moment += contact.force.r + cross(pair.system.trial_centroid[row], contact.force.u);
+      moment += contact.force.r + cross(pair.system.motion[row].centroid, contact.force.u);
     }
     ASSERT_NEAR(norm(sum), 0.0, 1e-8) << "momentum";
     ASSERT_NEAR(moment, 0.0, 1e-7) << "moment of momentum: forces of 3e5 N/m at arms of 5 m, rounded";

@@ -344,6 +344,34 @@ template <class Get> [[gnu::always_inline]] inline FourLanes load_by_lane(Get &&
 #endif
 }
 
+/// Lane i of a and b one after the other at to[i] + offset.
+[[gnu::always_inline]] inline void store_pairs(const std::array<std::byte *, num_lanes> &to,
+                                               std::size_t offset, const Lanes &a, const Lanes &b) {
+  const auto put = [&](std::size_t lane, const auto &two) __attribute__((always_inline)) {
+    std::memcpy(to[lane] + offset, &two, 2 * sizeof(double));
+  };
+#if GCPDDA_NUM_LANES == 8
+  const LaneValues even = interleaved_even(a.values(), b.values());
+  const LaneValues odd = interleaved_odd(a.values(), b.values());
+  const auto put_four = [&](std::size_t first, const LaneValues &rows) __attribute__((always_inline)) {
+    put(first, __builtin_shufflevector(rows, rows, 0, 1));
+    put(first + 2, __builtin_shufflevector(rows, rows, 2, 3));
+    put(first + 4, __builtin_shufflevector(rows, rows, 4, 5));
+    put(first + 6, __builtin_shufflevector(rows, rows, 6, 7));
+  };
+  put_four(0, even);
+  put_four(1, odd);
+#elif GCPDDA_NUM_LANES == 4
+  put(0, __builtin_shufflevector(a.values(), b.values(), 0, 4));
+  put(1, __builtin_shufflevector(a.values(), b.values(), 1, 5));
+  put(2, __builtin_shufflevector(a.values(), b.values(), 2, 6));
+  put(3, __builtin_shufflevector(a.values(), b.values(), 3, 7));
+#else
+  put(0, __builtin_shufflevector(a.values(), b.values(), 0, 2));
+  put(1, __builtin_shufflevector(a.values(), b.values(), 1, 3));
+#endif
+}
+
 /// Three numbers that stand together, by number and lane.
 using ThreeLanes = std::array<Lanes, 3>;
 

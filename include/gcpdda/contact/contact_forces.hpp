@@ -47,24 +47,6 @@
 
 namespace gcpdda {
 
-/// How a trial configuration moved since the last evaluation: the material point now at x_c + r by
-/// u + turn(r).
-struct TrialIncrement {
-  Vec2 u;
-  Mat2 turn;
-};
-
-/// What all contacts of a block need besides its edges, in two lines of a cache. Four numbers each: the lanes
-/// read them so (lane_motion.hpp).
-struct alignas(64) BlockMotion {
-  Vec2 centroid; ///< of the trial configuration
-  Vec2 velocity;
-  TrialIncrement increment;
-  double spin = 0.0; ///< rad/s
-  double unused = 0.0;
-  Aabb box; ///< of the trial configuration
-};
-
 /// What contacts of a deformable block have in common.
 struct DeformingBlock {
   Mat2 rate; ///< velocity gradient, 1/s
@@ -131,20 +113,19 @@ public:
 
   /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory,
   /// which moves on to this configuration.
-  ForceReport evaluate(const BlockSystem &system, const Candidates &candidates, ContactHistory &history) {
+  ForceReport evaluate(BlockSystem &system, const Candidates &candidates, ContactHistory &history) {
     find_motions(system, 0, system.num_owned);
     evaluate_interior(system, candidates, history);
     return evaluate_border(system, candidates, history);
   }
   /// How rows [first, last) move, from their trial configurations and velocities: of all owned rows before
   /// what follows, or once their trial configurations are known there.
-  void find_motions(const BlockSystem &system, std::size_t first, std::size_t last);
+  void find_motions(BlockSystem &system, std::size_t first, std::size_t last);
   /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
-  void evaluate_interior(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
+  void evaluate_interior(BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                          const Front &front = {});
   /// ... and then the rest.
-  ForceReport evaluate_border(const BlockSystem &system, const Candidates &candidates,
-                              ContactHistory &history);
+  ForceReport evaluate_border(BlockSystem &system, const Candidates &candidates, ContactHistory &history);
 
   /// What the regions do to the blocks; of blocks that wait only once it is finished.
   [[nodiscard]] BlockSums &sums() { return sums_; }
@@ -245,8 +226,8 @@ private:
   PlainLanes lanes_of(const PlainScene &scene, std::span<const std::uint32_t> entries);
   void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way);
   /// Entries [first, last) whose boxes meet.
-  void find_meeting(const Candidates &candidates, const ContactHistory &history, std::size_t first,
-                    std::size_t last);
+  void find_meeting(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
+                    std::size_t first, std::size_t last);
   void evaluate_all(const PlainScene &scene, const std::vector<std::uint32_t> &entries, Way way);
   /// Those of corners_, faces_ and sides_, and what is left of them.
   void evaluate_by_shape(const PlainScene &scene);
@@ -341,7 +322,6 @@ private:
   /// afterwards what it was.
   ContactHistory next_;
   std::span<RegionState> plain_memory_;   ///< that of the evaluation at hand
-  std::vector<BlockMotion> motions_;      ///< one a row
   std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation
   std::size_t first_of_pair_ = 0;         ///< region of the pair at hand
   std::vector<RegionDyads> dyads_;        ///< of its regions, if a block deforms
@@ -371,7 +351,7 @@ ContactPart contact_part(const RegionForce &force, bool is_lower, Vec2 centroid)
 /// The trial configuration that comes next, by row.
 struct ComingConfiguration {
   std::vector<TrialIncrement> increments; ///< from the last one
-  std::vector<Vec2> centroids;
+  std::vector<Vec2> centroids;            ///< in the last one
 
   /// @param system  has moved on to it
   explicit ComingConfiguration(const BlockSystem &system);

@@ -119,7 +119,7 @@ struct Dashpot {
 
 /// Constant factorisation L D L^T of a block's own matrix over its degrees of freedom (u, v, r, eps_x, eps_y,
 /// gamma_xy) in axes that turn with it; a rigid block uses the first three. Row by row below the diagonal of
-/// L, D on it.
+/// L, 1/D on it.
 struct BlockMatrix {
   std::array<double, 21> factor{};
   std::array<double, 6> by_torque{}; ///< the solution under a unit torque, of a deformable block
@@ -164,6 +164,24 @@ struct AppliedForces {
 struct TrialConfiguration {
   RigidDof motion; ///< x* - x_0
   Mat2 gradient;   ///< F* of a deformable block
+};
+
+/// How a trial configuration moved since the last evaluation: the material point now at x_c + r by
+/// u + turn(r).
+struct TrialIncrement {
+  Vec2 u;
+  Mat2 turn;
+};
+
+/// All that contacts of a block need besides its edges, in two lines of a cache. Four numbers each: the lanes
+/// read them so (src/contact/lane_motion.hpp).
+struct alignas(64) BlockMotion {
+  Vec2 centroid; ///< of the trial configuration
+  Vec2 velocity;
+  TrialIncrement increment;
+  double spin = 0.0; ///< rad/s
+  double unused = 0.0;
+  Aabb box; ///< of the trial configuration
 };
 
 /// Where a block was (x - x_0) when a stage began and when its motion was last looked at.
@@ -218,10 +236,9 @@ struct BlockSystem {
   std::vector<Dashpot> dashpot;
 
   // Derived from the trial configuration, see pose().
-  std::vector<Vec2> trial_centroid;
+  std::vector<BlockMotion> motion; ///< pose() finds centroid and box of it
   std::vector<Vec2> vertex;
   std::vector<Vec2> normal;
-  std::vector<Aabb> box;
   std::vector<Mat2> trial_inverse;         ///< F*^-1, by entry of `deformation`
   std::vector<DeformedEdge> deformed_edge; ///< by vertex; empty where no block deforms
 
