@@ -8,7 +8,7 @@ namespace {
 
 double small_arctangent(double x) {
   const double q = x * x;
-  return x * (1.0 - q * (1.0 / 3.0 - q * (1.0 / 5.0 - q * (1.0 / 7.0 - q * (1.0 / 9.0 - q / 11.0)))));
+  return x * (1.0 - q * (1.0 / 3.0 - q * (1.0 / 5.0 - q * (1.0 / 7.0 - q * (1.0 / 9.0 - q * (1.0 / 11.0))))));
 }
 
 } // namespace
@@ -16,8 +16,8 @@ double small_arctangent(double x) {
 Mat2 rotation_of(const Mat2 &gradient) {
   const double c = gradient.xx + gradient.yy;
   const double s = gradient.yx - gradient.xy;
-  const double size = std::sqrt(c * c + s * s);
-  return {c / size, -s / size, s / size, c / size};
+  const double unit = 1.0 / std::sqrt(c * c + s * s);
+  return {unit * c, -unit * s, unit * s, unit * c};
 }
 
 double angle_of(const Mat2 &gradient) {

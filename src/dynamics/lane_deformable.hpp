@@ -59,7 +59,7 @@ struct LaneFactors {
       }
     }
     for (std::size_t i = 0; i < 6; ++i) {
-      x[i] = x[i] / factor[packed(i, i)];
+      x[i] = x[i] * factor[packed(i, i)];
     }
     for (std::size_t i = 5; i-- > 0;) {
       for (std::size_t k = i + 1; k < 6; ++k) {
@@ -72,8 +72,8 @@ struct LaneFactors {
 [[gnu::always_inline]] inline LaneMat lane_rotation_of(const LaneMat &gradient) {
   const Lanes c = gradient.xx() + gradient.yy();
   const Lanes s = gradient.yx() - gradient.xy();
-  const Lanes size = sqrt(c * c + s * s);
-  return {{c / size, -s / size, s / size, c / size}};
+  const Lanes unit = Lanes(1.0) / sqrt(c * c + s * s);
+  return {{unit * c, -unit * s, unit * s, unit * c}};
 }
 
 [[gnu::always_inline]] inline LaneMat lane_gradient_of(const LaneDofs &x) {
@@ -101,14 +101,13 @@ struct LaneElasticity {
     return {
         {direct * strain.xx() + cross * strain.yy(), tau, tau, cross * strain.xx() + direct * strain.yy()}};
   }
-  /// As elastic_force().
-  [[nodiscard, gnu::always_inline]] LaneMat force(const LaneMat &turn, const LaneMat &gradient,
+  /// As elastic_force(), in turning axes.
+  [[nodiscard, gnu::always_inline]] LaneMat force(const LaneMat &stretch,
                                                   const LaneMat &initial_strain) const {
-    const LaneMat stretch = transposed(turn) * gradient;
     const LaneMat sigma = stress(stretch - LaneMat::identity() + initial_strain);
     const LaneMat product = sigma * stretch;
     const Lanes no_torque = (product.xy() - product.yx()) / (stretch.xx() + stretch.yy());
-    return turn * LaneMat{{sigma.xx(), sigma.xy() - no_torque, sigma.yx() + no_torque, sigma.yy()}};
+    return {{sigma.xx(), sigma.xy() - no_torque, sigma.yx() + no_torque, sigma.yy()}};
   }
 };
 
@@ -123,7 +122,8 @@ inline Lanes lane_angle_between(const LaneMat &from, const LaneMat &to) {
   const Lanes one = 1.0;
   const Lanes angle =
       x * (one - q * (Lanes(1.0 / 3.0) -
-                      q * (Lanes(1.0 / 5.0) - q * (Lanes(1.0 / 7.0) - q * (Lanes(1.0 / 9.0) - q / 11.0)))));
+                      q * (Lanes(1.0 / 5.0) -
+                           q * (Lanes(1.0 / 7.0) - q * (Lanes(1.0 / 9.0) - q * Lanes(1.0 / 11.0))))));
   if (!(!is_small).any()) {
     return angle;
   }
@@ -134,24 +134,24 @@ inline Lanes lane_angle_between(const LaneMat &from, const LaneMat &to) {
   });
 }
 
-/// most_motion() of the row in each lane.
-inline Lanes lane_most_motion(const BlockSystem &system, const std::array<std::size_t, num_lanes> &row,
-                              double dt) {
-  const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
-    return LaneMat::of([&](std::size_t i) { return &(system.deformation_of(row[i]).*field); });
-  };
-  const auto load_u = [&](const std::vector<RigidDof> &field) __attribute__((always_inline)) {
-    return LaneVec::of([&](std::size_t i) { return &field[row[i]].u; });
-  };
-  const Lanes radius = Lanes::of([&](std::size_t i) { return system.properties[row[i]].radius; });
-  const auto most = [&](const LaneVec &u, const LaneMat &f) __attribute__((always_inline)) {
+/// A motion of the centroid and of F, or its rate.
+struct LaneMoving {
+  LaneVec u;
+  LaneMat gradient;
+
+  /// No less than how far any point goes.
+  [[nodiscard, gnu::always_inline]] Lanes most(const Lanes &radius) const {
+    const LaneMat &f = gradient;
     return abs(u.x) + abs(u.y) + radius * (abs(f.xx()) + abs(f.xy()) + abs(f.yx()) + abs(f.yy()));
-  };
+  }
+};
+
+/// As most_motion().
+[[gnu::always_inline]] inline Lanes lane_most_motion(const LaneMoving &moved, const LaneMoving &velocity,
+                                                     const LaneMoving &acceleration, const Lanes &radius,
+                                                     double dt) {
   return Lanes(rounding_of_most_motion) *
-         (most(load_u(system.displacement) - load_u(system.refreshed),
-               load(&Deformation::gradient) - load(&Deformation::refreshed)) +
-          Lanes(dt) * (most(load_u(system.velocity), load(&Deformation::rate)) +
-                       Lanes(dt) * most(load_u(system.acceleration), load(&Deformation::acceleration))));
+         (moved.most(radius) + Lanes(dt) * (velocity.most(radius) + Lanes(dt) * acceleration.most(radius)));
 }
 
 /// One RigidDof for each lane.
@@ -197,7 +197,7 @@ inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, co
   const LaneMat back = transposed(turn);
   const LaneMat stretch = back * trial;
   // In turning axes, at the spring's time so far known.
-  LaneMat stress = back * elasticity.force(turn, trial, load(&Deformation::initial_strain));
+  LaneMat stress = elasticity.force(stretch, load(&Deformation::initial_strain));
   if (step.is_implicit) {
     const LaneMat f_base = base_of(step, gradient, rate, acceleration);
     stress = stress + elasticity.stress(back * (f_base - trial));
@@ -209,7 +209,10 @@ inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, co
   const double dt = step.time_step;
   const LaneVec force = LaneVec::of([&](std::size_t i) { return &lanes.force[given[i]]; });
   const LaneMat gradient_force = LaneMat::of([&](std::size_t i) { return &lanes.gradient_force[given[i]]; });
-  const Lanes mass = Lanes::of([&](std::size_t i) { return system.properties[row[i]].mass; });
+  static_assert(offsetof(BlockProperties, radius) == offsetof(BlockProperties, mass) + 3 * sizeof(double));
+  const FourLanes masses = load_by_lane([&](std::size_t i) { return &system.properties[row[i]].mass; });
+  const Lanes &mass = masses[0];
+  const Lanes &radius = masses[3];
   const LaneVec h_u = back(force - am * mass * a);
   const LaneMat h = back * (gradient_force - Lanes(am) * (acceleration * load(&Deformation::second_moment))) -
                     stress - viscous;
@@ -283,7 +286,8 @@ inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, co
   store_dofs(velocity, v_new, spin);
   store_dofs(acceleration_dof, a_new, spin_rate);
   store_by_lane(viscous_force, 0, viscous.xx(), viscous.xy(), viscous.yx(), viscous.yy());
-  const Lanes most_motion = lane_most_motion(system, row, dt);
+  const LaneMoving moved{u_new - load_u(system.refreshed), f_new - load(&Deformation::refreshed)};
+  const Lanes most_motion = lane_most_motion(moved, {v_new, rate_new}, {a_new, acceleration_new}, radius, dt);
   for (std::size_t i = 0; i < lanes.count; ++i) {
     lanes.most_motion[i] = most_motion[i];
   }

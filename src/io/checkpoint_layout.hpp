@@ -124,10 +124,16 @@ template <auto Member> constexpr Field<BlockSystem> of_applied(const char *name)
   > (name);
 }
 template <auto Member> constexpr Field<BlockSystem> of_mark(const char *name) {
-  return field < BlockSystem, [](auto &system, std::size_t row) -> auto & {
-    return system.mark[row].*Member;
-  }
-  > (name);
+  return {
+      name, doubles_of<RigidDof>,
+      [](const BlockSystem &system, std::size_t row, double *to) { put(system.mark_of(row).*Member, to); },
+      [](BlockSystem &system, std::size_t row, const double *from) {
+        RigidDof value;
+        take(value, from);
+        if (value != RigidDof{}) { // no mark says the same
+          mark_rows(system)[row].*Member = value;
+        }
+      }};
 }
 template <auto Member> constexpr Field<std::vector<Deformation>> of_deformation(const char *name) {
   return field < std::vector<Deformation>, [](auto &deformations, std::size_t row) -> auto & {
@@ -187,7 +193,7 @@ inline constexpr const char *region_states = "/region/state"; ///< u8
 inline constexpr const char *region_laws = "/region/law";     ///< i32
 
 // A field that is added to the state must join one of the lists above, or the words over them.
-static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 10);
+static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 9);
 static_assert(sizeof(BlockMark) == 6 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 10 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace gcpdda {
 
@@ -146,6 +147,21 @@ void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, st
   append_edge_joints(to, has_edge_joints ? joints.subspan(from.vertex_begin[first],
                                                           from.vertex_begin[last] - from.vertex_begin[first])
                                          : joints.first(0));
+}
+
+std::span<BlockMark> mark_rows(BlockSystem &system) {
+  if (system.mark_begin[system.num_owned] != system.num_owned) {
+    const std::vector<BlockMark> before = std::exchange(system.mark, {});
+    const std::vector<std::uint32_t> begin = system.mark_begin;
+    for (std::uint32_t row = 0; row < system.num_rows(); ++row) {
+      const bool has = row < system.num_owned;
+      system.mark_begin[row + 1] = system.mark_begin[row] + (has ? 1U : 0U);
+      if (has) {
+        system.mark.push_back(begin[row] == begin[row + 1] ? BlockMark{} : before[begin[row]]);
+      }
+    }
+  }
+  return {system.mark.data(), system.num_owned};
 }
 
 void keep_rows(BlockSystem &system, std::size_t count) {

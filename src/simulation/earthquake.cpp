@@ -146,7 +146,7 @@ std::optional<FarthestBlock> Simulation::permanent_displacement() const {
   }
   FarthestBlock mine;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    const double distance = norm(blocks_.displacement[row].u - blocks_.mark[row].stage.u);
+    const double distance = norm(blocks_.displacement[row].u - blocks_.mark_of(row).stage.u);
     if (!blocks_.properties[row].keeps_its_velocity() && distance > mine.distance) {
       mine = {distance, blocks_.properties[row].id.value};
     }

@@ -83,8 +83,12 @@ bool Simulation::finished() const {
 }
 
 void Simulation::mark_stage() {
+  if (!is_staged_) {
+    return; // nobody looks
+  }
+  const std::span<BlockMark> marks = mark_rows(blocks_);
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-    blocks_.mark[row] = {blocks_.displacement[row], blocks_.displacement[row]};
+    marks[row] = {blocks_.displacement[row], blocks_.displacement[row]};
   }
 }
 
@@ -93,6 +97,7 @@ void Simulation::look_at_stage() {
   ExactSum kinetic;
   std::array<double, 6> largest{};
   auto &[unbalanced, acting, motion, moved, astray, overlap] = largest;
+  const std::span<BlockMark> marks = mark_rows(blocks_);
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const BlockProperties &block = blocks_.properties[row];
     if (block.keeps_its_velocity()) {
@@ -110,7 +115,7 @@ void Simulation::look_at_stage() {
             : std::abs(undamped(force.r, v.r, local_damping_));
     unbalanced = std::max({unbalanced, norm(Vec2{along_x, along_y}), turning / block.radius});
     acting = std::max({acting, block.heavy_mass() * norm(scene_.run.gravity), norm(applied.load.u)});
-    BlockMark &mark = blocks_.mark[row];
+    BlockMark &mark = marks[row];
     const RigidDof &now = blocks_.displacement[row];
     motion = std::max(motion, motion_between(block, mark.look, now));
     const double way = motion_between(block, mark.stage, now);

@@ -119,7 +119,8 @@ BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double r
     }
     fill_with_any_bits(system.ledger[row], random);
     fill_with_any_bits(system.applied[row], random);
-    fill_with_any_bits(system.mark[row], random);
+    fill_with_any_bits(system.mark.emplace_back(), random);
+    system.mark_begin.back() = static_cast<std::uint32_t>(system.mark.size());
   }
   return system;
 }

@@ -93,7 +93,7 @@ Matrix6 multiplied_out(const BlockMatrix &factors, Eigen::Index n) {
   Matrix6 lower = Matrix6::Identity();
   Matrix6 diagonal = Matrix6::Zero();
   for (Eigen::Index i = 0; i < n; ++i) {
-    diagonal(i, i) = factors.factor[packed(static_cast<std::size_t>(i), static_cast<std::size_t>(i))];
+    diagonal(i, i) = 1.0 / factors.factor[packed(static_cast<std::size_t>(i), static_cast<std::size_t>(i))];
     for (Eigen::Index j = 0; j < i; ++j) {
       lower(i, j) = factors.factor[packed(static_cast<std::size_t>(i), static_cast<std::size_t>(j))];
     }

@@ -15,23 +15,24 @@ constexpr std::size_t packed(std::size_t row, std::size_t column) {
   return row * (row + 1) / 2 + column;
 }
 
-/// Factors of the leading N x N block.
+/// Factors of the leading N x N block; on the diagonal stands 1/D.
 template <std::size_t N> BlockMatrix factorise(const std::array<double, 21> &lower) {
   static_assert(N <= 6);
   BlockMatrix result;
   auto &f = result.factor;
+  std::array<double, N> pivots;
   for (std::size_t j = 0; j < N; ++j) {
-    double pivot = lower[packed(j, j)];
+    pivots[j] = lower[packed(j, j)];
     for (std::size_t k = 0; k < j; ++k) {
-      pivot -= f[packed(j, k)] * f[packed(j, k)] * f[packed(k, k)];
+      pivots[j] -= f[packed(j, k)] * f[packed(j, k)] * pivots[k];
     }
-    f[packed(j, j)] = pivot;
+    f[packed(j, j)] = 1.0 / pivots[j];
     for (std::size_t i = j + 1; i < N; ++i) {
       double below = lower[packed(i, j)];
       for (std::size_t k = 0; k < j; ++k) {
-        below -= f[packed(i, k)] * f[packed(j, k)] * f[packed(k, k)];
+        below -= f[packed(i, k)] * f[packed(j, k)] * pivots[k];
       }
-      f[packed(i, j)] = below / pivot;
+      f[packed(i, j)] = below / pivots[j];
     }
   }
   return result;
@@ -46,7 +47,7 @@ template <std::size_t N> std::array<double, N> solve(const BlockMatrix &matrix, 
     }
   }
   for (std::size_t i = 0; i < N; ++i) {
-    x[i] /= f[packed(i, i)];
+    x[i] *= f[packed(i, i)];
   }
   for (std::size_t i = N - 1; i-- > 0;) {
     for (std::size_t k = i + 1; k < N; ++k) {

@@ -50,8 +50,8 @@ struct LaneMat {
     return a.xx() * a.yy() - a.xy() * a.yx();
   }
   [[gnu::always_inline]] friend LaneMat inverse(const LaneMat &a) {
-    const Lanes d = determinant(a);
-    return {{a.yy() / d, -a.xy() / d, -a.yx() / d, a.xx() / d}};
+    const Lanes d = Lanes(1.0) / determinant(a);
+    return {{d * a.yy(), -d * a.xy(), -d * a.yx(), d * a.xx()}};
   }
 };
 

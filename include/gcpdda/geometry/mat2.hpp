@@ -38,8 +38,8 @@ constexpr double determinant(const Mat2 &a) {
   return a.xx * a.yy - a.xy * a.yx;
 }
 constexpr Mat2 inverse(const Mat2 &a) {
-  const double d = determinant(a);
-  return {a.yy / d, -a.xy / d, -a.yx / d, a.xx / d};
+  const double d = 1.0 / determinant(a);
+  return {d * a.yy, -d * a.xy, -d * a.yx, d * a.xx};
 }
 /// a : b, the sum of the products of their entries.
 constexpr double contract(const Mat2 &a, const Mat2 &b) {

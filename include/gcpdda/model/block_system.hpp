@@ -210,7 +210,6 @@ struct BlockSystem {
   std::vector<RigidDof> refreshed;      ///< x - x_0 at the last refresh of the neighbourhood
   std::vector<BlockLedger> ledger;
   std::vector<AppliedForces> applied;
-  std::vector<BlockMark> mark;
 
   // Shape in the block's own axes, flat; row i owns [vertex_begin[i], vertex_begin[i + 1]). Edge k runs from
   // vertex k to the next one; its outward unit normal is stored, never recomputed from cut edges.
@@ -234,6 +233,8 @@ struct BlockSystem {
   std::vector<Anchor> anchor;
   std::vector<std::uint32_t> dashpot_begin{0}; ///< one entry for blocks on viscous sides
   std::vector<Dashpot> dashpot;
+  std::vector<std::uint32_t> mark_begin{0}; ///< one entry for mobile blocks of a scene with stages
+  std::vector<BlockMark> mark;
 
   // Derived from the trial configuration, see pose().
   std::vector<BlockMotion> motion; ///< pose() finds centroid and box of it
@@ -272,6 +273,11 @@ struct BlockSystem {
     return at == dashpot_begin[row + 1] || dashpot[at].is_awake == 0.0 ? nullptr : &dashpot[at];
   }
 
+  /// Zero where nothing is marked.
+  [[nodiscard]] BlockMark mark_of(std::size_t row) const {
+    return mark_begin[row] == mark_begin[row + 1] ? BlockMark{} : mark[mark_begin[row]];
+  }
+
   template <class T>
   [[nodiscard]] std::span<const T> of_row(const std::vector<T> &per_vertex, std::size_t row) const {
     return {per_vertex.data() + vertex_begin[row], num_vertices(row)};
@@ -291,8 +297,7 @@ struct BlockSystem {
   static constexpr auto row_fields() {
     return std::make_tuple(&BlockSystem::properties, &BlockSystem::displacement, &BlockSystem::velocity,
                            &BlockSystem::acceleration, &BlockSystem::trial, &BlockSystem::trial_previous,
-                           &BlockSystem::refreshed, &BlockSystem::ledger, &BlockSystem::applied,
-                           &BlockSystem::mark);
+                           &BlockSystem::refreshed, &BlockSystem::ledger, &BlockSystem::applied);
   }
   /// Every field with any number of entries a row that cannot be derived: the offsets, then the fields that
   /// share them.
@@ -303,7 +308,8 @@ struct BlockSystem {
                            std::make_tuple(&BlockSystem::matrix_begin, &BlockSystem::matrix),
                            std::make_tuple(&BlockSystem::load_begin, &BlockSystem::load),
                            std::make_tuple(&BlockSystem::anchor_begin, &BlockSystem::anchor),
-                           std::make_tuple(&BlockSystem::dashpot_begin, &BlockSystem::dashpot));
+                           std::make_tuple(&BlockSystem::dashpot_begin, &BlockSystem::dashpot),
+                           std::make_tuple(&BlockSystem::mark_begin, &BlockSystem::mark));
   }
 };
 
@@ -328,6 +334,9 @@ void reserve_rows(BlockSystem &system, std::size_t rows, std::size_t vertices);
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row);
 /// The same of rows [first, last).
 void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, std::size_t last);
+
+/// Marks of owned rows, all of which get one.
+std::span<BlockMark> mark_rows(BlockSystem &system);
 
 /// Drop all rows from `count` on. The ranges' counts are the caller's.
 void keep_rows(BlockSystem &system, std::size_t count);
