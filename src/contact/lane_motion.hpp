@@ -48,7 +48,8 @@ template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, L
   return LaneVec::of([&](std::size_t i) { return vertex + blocks.vertex(i, k); });
 }
 
-/// Edge `number` of the chains as edge k of the side, of pairs where a block deforms or none.
+/// Edge `number` of the chains as edge k of the side, of pairs where a block deforms or none; then without
+/// its length.
 [[gnu::always_inline]] inline void load_edge(const BlockSystem &system, const PlainPair::Kind &kind,
                                              const LaneBlocks &blocks, std::size_t number, std::size_t k,
                                              LaneSide &side) {
@@ -67,10 +68,41 @@ template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, L
     return;
   }
   const Vec2 *normal = system.normal.data();
-  const double *length = system.edge_length.data();
   side.normal[k] = LaneVec::of([&](std::size_t i) { return normal + at[i]; });
   side.slope[k] = side.normal[k];
-  side.length[k] = Lanes::of([&](std::size_t i) { return length[at[i]]; });
+}
+
+/// Of edge k that ends there: a list of lengths would take longer to read.
+[[gnu::always_inline]] inline void find_length(std::size_t k, const LaneVec &end, LaneSide &side) {
+  side.length[k] = dot(end - side.vertex[k], perp(side.normal[k]));
+}
+
+/// All edges of the chains.
+inline void load_chain(const BlockSystem &system, const PlainPair::Kind &kind, const LaneBlocks &blocks,
+                       std::size_t edges, LaneSide &side) {
+  side.edges = edges;
+  for (std::size_t k = 0; k < edges; ++k) {
+    load_edge(system, kind, blocks, k, k, side);
+  }
+  side.vertex[edges] = load_vertex(system, blocks, edges);
+  for (std::size_t k = 0; k < edges && !kind.is_deformable; ++k) {
+    find_length(k, side.vertex[k + 1], side);
+  }
+}
+
+/// As many edges, with copies of the last one; the end of the chain and lengths of rigid blocks alone.
+template <std::size_t edges>
+[[gnu::always_inline]] inline void load_side(const BlockSystem &system, const PlainPair::Kind &kind,
+                                             const LaneBlocks &blocks, std::size_t last, LaneSide &side) {
+  each<edges>([&](auto k) __attribute__((always_inline)) {
+    load_edge(system, kind, blocks, std::min<std::size_t>(k, last), k, side);
+  });
+  if (!kind.is_deformable) {
+    side.vertex[edges] = load_vertex(system, blocks, last + 1);
+    each<edges>([&](auto k) __attribute__((always_inline)) {
+      find_length(k, side.vertex[k < last ? k + 1 : edges], side);
+    });
+  }
 }
 
 /// How two blocks move, as far as it does not matter whether they deform.

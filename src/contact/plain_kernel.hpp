@@ -56,8 +56,6 @@ private:
   unsigned evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
                             const Mask &known);
   template <std::size_t edges> struct PairSides;
-  static void load_chain(const BlockSystem &system, const PlainPair::Kind &kind, const LaneBlocks &blocks,
-                         std::size_t edges, LaneSide &side);
   static Energies by_lane(const Mask &known, const Lanes &energy);
   /// visit(edges) with the number of edges of the longer chain, where there are few.
   template <class Visit> static auto with_few_edges(const PlainPair &pair, Visit &&visit);
@@ -232,15 +230,6 @@ void LaneBatch::add_friction_and_dashpots(const PlainScene &scene, const Pairs &
   }
 }
 
-inline void LaneBatch::load_chain(const BlockSystem &system, const PlainPair::Kind &kind,
-                                  const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
-  side.edges = edges;
-  for (std::size_t k = 0; k < edges; ++k) {
-    load_edge(system, kind, blocks, k, k, side);
-  }
-  side.vertex[edges] = load_vertex(system, blocks, edges);
-}
-
 inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
   const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
@@ -342,17 +331,21 @@ template <std::size_t edges> struct LaneBatch::PairSides {
   [[gnu::always_inline]] PairSides(const BlockSystem &system, const Pairs &pairs)
       : last_lower(pairs.first.kind.lower_edges - std::size_t{1}),
         last_higher(pairs.first.kind.higher_edges - std::size_t{1}) {
-    each<edges>([&](auto k) __attribute__((always_inline)) {
-      const PlainPair::Kind &kind = pairs.first.kind;
-      load_edge(system, kind, pairs.lower, std::min<std::size_t>(k, last_lower), k, lower);
-      load_edge(system, kind, pairs.higher, std::min<std::size_t>(k, last_higher), k, higher);
-    });
+    load_side<edges>(system, pairs.first.kind, pairs.lower, last_lower, lower);
+    load_side<edges>(system, pairs.first.kind, pairs.higher, last_higher, higher);
   }
   /// As they move.
   [[gnu::always_inline]] PairSides(const PlainScene &scene, const Pairs &pairs)
       : PairSides(scene.system, pairs) {
     load_box(pairs.lower, lower);
     load_box(pairs.higher, higher);
+  }
+  /// Where the chains end: pairs of rigid blocks know it, for their lengths.
+  void load_ends(const BlockSystem &system, const Pairs &pairs) {
+    if (pairs.first.kind.is_deformable) {
+      lower.vertex[edges] = load_vertex(system, pairs.lower, last_lower + 1);
+      higher.vertex[edges] = load_vertex(system, pairs.higher, last_higher + 1);
+    }
   }
 };
 
@@ -367,8 +360,7 @@ PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pair
   seen.apart = (!meets).by_lane();
   if ((!valid).any()) {
     const Mask with_face = meets & (overlap.lower_has ^ overlap.higher_has);
-    sides.lower.vertex[edges] = load_vertex(scene.system, pairs.lower, pairs.first.kind.lower_edges);
-    sides.higher.vertex[edges] = load_vertex(scene.system, pairs.higher, pairs.first.kind.higher_edges);
+    sides.load_ends(scene.system, pairs);
     const Mask apart = are_apart<edges>(sides.lower, sides.higher);
     seen.with_face = with_face.by_lane();
     seen.apart |= (apart & !valid & !with_face).by_lane();
