@@ -132,9 +132,12 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   }
   if (way != Way::other) {
     const PlainPair::Kind kind = lanes.pair[0]->kind;
-    const unsigned to_corners = kind.may_be_corners() ? seen.with_corners : 0U;
-    const unsigned to_faces = kind.may_be_face() ? seen.with_face : 0U;
-    const unsigned to_sides = kind.may_be_sides() ? seen.with_sides : 0U;
+    const auto elsewhere_to = [&](Way other, bool may_be, unsigned with) {
+      return way != other && may_be ? with : 0U;
+    };
+    const unsigned to_corners = elsewhere_to(Way::corners, kind.may_be_corners(), seen.with_corners);
+    const unsigned to_faces = elsewhere_to(Way::face, kind.may_be_face(), seen.with_face);
+    const unsigned to_sides = elsewhere_to(Way::sides, kind.may_be_sides(), seen.with_sides);
     leave(to_corners, corners_);
     leave(to_faces, faces_);
     leave(to_sides, sides_);

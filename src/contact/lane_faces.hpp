@@ -76,13 +76,13 @@ template <std::size_t lines>
 
 /// The boundary of such an overlap.
 template <std::size_t edges> struct FaceOverlap {
-  Mask with_corners; ///< both blocks have a corner inside the other one
-  Mask with_none;    ///< neither has
+  Mask lower_has; ///< it has a corner inside the other one
+  Mask higher_has;
 
   [[nodiscard]] const LaneVec &origin() const { return first_; }
 
-  /// True where the blocks overlap so; elsewhere nothing of this but with_corners means anything. Edges of a
-  /// side from its number on are copies of its last one.
+  /// True where the blocks overlap so; elsewhere nothing of this but lower_has and higher_has means anything.
+  /// Edges of a side from its number on are copies of its last one.
   Mask find(const LaneSide &lower, std::size_t lower_edges, const LaneSide &higher, std::size_t higher_edges);
 
   /// visit(number, stretch, direction of its pressure on the lower block).
@@ -250,10 +250,9 @@ Mask FaceOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, co
   Inside inside;
   Inside higher_inside;
   const Mask lower_is_own = find_inside(lower, lower_edges, higher, inside);
-  const Mask higher_is_own = find_inside(higher, higher_edges, lower, higher_inside);
-  with_corners = lower_is_own & higher_is_own;
-  with_none = !(lower_is_own | higher_is_own);
-  Mask valid = lower_is_own ^ higher_is_own;
+  lower_has = lower_is_own;
+  higher_has = find_inside(higher, higher_edges, lower, higher_inside);
+  Mask valid = lower_has ^ higher_has;
   if (!valid.any()) {
     return valid;
   }

@@ -49,8 +49,8 @@ private:
   void measure(const LaneConstants &constants);
   template <class AnyMotion> void add_dashpot(const LaneConstants &constants, const AnyMotion &motion);
   template <std::size_t edges> Seen evaluate_corners(const PlainScene &scene, const Pairs &pairs);
-  template <std::size_t edges> Seen evaluate_faces(const PlainScene &scene, const Pairs &pairs);
-  template <std::size_t edges> Seen evaluate_sides(const PlainScene &scene, const Pairs &pairs);
+  /// Overlap: FaceOverlap or SideOverlap.
+  template <class Overlap, std::size_t edges> Seen evaluate_as(const PlainScene &scene, const Pairs &pairs);
   /// Of the lanes whose overlap is known, which touch.
   template <class Overlap>
   unsigned evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
@@ -373,28 +373,10 @@ PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pair
   return seen;
 }
 
-template <std::size_t edges>
-PlainBatch::Seen LaneBatch::evaluate_faces(const PlainScene &scene, const Pairs &pairs) {
+template <class Overlap, std::size_t edges>
+PlainBatch::Seen LaneBatch::evaluate_as(const PlainScene &scene, const Pairs &pairs) {
   const PairSides<edges> sides(scene, pairs);
-  FaceOverlap<edges> overlap;
-  const Mask meets = boxes_meet(sides.lower, sides.higher);
-  const Mask valid =
-      meets & overlap.find(sides.lower, sides.last_lower + 1, sides.higher, sides.last_higher + 1);
-  Seen seen;
-  seen.meeting = meets.by_lane();
-  seen.apart = (!meets).by_lane();
-  seen.with_corners = (meets & overlap.with_corners).by_lane();
-  seen.with_sides = (meets & overlap.with_none).by_lane();
-  if (valid.any()) {
-    seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
-  }
-  return seen;
-}
-
-template <std::size_t edges>
-PlainBatch::Seen LaneBatch::evaluate_sides(const PlainScene &scene, const Pairs &pairs) {
-  const PairSides<edges> sides(scene, pairs);
-  SideOverlap<edges> overlap;
+  Overlap overlap;
   const Mask meets = boxes_meet(sides.lower, sides.higher);
   const Mask valid =
       meets & overlap.find(sides.lower, sides.last_lower + 1, sides.higher, sides.last_higher + 1);
@@ -403,6 +385,7 @@ PlainBatch::Seen LaneBatch::evaluate_sides(const PlainScene &scene, const Pairs 
   seen.apart = (!meets).by_lane();
   seen.with_corners = (meets & overlap.lower_has & overlap.higher_has).by_lane();
   seen.with_face = (meets & (overlap.lower_has ^ overlap.higher_has)).by_lane();
+  seen.with_sides = (meets & !(overlap.lower_has | overlap.higher_has)).by_lane();
   if (valid.any()) {
     seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
   }
@@ -428,13 +411,14 @@ inline PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, con
 
 inline PlainBatch::Seen LaneBatch::evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
-  return with_few_edges(pairs.first, [&](auto edges) { return evaluate_faces<edges>(scene, pairs); });
+  return with_few_edges(pairs.first,
+                        [&](auto edges) { return evaluate_as<FaceOverlap<edges>, edges>(scene, pairs); });
 }
 
 inline PlainBatch::Seen LaneBatch::evaluate_sides(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
-  return pairs.first.kind.has_three_edges_each() ? evaluate_sides<3>(scene, pairs)
-                                                 : evaluate_sides<4>(scene, pairs);
+  return pairs.first.kind.has_three_edges_each() ? evaluate_as<SideOverlap<3>, 3>(scene, pairs)
+                                                 : evaluate_as<SideOverlap<4>, 4>(scene, pairs);
 }
 
 inline PlainBatch::Energies LaneBatch::by_lane(const Mask &known, const Lanes &energy) {
