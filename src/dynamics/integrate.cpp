@@ -1,9 +1,8 @@
 #include "gcpdda/dynamics/integrate.hpp"
 
-#include "gcpdda/base/prefetch.hpp"
-
 #include "block_lanes.hpp"
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/base/prefetch.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "own_springs.hpp"
 #include "own_step.hpp"
