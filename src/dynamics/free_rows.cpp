@@ -32,7 +32,7 @@ std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, s
   };
   while (first + lanes.width <= last && are_deformable(first) &&
          are_free(system, first, first + lanes.width)) {
-    const std::size_t next = first + lanes.width;
+    const std::size_t next = first + lanes.width; // of structures this large the processor fetches none ahead
     prefetch(system.deformation.data() + system.deformation_begin[next], lanes.width * sizeof(Deformation));
     prefetch(system.matrix.data() + system.matrix_begin[first], lanes.width * sizeof(BlockMatrix));
     lanes.gather_deformables(system, first, rows);
