@@ -2,7 +2,7 @@
 
 // Two convex blocks that lie on each other with whole edges of one length, so that their next edges on either
 // side run in one line: bricks above one another, squares side by side. No corner of either is inside the
-// other one by more than rounding; most contacts of masonry and of a pile pressed together are so at first.
+// other one by more than rounding. One contact in four of a pile that starts pressed together is so at first.
 //
 // Let e, from V to V', be the only edge of the lower block both of whose ends lie in the higher one or, but
 // for rounding, on its boundary, and f, from W to W', that of the higher block. If V' lies on the line of the

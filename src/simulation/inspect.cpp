@@ -48,6 +48,7 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(blocks.vertex);
   add(blocks.normal);
   add(blocks.motion);
+  add(blocks.deformed_edge);
   add(simulation.candidates().pairs);
   add(simulation.candidates().plain);
   add(simulation.candidates().chains);

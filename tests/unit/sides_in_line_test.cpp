@@ -219,6 +219,7 @@ TEST(SidesInLine, LeaveTheLineWithoutAJump) {
       one_law(stiffness));
   bench.evaluate();
   const Vec2 in_line = bench.seen.force;
+  const PairTorques turning = bench.seen.torque;
   // k_n d l (1 - d/l) of equal faces
   EXPECT_NEAR(in_line.y, -stiffness * sunk * (1.0 - sunk), 1e-12 * stiffness);
   std::set<PlainOverlap> ways{bench.history.overlaps.front()};
@@ -230,7 +231,13 @@ TEST(SidesInLine, LeaveTheLineWithoutAJump) {
     // The pressure over no more than the shift changes by no more than that of the depth.
     const double most = 2.0 * stiffness * sunk * shift + 1e-13 * stiffness;
     expect_near(bench.seen.force, in_line, most, "force");
-    EXPECT_NEAR(bench.seen.torque[0] + bench.seen.torque[1], 0.0, most + 2.0 * stiffness * sunk);
+    // Torques follow with arms of 0.5 m along the faces, and turn nothing in all.
+    const Vec2 apart = bench.system.motion[1].centroid - bench.system.motion[0].centroid;
+    EXPECT_NEAR(bench.seen.torque[0] + bench.seen.torque[1], cross(apart, bench.seen.force),
+                1e-13 * stiffness);
+    for (const std::size_t k : {0U, 1U}) {
+      EXPECT_NEAR(bench.seen.torque[k], turning[k], most + norm(in_line) * shift);
+    }
   }
   EXPECT_TRUE(ways.contains(PlainOverlap::sides));
   EXPECT_TRUE(ways.contains(PlainOverlap::corners));
