@@ -44,7 +44,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
   });
   grow(forces_, num_forces);
   is_again_ = true;
-  evaluate_known({system, candidates, history, deforming_, parameters_.damping_ratio,
+  evaluate_known({system, candidates, history, velocity_gradients_, parameters_.damping_ratio,
                   parameters_.stiffness_damping, true});
   is_again_ = false;
   batch_->take_extremes(); // they have been told

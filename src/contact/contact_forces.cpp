@@ -49,12 +49,12 @@ ContactForces::ContactForces(ContactForces &&) noexcept = default;
 ContactForces &ContactForces::operator=(ContactForces &&) noexcept = default;
 
 void ContactForces::find_motions(BlockSystem &system, std::size_t first, std::size_t last) {
-  deforming_.resize(system.deformation.size());
+  velocity_gradients_.resize(system.deformation.size());
   const std::size_t width = batch_->width();
   const auto in_lanes = [&](std::size_t row) { // did they?
     const std::size_t deformable = system.deformation_begin[row + width] - system.deformation_begin[row];
     if (deformable == width) {
-      batch_->find_deforming_motions(system, row, deforming_);
+      batch_->find_deforming_motions(system, row, velocity_gradients_);
     }
     return deformable == width || (deformable == 0 && batch_->find_motions(system, row));
   };
@@ -72,7 +72,7 @@ void ContactForces::find_motions(BlockSystem &system, std::size_t first, std::si
     motion.increment = system.is_fixed(row) ? TrialIncrement{} : trial_increment(system, row);
     if (system.is_deformable(row)) {
       const std::size_t k = system.deformation_begin[row];
-      deforming_[k] = {system.deformation[k].rate * system.trial_inverse[k]};
+      velocity_gradients_[k] = system.deformation[k].rate * system.trial_inverse[k];
     }
   }
 }
@@ -286,9 +286,13 @@ void ContactForces::find_meeting(const BlockSystem &system, const Candidates &ca
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                                          ContactHistory &history, std::size_t first, std::size_t last,
                                          const Front &front) {
-  const PlainScene scene{
-      system, candidates, history, deforming_, parameters_.damping_ratio, parameters_.stiffness_damping,
-      false};
+  const PlainScene scene{system,
+                         candidates,
+                         history,
+                         velocity_gradients_,
+                         parameters_.damping_ratio,
+                         parameters_.stiffness_damping,
+                         false};
   plain_memory_ = history.plain;
   for (std::size_t begin = first, end = first; begin < last; begin = end) {
     const std::uint32_t group = candidates.plain[begin].group();

@@ -186,7 +186,7 @@ struct DeformingMotion : TranslatingMotion {
       for (std::size_t i = 0; i < num_lanes; ++i) {
         rates[i] = &turning[i];
         if (system.is_deformable(blocks.row[i])) {
-          rates[i] = &scene.deforming[system.deformation_begin[blocks.row[i]]].rate;
+          rates[i] = &scene.velocity_gradients[system.deformation_begin[blocks.row[i]]];
         } else {
           const double spin = blocks.motion[i]->spin;
           turning[i] = {0.0, -spin, spin, 0.0};
@@ -242,7 +242,7 @@ inline bool find_rigid_motions(BlockSystem &system, std::size_t first) {
 
 /// What PlainBatch::find_deforming_motions() says.
 inline void find_deforming_motions(BlockSystem &system, std::size_t first,
-                                   std::span<DeformingBlock> deforming) {
+                                   std::span<Mat2> velocity_gradients) {
   const std::size_t entry = system.deformation_begin[first];
   const Deformation *deformation = &system.deformation[entry];
   const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
@@ -255,15 +255,15 @@ inline void find_deforming_motions(BlockSystem &system, std::size_t first,
   const LaneMat turn = (load(&Deformation::trial) - load(&Deformation::trial_previous)) * to_reference;
   const LaneMat rate = load(&Deformation::rate) * to_reference;
   std::array<std::byte *, num_lanes> to;
-  std::array<std::byte *, num_lanes> to_deforming;
+  std::array<std::byte *, num_lanes> to_gradients;
   for (std::size_t i = 0; i < num_lanes; ++i) {
     to[i] = reinterpret_cast<std::byte *>(&system.motion[first + i]);
-    to_deforming[i] = reinterpret_cast<std::byte *>(&deforming[entry + i]);
+    to_gradients[i] = reinterpret_cast<std::byte *>(&velocity_gradients[entry + i]);
   }
   store_pairs(to, offsetof(BlockMotion, velocity), velocity[0], velocity[1]);
   store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], turn.xx(), turn.xy());
   store_by_lane(to, 8 * sizeof(double), turn.yx(), turn.yy(), velocity[2], 0.0);
-  store_by_lane(to_deforming, offsetof(DeformingBlock, rate), rate.xx(), rate.xy(), rate.yx(), rate.yy());
+  store_by_lane(to_gradients, 0, rate.xx(), rate.xy(), rate.yx(), rate.yy());
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -19,7 +19,7 @@ struct PlainScene {
   const BlockSystem &system;
   const Candidates &candidates;
   const ContactHistory &history;
-  std::span<const DeformingBlock> deforming; ///< by entry of BlockSystem::deformation
+  std::span<const Mat2> velocity_gradients; ///< 1/s, by entry of BlockSystem::deformation
   double damping_ratio = 0.0;
   double stiffness_damping = 0.0;
   bool is_known = false; ///< the memories are those that this evaluation left behind: only details are wanted
@@ -59,7 +59,7 @@ public:
   virtual bool find_motions(BlockSystem &system, std::size_t first) const = 0;
   /// The same of deformable rows.
   virtual void find_deforming_motions(BlockSystem &system, std::size_t first,
-                                      std::span<DeformingBlock> deforming) const = 0;
+                                      std::span<Mat2> velocity_gradients) const = 0;
   /// What one of the ways below says of each lane, by bits.
   struct Seen {
     unsigned touching = 0;

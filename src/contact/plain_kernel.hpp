@@ -27,8 +27,8 @@ public:
     return find_rigid_motions(system, first);
   }
   void find_deforming_motions(BlockSystem &system, std::size_t first,
-                              std::span<DeformingBlock> deforming) const override {
-    gcpdda::GCPDDA_INSTRUCTIONS::find_deforming_motions(system, first, deforming);
+                              std::span<Mat2> velocity_gradients) const override {
+    gcpdda::GCPDDA_INSTRUCTIONS::find_deforming_motions(system, first, velocity_gradients);
   }
   Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Seen evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;

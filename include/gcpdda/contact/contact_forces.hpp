@@ -47,11 +47,6 @@
 
 namespace gcpdda {
 
-/// What contacts of a deformable block have in common.
-struct DeformingBlock {
-  Mat2 rate; ///< velocity gradient, 1/s
-};
-
 /// Something a step cannot go on with.
 struct Fault {
   enum class Cause : std::int32_t { not_finite = 0, too_deep = 1, too_fast = 2 };
@@ -321,13 +316,13 @@ private:
   /// What the history becomes, but for ContactHistory::plain, whose entries are written where they are read;
   /// afterwards what it was.
   ContactHistory next_;
-  std::span<RegionState> plain_memory_;   ///< that of the evaluation at hand
-  std::vector<DeformingBlock> deforming_; ///< by entry of BlockSystem::deformation
-  std::size_t first_of_pair_ = 0;         ///< region of the pair at hand
-  std::vector<RegionDyads> dyads_;        ///< of its regions, if a block deforms
-  Mat2 damping_dyad_;                     ///< of the region at hand, about its origin
-  std::vector<BondAtWork> bonds_;         ///< of the pair at hand
-  std::vector<double> facing_;            ///< of the pieces at hand, scratch
+  std::span<RegionState> plain_memory_;  ///< that of the evaluation at hand
+  std::vector<Mat2> velocity_gradients_; ///< 1/s, by entry of BlockSystem::deformation
+  std::size_t first_of_pair_ = 0;        ///< region of the pair at hand
+  std::vector<RegionDyads> dyads_;       ///< of its regions, if a block deforms
+  Mat2 damping_dyad_;                    ///< of the region at hand, about its origin
+  std::vector<BondAtWork> bonds_;        ///< of the pair at hand
+  std::vector<double> facing_;           ///< of the pieces at hand, scratch
   /// N opened by slip, J/m.
   struct DilationWork {
     std::uint32_t pair = 0;
