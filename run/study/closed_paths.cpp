@@ -65,12 +65,12 @@ public:
     system_.trial[0].u = at.u;
     system_.deformation_of(0).trial = at.gradient;
     pose(system_, 0, 1);
-    BlockView moving = view_of(system_, 0);
+    BlockView moving = view_of(system_, 0, outlines_[0]);
     if (!is_seen_deformed_) {
       moving.frame.reset();
     }
     Force force;
-    if (!overlap_.find(moving, view_of(system_, 1), potential_)) {
+    if (!overlap_.find(moving, view_of(system_, 1, outlines_[1]), potential_)) {
       return force;
     }
     for (const Region &region : overlap_.regions()) {
@@ -86,6 +86,7 @@ public:
 private:
   BlockSystem system_;
   Overlap overlap_;
+  std::array<TrialOutline, 2> outlines_;
   PotentialKind potential_;
   bool is_seen_deformed_ = false;
 };

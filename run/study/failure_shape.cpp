@@ -120,7 +120,7 @@ Outcome bounce(double tip_deg, double speed, double tilt_deg) {
     double tip = 0.0;
     while (!simulation.finished() && (tip == 0.0 || !simulation.history().empty())) {
       simulation.step();
-      for (const Vec2 v : simulation.blocks().of_row(simulation.blocks().vertex, 0)) {
+      for (const Vec2 v : TrialOutline(simulation.blocks(), 0).vertex) {
         tip = std::min(tip, v.y);
       }
     }

@@ -83,7 +83,8 @@ RigidDof OneBlock::evaluate() {
   RigidDof total{{0.0, -earth_gravity * mass()}, 0.0};
   shear_before_ = shear_;
   const bool touched = touches_;
-  touches_ = overlap_.find(view_of(system_, 1), view_of(system_, 0), PotentialKind::exact);
+  touches_ = overlap_.find(view_of(system_, 1, outlines_[1]), view_of(system_, 0, outlines_[0]),
+                           PotentialKind::exact);
   if (!touches_) {
     shear_ = 0.0;
     longest_ = 0.0;
@@ -185,8 +186,8 @@ double OneBlock::potential_at(const RigidDof &trial) {
   const RigidDof kept = system_.trial[0];
   system_.trial[0] = trial;
   pose(system_, 0, 1);
-  const double contact =
-      0.5 * problem_.normal_stiffness * overlap_energy(view_of(system_, 1), view_of(system_, 0));
+  const double contact = 0.5 * problem_.normal_stiffness *
+                         overlap_energy(view_of(system_, 1, outlines_[1]), view_of(system_, 0, outlines_[0]));
   system_.trial[0] = kept;
   pose(system_, 0, 1);
   return contact + mass() * earth_gravity * trial.u.y;

@@ -61,6 +61,7 @@ private:
   Scheme scheme_;
   BlockSystem system_; ///< row 0 the block, row 1 its support
   Overlap overlap_;
+  std::array<TrialOutline, 2> outlines_;
   bool touches_ = true;
   double longest_ = 0.0;
   double last_extent_ = 0.0;

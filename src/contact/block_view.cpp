@@ -4,10 +4,14 @@
 
 namespace gcpdda {
 
-BlockView view_of(const BlockSystem &system, std::size_t row) {
-  BlockView view{system.of_row(system.vertex, row),      system.of_row(system.normal, row),
-                 system.of_row(system.edge_length, row), system.motion[row].box,
-                 system.properties[row].is_convex,       {}};
+BlockView view_of(const BlockSystem &system, std::size_t row, TrialOutline &outline) {
+  outline.find(system, row);
+  BlockView view{outline.vertex,
+                 outline.normal,
+                 outline.length,
+                 system.motion[row].box,
+                 system.properties[row].is_convex,
+                 {}};
   if (system.is_deformable(row)) {
     view.frame = {system.motion[row].centroid, system.deformation_of(row).trial,
                   system.trial_inverse[system.deformation_begin[row]],

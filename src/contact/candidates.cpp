@@ -320,15 +320,6 @@ void find_rows_of_groups(const BlockSystem &system, Candidates &candidates) {
   }
 }
 
-/// The ends of a chain's edges.
-void append_chain(const BlockSystem &system, std::size_t row, const EdgeChain &chain,
-                  std::vector<std::uint8_t> &vertices) {
-  const std::size_t n = system.num_vertices(row);
-  for (std::size_t i = 0; i <= chain.count; ++i) {
-    vertices.push_back(static_cast<std::uint8_t>((chain.first + i) % n));
-  }
-}
-
 /// The last of all pairs is a plain one.
 void append_plain(const BlockSystem &system, const ChainFinder &finder, const EdgeChain &lower_chain,
                   const EdgeChain &higher_chain, Candidates &candidates) {
@@ -337,13 +328,12 @@ void append_plain(const BlockSystem &system, const ChainFinder &finder, const Ed
   const std::uint32_t higher = pair.higher.value;
   candidates.plain.push_back(
       {static_cast<std::uint32_t>(candidates.pairs.size() - 1),
-       static_cast<std::uint32_t>(candidates.chains.size()),
        {static_cast<std::uint8_t>(lower_chain.count), static_cast<std::uint8_t>(higher_chain.count),
         finder.is_deformable(lower, higher),
         system.num_vertices(lower) <= most_corner_edges && system.num_vertices(higher) <= most_corner_edges},
+       static_cast<std::uint8_t>(place_in_rings(system.num_vertices(lower), lower_chain.first)),
+       static_cast<std::uint8_t>(place_in_rings(system.num_vertices(higher), higher_chain.first)),
        pair.is_mixed});
-  append_chain(system, lower, lower_chain, candidates.chains);
-  append_chain(system, higher, higher_chain, candidates.chains);
 }
 
 /// None yet, with room for so many pairs.
@@ -354,7 +344,6 @@ Candidates with_room(std::size_t pairs, const JointLaws &joints) {
   }
   candidates.pairs.reserve(pairs);
   candidates.plain.reserve(pairs);
-  candidates.chains.reserve(8 * pairs); // about four ends of edges for each of two blocks
   return candidates;
 }
 

@@ -69,8 +69,11 @@ void ContactForces::find_motions(BlockSystem &system, std::size_t first, std::si
     BlockMotion &motion = system.motion[row];
     motion.velocity = velocity.u;
     motion.spin = velocity.r;
-    motion.increment = system.is_fixed(row) ? TrialIncrement{} : trial_increment(system, row);
+    const TrialIncrement increment = system.is_fixed(row) ? TrialIncrement{} : trial_increment(system, row);
+    motion.step = increment.u;
+    motion.turn[0] = {increment.turn.xx, increment.turn.xy};
     if (system.is_deformable(row)) {
+      motion.turn[1] = {increment.turn.yx, increment.turn.yy};
       const std::size_t k = system.deformation_begin[row];
       velocity_gradients_[k] = system.deformation[k].rate * system.trial_inverse[k];
     }

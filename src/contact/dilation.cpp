@@ -32,13 +32,11 @@ void ClosedPair::move(const BlockSystem &system, const CandidatePair &pair, Vec2
   for (const std::size_t k : {0U, 1U}) {
     const Vec2 shift = (k == 0 ? -0.5 : 0.5) * opening;
     BlockView &view = view_[k];
-    view = view_of(system, (k == 0 ? pair.lower : pair.higher).value);
-    vertex_[k].assign(view.vertex.begin(), view.vertex.end());
-    for (Vec2 &x : vertex_[k]) {
+    view = view_of(system, (k == 0 ? pair.lower : pair.higher).value, outline_[k]);
+    for (Vec2 &x : outline_[k].vertex) {
       x += shift;
     }
-    view.vertex = vertex_[k];
-    view.box = bounding_box(vertex_[k]);
+    view.box = bounding_box(view.vertex);
     if (view.frame) {
       view.frame->centre += shift;
     }
@@ -97,8 +95,7 @@ double ContactForces::guessed_slip(const BlockSystem &system, const CandidatePai
   const Aabb &b = closed_.higher().box;
   const Vec2 middle = 0.5 * (Vec2{std::max(a.low.x, b.low.x), std::max(a.low.y, b.low.y)} +
                              Vec2{std::min(a.high.x, b.high.x), std::min(a.high.y, b.high.y)});
-  const Vec2 slide = slide_at(system, pair, middle, system.motion[pair.lower.value].increment,
-                              system.motion[pair.higher.value].increment);
+  const Vec2 slide = slide_at(system, pair, middle);
   return std::abs(cross(dilation_axes(system, pair)(known.dilation), slide)) / norm(known.dilation);
 }
 
@@ -114,8 +111,7 @@ double ContactForces::consistent_slip(const BlockSystem &system, const Candidate
                                   ? law.tan_friction_at(normal_force / extent)
                                   : constants.tan_friction;
   const double stiffness = constants.tangential_stiffness * std::max(known.longest, extent);
-  const Vec2 slide = slide_at(system, pair, force.point, system.motion[pair.lower.value].increment,
-                              system.motion[pair.higher.value].increment);
+  const Vec2 slide = slide_at(system, pair, force.point);
   const double trial = known.shear + stiffness * dot(slide, perp(force.normal));
   const double by_opening = 2.0 * constants.half_stiffness * extent * law.tan_dilation * tan_friction;
   const double excess = std::abs(trial) - (normal_force * tan_friction + constants.cohesion * extent);

@@ -124,7 +124,6 @@ void swell(BlockSystem &system, std::size_t row, std::span<const Vec2> by) {
   for (std::size_t k = 0; k < count; ++k) {
     const Vec2 edge = system.reference_vertex[begin + (k + 1) % count] - system.reference_vertex[begin + k];
     const double length = norm(edge);
-    system.edge_length[begin + k] = length;
     system.reference_normal[begin + k] = {edge.y / length, -edge.x / length};
   }
   const auto shape = system.of_row(system.reference_vertex, row);

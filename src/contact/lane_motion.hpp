@@ -20,7 +20,7 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
 struct LaneBlocks {
   std::array<std::size_t, num_lanes> row;
   std::array<const BlockMotion *, num_lanes> motion;
-  std::array<std::size_t, num_lanes> first_vertex; ///< entries of BlockSystem::vertex
+  std::array<std::size_t, num_lanes> first_vertex; ///< entries of BlockSystem::reference_vertex
   std::array<const std::uint8_t *, num_lanes> chain;
 
   [[nodiscard, gnu::always_inline]] std::size_t vertex(std::size_t i, std::size_t k) const {
@@ -28,49 +28,77 @@ struct LaneBlocks {
   }
 };
 
-/// Of *get(i).
-template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, LaneSide &side) {
-  const FourLanes box = load_by_lane([&](std::size_t i) { return &get(i)->low.x; });
+[[gnu::always_inline]] inline void load_box(const LaneBlocks &blocks, LaneSide &side) {
+  const FourLanes box = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->box.low.x; });
   side.low = {box[0], box[1]};
   side.high = {box[2], box[3]};
 }
-[[gnu::always_inline]] inline void load_box(const LaneBlocks &blocks, LaneSide &side) {
-  load_box_of([&](std::size_t i) { return &blocks.motion[i]->box; }, side);
-}
-[[gnu::always_inline]] inline void load_box(const BlockSystem &system, const LaneBlocks &blocks,
-                                            LaneSide &side) {
-  load_box_of([&](std::size_t i) { return &system.motion[blocks.row[i]].box; }, side);
-}
 
-[[gnu::always_inline]] inline LaneVec load_vertex(const BlockSystem &system, const LaneBlocks &blocks,
-                                                  std::size_t k) {
-  const Vec2 *vertex = system.vertex.data();
-  return LaneVec::of([&](std::size_t i) { return vertex + blocks.vertex(i, k); });
-}
+/// Where rigid blocks stand: their outlines follow to the bits of pose().
+class LanePlace {
+public:
+  [[gnu::always_inline]] explicit LanePlace(const LaneBlocks &blocks)
+      : centroid_(LaneVec::of([&](std::size_t i) { return &blocks.motion[i]->centroid; })),
+        rotation_(LaneVec::of([&](std::size_t i) { return &blocks.motion[i]->turn[1]; })) {}
 
-/// Edge `number` of the chains as edge k of the side, of pairs where a block deforms or none; then without
-/// its length.
-[[gnu::always_inline]] inline void load_edge(const BlockSystem &system, const PlainPair::Kind &kind,
-                                             const LaneBlocks &blocks, std::size_t number, std::size_t k,
-                                             LaneSide &side) {
-  std::array<std::size_t, num_lanes> at;
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    at[i] = blocks.vertex(i, number);
+  [[nodiscard, gnu::always_inline]] LaneVec turned(const LaneVec &a) const {
+    return rotation_.x * a + rotation_.y * perp(a);
   }
-  const Vec2 *vertex = system.vertex.data();
-  side.vertex[k] = LaneVec::of([&](std::size_t i) { return vertex + at[i]; });
-  if (kind.is_deformable) {
-    const DeformedEdge *edge = system.deformed_edge.data();
-    const FourLanes four = load_by_lane([&](std::size_t i) { return &edge[at[i]].slope.x; });
-    side.slope[k] = {four[0], four[1]};
-    side.length[k] = four[2];
-    side.normal[k] = four[3] * side.slope[k];
-    return;
+  [[nodiscard, gnu::always_inline]] LaneVec point(const LaneVec &a) const { return centroid_ + turned(a); }
+
+private:
+  LaneVec centroid_;
+  LaneVec rotation_; ///< cosine and sine
+};
+
+/// Edges of one block of each pair, either of pairs where one deforms or of others.
+class LaneOutline {
+public:
+  [[gnu::always_inline]] LaneOutline(const BlockSystem &system, const PlainPair::Kind &kind,
+                                     const LaneBlocks &blocks)
+      : system_(system), blocks_(blocks), place_(blocks), is_deformable_(kind.is_deformable) {}
+
+  /// The vertex of that number in the chains.
+  [[nodiscard, gnu::always_inline]] LaneVec vertex(std::size_t number) const {
+    return vertex(places(number));
   }
-  const Vec2 *normal = system.normal.data();
-  side.normal[k] = LaneVec::of([&](std::size_t i) { return normal + at[i]; });
-  side.slope[k] = side.normal[k];
-}
+  /// Edge `number` of the chains as edge k of the side; without its length where none deforms.
+  [[gnu::always_inline]] void load_edge(std::size_t number, std::size_t k, LaneSide &side) const {
+    const Places at = places(number);
+    side.vertex[k] = vertex(at);
+    if (is_deformable_) {
+      const DeformedEdge *edge = system_.deformed_edge.data();
+      const FourLanes four = load_by_lane([&](std::size_t i) { return &edge[at[i]].slope.x; });
+      side.slope[k] = {four[0], four[1]};
+      side.length[k] = four[2];
+      side.normal[k] = four[3] * side.slope[k];
+      return;
+    }
+    const Vec2 *normal = system_.reference_normal.data();
+    side.normal[k] = place_.turned(LaneVec::of([&](std::size_t i) { return normal + at[i]; }));
+    side.slope[k] = side.normal[k];
+  }
+
+private:
+  using Places = std::array<std::size_t, num_lanes>;
+  [[nodiscard, gnu::always_inline]] Places places(std::size_t number) const {
+    Places at;
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      at[i] = blocks_.vertex(i, number);
+    }
+    return at;
+  }
+  [[nodiscard, gnu::always_inline]] LaneVec vertex(const Places &at) const {
+    const Vec2 *vertex = is_deformable_ ? system_.vertex.data() : system_.reference_vertex.data();
+    const LaneVec point = LaneVec::of([&](std::size_t i) { return vertex + at[i]; });
+    return is_deformable_ ? point : place_.point(point);
+  }
+
+  const BlockSystem &system_;
+  const LaneBlocks &blocks_;
+  LanePlace place_;
+  bool is_deformable_;
+};
 
 /// Of edge k that ends there: a list of lengths would take longer to read.
 [[gnu::always_inline]] inline void find_length(std::size_t k, const LaneVec &end, LaneSide &side) {
@@ -80,11 +108,12 @@ template <class Get> [[gnu::always_inline]] inline void load_box_of(Get &&get, L
 /// All edges of the chains.
 inline void load_chain(const BlockSystem &system, const PlainPair::Kind &kind, const LaneBlocks &blocks,
                        std::size_t edges, LaneSide &side) {
+  const LaneOutline outline(system, kind, blocks);
   side.edges = edges;
   for (std::size_t k = 0; k < edges; ++k) {
-    load_edge(system, kind, blocks, k, k, side);
+    outline.load_edge(k, k, side);
   }
-  side.vertex[edges] = load_vertex(system, blocks, edges);
+  side.vertex[edges] = outline.vertex(edges);
   for (std::size_t k = 0; k < edges && !kind.is_deformable; ++k) {
     find_length(k, side.vertex[k + 1], side);
   }
@@ -94,11 +123,12 @@ inline void load_chain(const BlockSystem &system, const PlainPair::Kind &kind, c
 template <std::size_t edges>
 [[gnu::always_inline]] inline void load_side(const BlockSystem &system, const PlainPair::Kind &kind,
                                              const LaneBlocks &blocks, std::size_t last, LaneSide &side) {
+  const LaneOutline outline(system, kind, blocks);
   each<edges>([&](auto k) __attribute__((always_inline)) {
-    load_edge(system, kind, blocks, std::min<std::size_t>(k, last), k, side);
+    outline.load_edge(std::min<std::size_t>(k, last), k, side);
   });
   if (!kind.is_deformable) {
-    side.vertex[edges] = load_vertex(system, blocks, last + 1);
+    side.vertex[edges] = outline.vertex(last + 1);
     each<edges>([&](auto k) __attribute__((always_inline)) {
       find_length(k, side.vertex[k < last ? k + 1 : edges], side);
     });
@@ -160,7 +190,7 @@ struct RigidMotion : TranslatingMotion {
 private:
   [[gnu::always_inline]] static void take_turn(const LaneBlocks &blocks, Lanes &spin, LaneVec &step,
                                                Lanes &sine, Lanes &versine) {
-    const FourLanes increment = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->increment.u.x; });
+    const FourLanes increment = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->step.x; });
     spin = Lanes::of([&](std::size_t i) { return blocks.motion[i]->spin; });
     step = {increment[0], increment[1]};
     versine = increment[2]; // a small turn is {versine, -sine; sine, versine}
@@ -179,25 +209,8 @@ struct DeformingMotion : TranslatingMotion {
 
   DeformingMotion(const PlainScene &scene, const LaneBlocks &lower, const LaneBlocks &higher)
       : TranslatingMotion(lower, higher) {
-    const BlockSystem &system = scene.system;
-    const auto rates_of = [&](const LaneBlocks &blocks) __attribute__((always_inline)) {
-      std::array<Mat2, num_lanes> turning; // of rigid blocks
-      std::array<const Mat2 *, num_lanes> rates;
-      for (std::size_t i = 0; i < num_lanes; ++i) {
-        rates[i] = &turning[i];
-        if (system.is_deformable(blocks.row[i])) {
-          rates[i] = &scene.velocity_gradients[system.deformation_begin[blocks.row[i]]];
-        } else {
-          const double spin = blocks.motion[i]->spin;
-          turning[i] = {0.0, -spin, spin, 0.0};
-        }
-      }
-      return LaneMat::of([&](std::size_t i) { return rates[i]; });
-    };
-    lower_rate = rates_of(lower);
-    higher_rate = rates_of(higher);
-    take_turn(lower, lower_step, lower_turn);
-    take_turn(higher, higher_step, higher_turn);
+    take_gradients(scene, lower, lower_rate, lower_step, lower_turn);
+    take_gradients(scene, higher, higher_rate, higher_step, higher_turn);
   }
   [[nodiscard, gnu::always_inline]] LaneVec velocity_at(const LaneVec &x) const {
     return (lower_velocity + lower_rate(x - lower_centroid)) -
@@ -211,9 +224,28 @@ struct DeformingMotion : TranslatingMotion {
   }
 
 private:
-  [[gnu::always_inline]] static void take_turn(const LaneBlocks &blocks, LaneVec &step, LaneMat &turn) {
-    step = LaneVec::of([&](std::size_t i) { return &blocks.motion[i]->increment.u; });
-    turn = LaneMat::of([&](std::size_t i) { return &blocks.motion[i]->increment.turn; });
+  [[gnu::always_inline]] static void take_gradients(const PlainScene &scene, const LaneBlocks &blocks,
+                                                    LaneMat &rate, LaneVec &step, LaneMat &turn) {
+    std::array<Mat2, num_lanes> rigid_rate;
+    std::array<Mat2, num_lanes> rigid_turn;
+    std::array<const double *, num_lanes> rates;
+    std::array<const double *, num_lanes> turns;
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      const std::size_t row = blocks.row[i];
+      if (scene.system.is_deformable(row)) {
+        rates[i] = &scene.velocity_gradients[scene.system.deformation_begin[row]].xx;
+        turns[i] = &blocks.motion[i]->turn[0].x;
+      } else {
+        const double spin = blocks.motion[i]->spin;
+        rigid_rate[i] = {0.0, -spin, spin, 0.0};
+        rigid_turn[i] = scene.system.increment_of(row).turn;
+        rates[i] = &rigid_rate[i].xx;
+        turns[i] = &rigid_turn[i].xx;
+      }
+    }
+    rate = LaneMat(load_by_lane([&](std::size_t i) { return rates[i]; }));
+    turn = LaneMat(load_by_lane([&](std::size_t i) { return turns[i]; }));
+    step = LaneVec::of([&](std::size_t i) { return &blocks.motion[i]->step; });
   }
 };
 
@@ -232,11 +264,12 @@ inline bool find_rigid_motions(BlockSystem &system, std::size_t first) {
   for (std::size_t i = 0; i < num_lanes; ++i) {
     to[i] = reinterpret_cast<std::byte *>(&system.motion[first + i]);
   }
-  static_assert(offsetof(BlockMotion, increment) == 4 * sizeof(double) &&
-                offsetof(BlockMotion, spin) == 10 * sizeof(double));
+  static_assert(offsetof(BlockMotion, turn) == offsetof(BlockMotion, step) + 2 * sizeof(double) &&
+                offsetof(BlockMotion, spin) == offsetof(BlockMotion, step) + 6 * sizeof(double));
   store_pairs(to, offsetof(BlockMotion, velocity), velocity[0], velocity[1]);
-  store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], versine, -sine);
-  store_by_lane(to, 8 * sizeof(double), sine, versine, velocity[2], 0.0);
+  store_by_lane(to, offsetof(BlockMotion, step), trial[0] - previous[0], trial[1] - previous[1], versine,
+                -sine);
+  store_pairs(to, offsetof(BlockMotion, spin), velocity[2], 0.0);
   return true;
 }
 
@@ -261,8 +294,9 @@ inline void find_deforming_motions(BlockSystem &system, std::size_t first,
     to_gradients[i] = reinterpret_cast<std::byte *>(&velocity_gradients[entry + i]);
   }
   store_pairs(to, offsetof(BlockMotion, velocity), velocity[0], velocity[1]);
-  store_by_lane(to, 4 * sizeof(double), trial[0] - previous[0], trial[1] - previous[1], turn.xx(), turn.xy());
-  store_by_lane(to, 8 * sizeof(double), turn.yx(), turn.yy(), velocity[2], 0.0);
+  store_by_lane(to, offsetof(BlockMotion, step), trial[0] - previous[0], trial[1] - previous[1], turn.xx(),
+                turn.xy());
+  store_by_lane(to, offsetof(BlockMotion, turn) + sizeof(Vec2), turn.yx(), turn.yy(), velocity[2], 0.0);
   store_by_lane(to_gradients, 0, rate.xx(), rate.xy(), rate.yx(), rate.yy());
 }
 

@@ -134,8 +134,7 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   if (bonds.released) {
     memory.shear += bonds.shear; // stretched to this configuration already
   } else if (!force.born) {
-    const Vec2 slide = slide_at(system, pair, force.point, system.motion[pair.lower.value].increment,
-                                system.motion[pair.higher.value].increment);
+    const Vec2 slide = slide_at(system, pair, force.point);
     memory.shear += stiffness * dot(slide, tangent);
   }
   if (std::abs(memory.shear) > force.cap) {
@@ -251,8 +250,8 @@ void ContactForces::find_regions(const BlockSystem &system, const Candidates &ca
   const bool all_dilated = pair.is_convex && !dilated_.empty(); // its only region
   const bool touches = !all_dilated &&
                        system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) &&
-                       overlap_.find(view_of(system, pair.lower.value), view_of(system, pair.higher.value),
-                                     parameters_.potential);
+                       overlap_.find(view_of(system, pair.lower.value, outlines_[0]),
+                                     view_of(system, pair.higher.value, outlines_[1]), parameters_.potential);
   const auto first_bond =
       std::find_if(old.begin(), old.end(), [](const RegionMemory &m) { return m.is_bond(); });
   const std::span<RegionMemory> bonds(first_bond, old.end());

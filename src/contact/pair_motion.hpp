@@ -20,10 +20,11 @@ inline Vec2 increment_at(const TrialIncrement &step, Vec2 r) {
 }
 
 /// Motion of the lower block's material point now at x relative to the higher one's.
-inline Vec2 slide_at(const BlockSystem &system, const CandidatePair &pair, Vec2 x,
-                     const TrialIncrement &lower, const TrialIncrement &higher) {
-  return increment_at(lower, x - system.motion[pair.lower.value].centroid) -
-         increment_at(higher, x - system.motion[pair.higher.value].centroid);
+inline Vec2 slide_at(const BlockSystem &system, const CandidatePair &pair, Vec2 x) {
+  const auto of = [&](BlockIndex row) {
+    return increment_at(system.increment_of(row.value), x - system.motion[row.value].centroid);
+  };
+  return of(pair.lower) - of(pair.higher);
 }
 
 inline void add_force(RegionForce &force, Vec2 at, Vec2 f) {

@@ -80,33 +80,26 @@ struct LaneBatch::Pairs {
   LaneBlocks lower;
   LaneBlocks higher;
 
-  /// As they lie.
   [[gnu::always_inline]] Pairs(const BlockSystem &system, const Candidates &candidates,
                                const PlainLanes &given)
       : lanes(given), first(*given.pair[0]) {
     const std::uint32_t *vertex_begin = system.vertex_begin.data();
-    const std::uint8_t *chains = candidates.chains.data();
-    const std::size_t higher_chain = first.kind.lower_edges + std::size_t{1};
+    const BlockMotion *motions = system.motion.data();
     for (std::size_t i = 0; i < num_lanes; ++i) {
       const PlainPair &plain = *lanes.pair[i];
       const CandidatePair &pair = candidates.pairs[plain.pair];
       lower.row[i] = pair.lower.value;
       higher.row[i] = pair.higher.value;
-      lower.first_vertex[i] = vertex_begin[lower.row[i]];
-      higher.first_vertex[i] = vertex_begin[higher.row[i]];
-      lower.chain[i] = chains + plain.chain;
-      higher.chain[i] = chains + plain.chain + higher_chain;
-    }
-  }
-  /// And as they move.
-  [[gnu::always_inline]] Pairs(const PlainScene &scene, const PlainLanes &given)
-      : Pairs(scene.system, scene.candidates, given) {
-    const BlockMotion *motions = scene.system.motion.data();
-    for (std::size_t i = 0; i < num_lanes; ++i) {
       lower.motion[i] = motions + lower.row[i];
       higher.motion[i] = motions + higher.row[i];
+      lower.first_vertex[i] = vertex_begin[lower.row[i]];
+      higher.first_vertex[i] = vertex_begin[higher.row[i]];
+      lower.chain[i] = &rings[plain.lower_ends];
+      higher.chain[i] = &rings[plain.higher_ends];
     }
   }
+  [[gnu::always_inline]] Pairs(const PlainScene &scene, const PlainLanes &given)
+      : Pairs(scene.system, scene.candidates, given) {}
 };
 
 inline LaneConstants LaneBatch::load_constants(const PlainScene &scene, const Pairs &pairs) {
@@ -333,25 +326,21 @@ template <std::size_t edges> struct LaneBatch::PairSides {
         last_higher(pairs.first.kind.higher_edges - std::size_t{1}) {
     load_side<edges>(system, pairs.first.kind, pairs.lower, last_lower, lower);
     load_side<edges>(system, pairs.first.kind, pairs.higher, last_higher, higher);
-  }
-  /// As they move.
-  [[gnu::always_inline]] PairSides(const PlainScene &scene, const Pairs &pairs)
-      : PairSides(scene.system, pairs) {
     load_box(pairs.lower, lower);
     load_box(pairs.higher, higher);
   }
   /// Where the chains end: pairs of rigid blocks know it, for their lengths.
   void load_ends(const BlockSystem &system, const Pairs &pairs) {
     if (pairs.first.kind.is_deformable) {
-      lower.vertex[edges] = load_vertex(system, pairs.lower, last_lower + 1);
-      higher.vertex[edges] = load_vertex(system, pairs.higher, last_higher + 1);
+      lower.vertex[edges] = LaneOutline(system, pairs.first.kind, pairs.lower).vertex(last_lower + 1);
+      higher.vertex[edges] = LaneOutline(system, pairs.first.kind, pairs.higher).vertex(last_higher + 1);
     }
   }
 };
 
 template <std::size_t edges>
 PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pairs &pairs) {
-  PairSides<edges> sides(scene, pairs);
+  PairSides<edges> sides(scene.system, pairs);
   CornerOverlap<edges> overlap;
   const Mask meets = boxes_meet(sides.lower, sides.higher);
   const Mask valid = meets & overlap.find(sides.lower, sides.higher);
@@ -375,7 +364,7 @@ PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pair
 
 template <class Overlap, std::size_t edges>
 PlainBatch::Seen LaneBatch::evaluate_as(const PlainScene &scene, const Pairs &pairs) {
-  const PairSides<edges> sides(scene, pairs);
+  const PairSides<edges> sides(scene.system, pairs);
   Overlap overlap;
   const Mask meets = boxes_meet(sides.lower, sides.higher);
   const Mask valid =
@@ -434,9 +423,7 @@ inline PlainBatch::Energies LaneBatch::find_corner_energies(const BlockSystem &s
                                                             const PlainLanes &lanes) {
   const Pairs pairs(system, candidates, lanes);
   return with_few_edges(pairs.first, [&](auto edges) {
-    PairSides<edges> sides(system, pairs);
-    load_box(system, pairs.lower, sides.lower);
-    load_box(system, pairs.higher, sides.higher);
+    const PairSides<edges> sides(system, pairs);
     CornerOverlap<edges> overlap;
     const Mask overlaps = overlap.find(sides.lower, sides.higher);
     return by_lane(overlaps & overlap.has_two_lines_each(), overlap.energy());
@@ -448,8 +435,8 @@ inline PlainBatch::Energies LaneBatch::find_energies(const BlockSystem &system, 
   const Pairs pairs(system, candidates, lanes);
   load_chain(system, pairs.first.kind, pairs.lower, pairs.first.kind.lower_edges, lower_);
   load_chain(system, pairs.first.kind, pairs.higher, pairs.first.kind.higher_edges, higher_);
-  load_box(system, pairs.lower, lower_);
-  load_box(system, pairs.higher, higher_);
+  load_box(pairs.lower, lower_);
+  load_box(pairs.higher, higher_);
   cut_edges(lower_, higher_, on_lower_);
   cut_edges(higher_, lower_, on_higher_);
   const LaneEnergy of_higher = find_field_energy(lower_, on_lower_, higher_);

@@ -16,12 +16,13 @@ double rigid_bound(const BlockSystem &system, std::size_t row, double normal_sti
     const Vec2 n = system.reference_normal[k];
     const Vec2 t = perp(n);
     const Vec2 a = system.reference_vertex[k];
+    const double length = reference_length(system, row, k - system.vertex_begin[row]);
     // b is linear along the edge, so two Gauss points integrate b b^T exactly.
     for (const double gauss : {-1.0, 1.0}) {
-      const Vec2 x = a + (0.5 + gauss / std::sqrt(12.0)) * system.edge_length[k] * t;
+      const Vec2 x = a + (0.5 + gauss / std::sqrt(12.0)) * length * t;
       const Eigen::Vector3d b_n(n.x, n.y, cross(x, n));
       const Eigen::Vector3d b_t(t.x, t.y, cross(x, t));
-      const double weight = 0.5 * system.edge_length[k];
+      const double weight = 0.5 * length;
       stiffness +=
           weight * (normal_stiffness * b_n * b_n.transpose() + tangential_stiffness * b_t * b_t.transpose());
     }

@@ -35,20 +35,16 @@ public:
     }
     return points;
   }
-  [[gnu::always_inline]] void store(std::vector<Vec2> &list, const std::array<LaneVec, 4> &points) const {
-    const auto to = places([&](std::size_t i) { return &list[first_[i]]; });
+  [[gnu::always_inline]] void store_vertices(const std::array<LaneVec, 4> &points) const {
+    const auto to = places([&](std::size_t i) { return &system_.vertex[first_[i]]; });
     store_by_lane(to, 0, points[0].x, points[0].y, points[1].x, points[1].y);
     store_by_lane(to, 2 * sizeof(Vec2), points[2].x, points[2].y, points[3].x, points[3].y);
   }
-  [[gnu::always_inline]] void store_lengths(const std::array<Lanes, 4> &length) const {
-    const auto to = places([&](std::size_t i) { return &system_.edge_length[first_[i]]; });
-    store_by_lane(to, 0, length[0], length[1], length[2], length[3]);
+  [[gnu::always_inline]] void store_rotations(const Lanes &c, const Lanes &s) const {
+    store_pairs(places([&](std::size_t i) { return &system_.motion[row[i]].turn[1]; }), 0, c, s);
   }
-  [[nodiscard, gnu::always_inline]] std::array<Lanes, 4> load_lengths() const {
-    return load_by_lane([&](std::size_t i) { return &system_.edge_length[first_[i]]; });
-  }
-  [[gnu::always_inline]] void store_deformed(std::size_t k, const LaneVec &slope, const Lanes &length,
-                                             const Lanes &unit) const {
+  [[gnu::always_inline]] void store_edges(std::size_t k, const LaneVec &slope, const Lanes &length,
+                                          const Lanes &unit) const {
     store_by_lane(places([&](std::size_t i) { return &system_.deformed_edge[first_[i] + k]; }), 0, slope.x,
                   slope.y, length, unit);
   }
@@ -88,19 +84,19 @@ inline void pose_rigid_quads(BlockSystem &system, const RowsAtOnce &rows) {
     s = Lanes::of([&](std::size_t i) { return Rotation::of(angle[i]).s; });
   }
   const LaneVec centre = LaneVec::of([&](std::size_t i) { return &system.motion[row[i]].centroid; });
-  std::array<LaneVec, 4> vertex = quads.load(system.reference_vertex);
-  std::array<LaneVec, 4> normal = quads.load(system.reference_normal);
+  const std::array<LaneVec, 4> reference = quads.load(system.reference_vertex);
+  std::array<LaneVec, 4> vertex;
   for (std::size_t k = 0; k < 4; ++k) {
-    vertex[k] = centre + (c * vertex[k] + s * perp(vertex[k]));
-    normal[k] = c * normal[k] + s * perp(normal[k]);
+    vertex[k] = centre + (c * reference[k] + s * perp(reference[k]));
   }
-  quads.store(system.vertex, vertex);
-  quads.store(system.normal, normal);
+  quads.store_rotations(c, s);
   quads.store_boxes(vertex);
   if (!system.deformed_edge.empty()) {
-    const std::array<Lanes, 4> length = quads.load_lengths();
+    quads.store_vertices(vertex);
+    const std::array<LaneVec, 4> normal = quads.load(system.reference_normal);
     for (std::size_t k = 0; k < 4; ++k) {
-      quads.store_deformed(k, normal[k], length[k], 1.0);
+      const Lanes length = dot(reference[(k + 1) % 4] - reference[k], perp(normal[k]));
+      quads.store_edges(k, c * normal[k] + s * perp(normal[k]), length, 1.0);
     }
   }
 }
@@ -118,20 +114,14 @@ inline void pose_deformable_quads(BlockSystem &system, const RowsAtOnce &rows) {
   const std::array<LaneVec, 4> reference = quads.load(system.reference_vertex);
   const std::array<LaneVec, 4> reference_normal = quads.load(system.reference_normal);
   std::array<LaneVec, 4> vertex;
-  std::array<LaneVec, 4> normal;
-  std::array<Lanes, 4> length;
   for (std::size_t k = 0; k < 4; ++k) {
     const LaneVec edge = gradient(reference[(k + 1) % 4] - reference[k]);
     vertex[k] = centre + gradient(reference[k]);
     const LaneVec slope = of_slopes(reference_normal[k]);
     const Lanes unit = Lanes(1.0) / sqrt(dot(slope, slope));
-    normal[k] = unit * slope;
-    length[k] = dot(edge, perp(normal[k]));
-    quads.store_deformed(k, slope, length[k], unit);
+    quads.store_edges(k, slope, dot(edge, perp(unit * slope)), unit);
   }
-  quads.store(system.vertex, vertex);
-  quads.store(system.normal, normal);
-  quads.store_lengths(length);
+  quads.store_vertices(vertex);
   quads.store_boxes(vertex);
 }
 

@@ -58,12 +58,11 @@ PressureIntegral pressure_on_edge(const Water &water, Vec2 begin, Vec2 tangent, 
 
 } // namespace
 
-WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const Water> water,
-                     double gravity) {
+WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const Water> water, double gravity,
+                     TrialOutline &outline) {
   WaterLoad load;
-  const std::span<const Vec2> vertex = system.of_row(system.vertex, row);
-  const std::span<const Vec2> normal = system.of_row(system.normal, row);
-  const std::span<const double> length = system.of_row(system.edge_length, row);
+  outline.find(system, row);
+  const auto &[vertex, normal, length] = outline;
   const std::span<const std::int32_t> joints = system.edge_joints(row);
   for (const Water &of : water) {
     for (std::size_t k = 0; k < vertex.size() && of.active; ++k) {

@@ -32,7 +32,6 @@ void append_shape(BlockSystem &system, std::span<const Vec2> vertices, Vec2 cent
     const double length = norm(edge);
     system.reference_vertex.push_back(vertices[i] - centroid);
     system.reference_normal.push_back({edge.y / length, -edge.x / length});
-    system.edge_length.push_back(length);
   }
 }
 
@@ -117,7 +116,6 @@ void reserve_rows(BlockSystem &system, std::size_t rows, std::size_t vertices) {
              BlockSystem::lists());
   system.reference_vertex.reserve(vertices);
   system.reference_normal.reserve(vertices);
-  system.edge_length.reserve(vertices);
 }
 
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
@@ -194,16 +192,18 @@ void pose_rigid(BlockSystem &system, std::size_t row) {
   const Aabb none;
   Packed low = packed(none.low);
   Packed high = packed(none.high);
-  for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
+  const std::size_t begin = system.vertex_begin[row];
+  for (std::size_t k = begin; k < system.vertex_begin[row + 1]; ++k) {
     const Packed vertex = centre + turned(system.reference_vertex[k]);
-    system.vertex[k] = unpacked(vertex);
-    system.normal[k] = unpacked(turned(system.reference_normal[k]));
     if (!system.deformed_edge.empty()) {
-      system.deformed_edge[k] = {system.normal[k], system.edge_length[k], 1.0};
+      system.vertex[k] = unpacked(vertex);
+      system.deformed_edge[k] = {unpacked(turned(system.reference_normal[k])),
+                                 reference_length(system, row, k - begin), 1.0};
     }
     low = vertex < low ? vertex : low;
     high = high < vertex ? vertex : high;
   }
+  system.motion[row].turn[1] = {turn.c, turn.s};
   system.motion[row].box = {unpacked(low), unpacked(high)};
 }
 
@@ -222,9 +222,7 @@ void pose_deformable(BlockSystem &system, std::size_t row) {
     system.vertex[k] = centre + gradient(system.reference_vertex[k]);
     const Vec2 slope = of_slopes(system.reference_normal[k]);
     const double unit = 1.0 / norm(slope);
-    system.normal[k] = unit * slope;
-    system.edge_length[k] = dot(edge, perp(system.normal[k]));
-    system.deformed_edge[k] = {slope, system.edge_length[k], unit};
+    system.deformed_edge[k] = {slope, dot(edge, perp(unit * slope)), unit};
     box.include(system.vertex[k]);
   }
   system.motion[row].box = box;
@@ -234,10 +232,9 @@ void pose_deformable(BlockSystem &system, std::size_t row) {
 
 void pose(BlockSystem &system, std::size_t first, std::size_t last) {
   system.motion.resize(system.num_rows());
-  system.vertex.resize(system.reference_vertex.size());
-  system.normal.resize(system.reference_vertex.size());
   system.trial_inverse.resize(system.deformation.size());
-  system.deformed_edge.resize(system.deformation.empty() ? 0 : system.reference_vertex.size());
+  system.vertex.resize(system.deformation.empty() ? 0 : system.reference_vertex.size());
+  system.deformed_edge.resize(system.vertex.size());
   for (std::size_t row = first; row < last; ++row) {
     system.motion[row].centroid = system.properties[row].centroid + system.trial[row].u;
     if (system.is_deformable(row)) {
@@ -246,6 +243,34 @@ void pose(BlockSystem &system, std::size_t first, std::size_t last) {
       pose_rigid(system, row);
     }
   }
+}
+
+void TrialOutline::find(const BlockSystem &system, std::size_t row) {
+  vertex.clear();
+  normal.clear();
+  length.clear();
+  const std::size_t begin = system.vertex_begin[row];
+  const bool is_deformable = system.is_deformable(row);
+  const BlockMotion &motion = system.motion[row];
+  for (std::size_t k = begin; k < system.vertex_begin[row + 1]; ++k) {
+    if (is_deformable) {
+      const DeformedEdge &edge = system.deformed_edge[k];
+      vertex.push_back(system.vertex[k]);
+      normal.push_back(edge.unit * edge.slope);
+      length.push_back(edge.length);
+    } else {
+      const Rotation turn = motion.rotation();
+      vertex.push_back(motion.centroid + turn(system.reference_vertex[k]));
+      normal.push_back(turn(system.reference_normal[k]));
+      length.push_back(reference_length(system, row, k - begin));
+    }
+  }
+}
+
+double reference_length(const BlockSystem &system, std::size_t row, std::size_t k) {
+  const std::span<const Vec2> vertex = system.of_row(system.reference_vertex, row);
+  const Vec2 edge = vertex[k + 1 == vertex.size() ? 0 : k + 1] - vertex[k];
+  return dot(edge, perp(system.of_row(system.reference_normal, row)[k]));
 }
 
 void append_current_vertices(const BlockSystem &system, std::size_t row, std::vector<Vec2> &vertices) {

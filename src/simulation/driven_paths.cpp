@@ -16,8 +16,9 @@ namespace {
 constexpr double largest_share = 0.05;
 
 bool overlap_too_deep(const BlockSystem &first, std::size_t i, const BlockSystem &second, std::size_t j) {
-  const BlockView a = view_of(first, i);
-  const BlockView b = view_of(second, j);
+  std::array<TrialOutline, 2> outlines;
+  const BlockView a = view_of(first, i, outlines[0]);
+  const BlockView b = view_of(second, j, outlines[1]);
   Overlap overlap;
   if (!a.box.meets(b.box) || !overlap.find(a, b, PotentialKind::exact)) {
     return false;

@@ -127,7 +127,7 @@ bool Simulation::opens_viscous_sides() const {
 std::vector<std::int64_t> Simulation::held_beyond_viscous_sides() const {
   std::vector<std::int64_t> held;
   for (std::size_t row = blocks_.first_fixed(); row < blocks_.num_rows(); ++row) {
-    const std::span<const Vec2> corners = blocks_.of_row(blocks_.vertex, row);
+    const std::vector<Vec2> corners = current_vertices(blocks_, row);
     const auto is_beyond = [&](const Boundary &side) {
       return std::all_of(corners.begin(), corners.end(),
                          [&](Vec2 x) { return dot(side.normal, x) >= side.reach - side.rounding; });

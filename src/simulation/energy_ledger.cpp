@@ -123,6 +123,7 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
 void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
   const BlockSystem &blocks = simulation.blocks();
   PairEnergies energies;
+  std::array<TrialOutline, 2> outlines;
   std::span<const double> of_group;
   const ContactHistory &history = simulation.history();
   const auto half_stiffness_of = [&](std::int32_t law) {
@@ -150,8 +151,8 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
       sum.add(share * half_stiffness_of(law) * energy);
       continue;
     }
-    const BlockView first = view_of(blocks, a);
-    const BlockView second = view_of(blocks, b);
+    const BlockView first = view_of(blocks, a, outlines[0]);
+    const BlockView second = view_of(blocks, b, outlines[1]);
     if (is_dilated) {
       sum.add(share * dilated_energy(simulation, k, first, second));
     } else {

@@ -46,12 +46,10 @@ std::int64_t state_bytes(const Simulation &simulation) {
   const auto add_list = [&](auto... fields) { (add(blocks.*fields), ...); };
   std::apply([&](auto... list) { (std::apply(add_list, list), ...); }, BlockSystem::lists());
   add(blocks.vertex);
-  add(blocks.normal);
   add(blocks.motion);
   add(blocks.deformed_edge);
   add(simulation.candidates().pairs);
   add(simulation.candidates().plain);
-  add(simulation.candidates().chains);
   add(simulation.history().overlaps);
   add(simulation.history().plain);
   add(simulation.history().regions);

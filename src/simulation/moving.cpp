@@ -214,8 +214,9 @@ void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyFo
     ledger.shear_force = contacts.shear;
     ledger.damping_force = contacts.damping;
     forces_.rigid[row] = contacts.force;
-    const WaterLoad water =
-        scene_.water.empty() ? WaterLoad{} : water_load(blocks_, row, scene_.water, -body.gravity.y);
+    const WaterLoad water = scene_.water.empty()
+                                ? WaterLoad{}
+                                : water_load(blocks_, row, scene_.water, -body.gravity.y, outline_);
     gather_block(row, body, water);
     if (blocks_.is_deformable(row)) {
       gather_gradient(row, water);

@@ -17,7 +17,8 @@ std::array<double, 2> imbalance(const Incline &incline, BlockSystem &system, dou
   system.trial[0] = {-depth * incline.outward(), tilt};
   pose(system, 0, 2);
   Overlap overlap;
-  if (!overlap.find(view_of(system, 0), view_of(system, 1), PotentialKind::exact)) {
+  std::array<TrialOutline, 2> outlines;
+  if (!overlap.find(view_of(system, 0, outlines[0]), view_of(system, 1, outlines[1]), PotentialKind::exact)) {
     throw std::runtime_error("the sliding square has lost its plane");
   }
   const RegionIntegrals region = overlap.integrate(overlap.regions().front());
@@ -94,8 +95,7 @@ std::vector<Vec2> Incline::sliding_square() const {
     tilt -= (a * f[1] - c * f[0]) / determinant;
   }
   imbalance(*this, system, depth, tilt);
-  const auto vertices = system.of_row(system.vertex, 0);
-  return {vertices.begin(), vertices.end()};
+  return TrialOutline(system, 0).vertex;
 }
 
 std::string Incline::toml(const std::vector<Vec2> &square, Setting setting) const {

@@ -35,6 +35,15 @@ struct TwoWays {
   }
 };
 
+/// Mean number of edges in the chains of both blocks.
+inline double edges_a_pair(const Candidates &candidates) {
+  double edges = 0.0;
+  for (const PlainPair &plain : candidates.plain) {
+    edges += plain.kind.lower_edges + plain.kind.higher_edges;
+  }
+  return edges / static_cast<double>(candidates.plain.size());
+}
+
 inline void expect_near(Vec2 a, Vec2 b, double tolerance, const char *what) {
   EXPECT_NEAR(a.x, b.x, tolerance) << what;
   EXPECT_NEAR(a.y, b.y, tolerance) << what;

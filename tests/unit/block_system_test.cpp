@@ -39,7 +39,7 @@ TEST(BlockSystem, DistantOriginCostsNoDigitsOfTheShape) {
   EXPECT_EQ(distant.properties[0].mass, near.properties[0].mass);
   EXPECT_EQ(distant.properties[0].inertia, near.properties[0].inertia);
   EXPECT_EQ(distant.properties[0].width, near.properties[0].width);
-  EXPECT_EQ(distant.edge_length, near.edge_length);
+  EXPECT_EQ(distant.reference_vertex, near.reference_vertex);
   EXPECT_EQ(distant.reference_normal, near.reference_normal);
   // The centroid is rounded to the spacing of doubles at 2e6 m.
   EXPECT_NEAR(norm(distant.properties[0].centroid - far - near.properties[0].centroid), 0.0,
@@ -68,24 +68,26 @@ TEST(BlockSystem, PoseTurnsAboutTheCentroid) {
   system.trial[1] = {{10.0, -2.0}, quarter};
   pose(system, 0, 2);
   // Unmoved: the scene's vertices to the rounding of centroid and offset.
+  const TrialOutline unmoved(system, 0);
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(norm(system.vertex[k] - triangle[k]), 0.0, 4.0 * epsilon);
+    EXPECT_NEAR(norm(unmoved.vertex[k] - triangle[k]), 0.0, 4.0 * epsilon);
   }
   const Vec2 centre{16.0, 3.5};
   EXPECT_NEAR(norm(system.motion[1].centroid - centre), 0.0, 32.0 * epsilon);
+  const TrialOutline turned(system, 1);
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 expected = centre + perp(triangle[k] - Vec2{1.0, 0.5});
-    EXPECT_NEAR(norm(system.vertex[3 + k] - expected), 0.0, 64.0 * epsilon);
-    EXPECT_NEAR(norm(system.normal[3 + k] - perp(system.reference_normal[k])), 0.0, 4.0 * epsilon);
-    EXPECT_GE(system.vertex[3 + k].x, system.motion[1].box.low.x);
-    EXPECT_LE(system.vertex[3 + k].y, system.motion[1].box.high.y);
+    EXPECT_NEAR(norm(turned.vertex[k] - expected), 0.0, 64.0 * epsilon);
+    EXPECT_NEAR(norm(turned.normal[k] - perp(system.reference_normal[k])), 0.0, 4.0 * epsilon);
+    EXPECT_GE(turned.vertex[k].x, system.motion[1].box.low.x);
+    EXPECT_LE(turned.vertex[k].y, system.motion[1].box.high.y);
   }
   // The state of t_n is another configuration than the trial one.
   const std::vector<Vec2> current = current_vertices(system, 1);
   EXPECT_NEAR(norm(current[0] - Vec2{5.0, 5.0}), 0.0, 32.0 * epsilon);
   system.displacement[1] = system.trial[1];
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(norm(current_vertices(system, 1)[k] - system.vertex[3 + k]), 0.0, 32.0 * epsilon);
+    EXPECT_NEAR(norm(current_vertices(system, 1)[k] - turned.vertex[k]), 0.0, 32.0 * epsilon);
   }
 }
 
@@ -97,7 +99,7 @@ TEST(BlockSystem, NormalsPointOutAndEdgesFollow) {
       const Vec2 next = polygon[(k + 1) % polygon.size()];
       EXPECT_NEAR(norm(system.reference_normal[k]), 1.0, 4.0 * epsilon);
       EXPECT_GT(dot(system.reference_normal[k], system.reference_vertex[k]), 0.0);
-      const Vec2 end = polygon[k] + system.edge_length[k] * perp(system.reference_normal[k]);
+      const Vec2 end = polygon[k] + reference_length(system, 0, k) * perp(system.reference_normal[k]);
       EXPECT_NEAR(norm(end - next), 0.0, 32.0 * epsilon);
     }
   }
@@ -147,13 +149,14 @@ TEST(BlockSystem, PoseOfADeformableBlock) {
   system.trial[0] = {{2.0, -1.0}, 77.0};
   pose(system, 0, 1);
   const Vec2 centre{3.0, -0.5};
+  const TrialOutline outline(system, 0);
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec2 expected = centre + d.trial(triangle[k] - Vec2{1.0, 0.5});
-    EXPECT_NEAR(norm(system.vertex[k] - expected), 0.0, 16.0 * epsilon);
-    const Vec2 edge = system.vertex[(k + 1) % 3] - system.vertex[k];
-    EXPECT_NEAR(system.edge_length[k], norm(edge), 16.0 * epsilon);
-    EXPECT_NEAR(norm(edge - system.edge_length[k] * perp(system.normal[k])), 0.0, 16.0 * epsilon);
-    EXPECT_GE(system.vertex[k].x, system.motion[0].box.low.x);
+    EXPECT_NEAR(norm(outline.vertex[k] - expected), 0.0, 16.0 * epsilon);
+    const Vec2 edge = outline.vertex[(k + 1) % 3] - outline.vertex[k];
+    EXPECT_NEAR(outline.length[k], norm(edge), 16.0 * epsilon);
+    EXPECT_NEAR(norm(edge - outline.length[k] * perp(outline.normal[k])), 0.0, 16.0 * epsilon);
+    EXPECT_GE(outline.vertex[k].x, system.motion[0].box.low.x);
     const Vec2 sheared = Vec2{1.0, 0.5} + d.gradient(triangle[k] - Vec2{1.0, 0.5});
     EXPECT_NEAR(norm(current_vertices(system, 0)[k] - sheared), 0.0, 16.0 * epsilon);
   }

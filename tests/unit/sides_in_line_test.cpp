@@ -146,11 +146,7 @@ TEST(SidesInLine, EdgesThatAreLeftOutChangeNoBit) {
     pairs.emplace_back(BlockIndex{row}, BlockIndex{row + 1});
   }
   cut.candidates = make_candidates(system, pairs, cut.forces.parameters(), {}, cut.history, 0.05);
-  const auto ends_a_pair = [](const ContactBench &bench) {
-    return static_cast<double>(bench.candidates.chains.size()) /
-           static_cast<double>(bench.candidates.pairs.size());
-  };
-  ASSERT_LT(ends_a_pair(cut), 0.9 * ends_a_pair(whole));
+  ASSERT_LT(edges_a_pair(cut.candidates), 0.9 * edges_a_pair(whole.candidates));
   for (int step = 0; step < 3; ++step) {
     move_together(engine, {&whole, &cut});
     evaluate_and_finish(whole, cut);

@@ -41,7 +41,7 @@ struct Verdict {
 double from_corner(const BlockSystem &blocks, const CandidatePair &pair, Vec2 point) {
   double nearest = 1e300;
   for (const BlockIndex block : {pair.lower, pair.higher}) {
-    for (const Vec2 corner : blocks.of_row(blocks.vertex, block.value)) {
+    for (const Vec2 corner : TrialOutline(blocks, block.value).vertex) {
       nearest = std::min(nearest, norm(corner - point));
     }
   }

@@ -5,7 +5,9 @@
 #include "gcpdda/model/contact_history.hpp"
 #include "gcpdda/model/scene.hpp"
 
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,8 +34,6 @@ struct CandidatePair {
 /// alone, so that no bit of a run depends on when the neighbourhood is refreshed.
 struct PlainPair {
   std::uint32_t pair = 0;
-  std::uint32_t chain = 0; ///< Candidates::chains from here on: the ends of the lower block's edges, one more
-                           ///< than edges, then those of the higher one's
   /// Pairs that have these in common may share an evaluation.
   struct Kind {
     std::uint8_t lower_edges = 0;
@@ -50,6 +50,10 @@ struct PlainPair {
     [[nodiscard]] bool has_three_edges_each() const { return lower_edges == 3 && higher_edges == 3; }
   };
   Kind kind;
+  // The ends of the lower and of the higher block's edges, one more than edges: numbers of vertices in their
+  // blocks, in `rings` from here on.
+  std::uint8_t lower_ends = 0;
+  std::uint8_t higher_ends = 0;
   bool is_mixed = false; ///< CandidatePair::is_mixed
 
   /// Pairs of neighbouring numbers are evaluated together, while their blocks are in the cache.
@@ -60,6 +64,26 @@ struct PlainPair {
   }
 };
 
+/// Most edges of one block of a plain pair.
+constexpr std::size_t most_plain_edges = 8;
+
+/// Where vertex `first` of a block with so many vertices stands in `rings`.
+constexpr std::size_t place_in_rings(std::size_t num_vertices, std::size_t first) {
+  constexpr std::size_t least = 3;
+  return num_vertices * (num_vertices - 1) - least * (least - 1) + first;
+}
+/// Numbers of vertices twice around blocks with three vertices, with four and so on: a chain of edges that
+/// starts anywhere goes on in one piece.
+inline constexpr auto rings = [] {
+  std::array<std::uint8_t, place_in_rings(most_plain_edges + 1, 0)> numbers{};
+  for (std::size_t n = 3; n <= most_plain_edges; ++n) {
+    for (std::size_t k = 0; k < 2 * n; ++k) {
+      numbers[place_in_rings(n, k)] = static_cast<std::uint8_t>(k % n);
+    }
+  }
+  return numbers;
+}();
+
 /// Which pairs may touch, as flat lists.
 struct Candidates {
   std::vector<CandidatePair> pairs; ///< with at least one owned block, by (lower id, higher id)
@@ -69,7 +93,6 @@ struct Candidates {
   std::size_t num_interior_plain = 0;
   std::vector<std::uint32_t> general; ///< numbers of all other pairs
   std::size_t num_interior_general = 0;
-  std::vector<std::uint8_t> chains; ///< numbers of vertices in their blocks
   /// By owned row: all of its pairs are plain and without a ghost, and come in the order of the other blocks'
   /// ids; see BlockSums.
   std::vector<std::uint8_t> is_added;
@@ -99,9 +122,6 @@ struct Candidates {
     visit_run(num_interior_plain, plain.size());
   }
 };
-
-/// Most edges of one block of a plain pair.
-constexpr std::size_t most_plain_edges = 8;
 
 /// Most edges of blocks whose overlap of two corners, or of corners and a face, has a way of its own
 /// (src/contact/lane_corners.hpp, lane_faces.hpp): of all edges, not of those in a chain, or the way would

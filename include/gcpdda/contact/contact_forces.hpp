@@ -293,6 +293,7 @@ private:
 
   ContactParameters parameters_;
   Overlap overlap_;
+  std::array<TrialOutline, 2> outlines_; ///< of the pair at hand, if it is not plain
   std::unique_ptr<PlainBatch> batch_;
   // Entries of Candidates::plain whose boxes meet, by what they are looked at as.
   std::vector<std::uint32_t> corners_;
@@ -357,6 +358,7 @@ struct ComingConfiguration {
 /// Material point X of a block that is now at x, in the trial configuration.
 Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x);
 
-BlockView view_of(const BlockSystem &system, std::size_t row);
+/// @param outline  is found, and has to live as long as the view
+BlockView view_of(const BlockSystem &system, std::size_t row, TrialOutline &outline);
 
 } // namespace gcpdda

@@ -65,7 +65,7 @@ public:
 
 private:
   std::array<BlockView, 2> view_;
-  std::array<std::vector<Vec2>, 2> vertex_;
+  std::array<TrialOutline, 2> outline_;
 };
 
 /// The region of the moved blocks that goes on with a dilated memory; null if there is none.

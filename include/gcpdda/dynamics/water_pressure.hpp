@@ -31,7 +31,8 @@ struct WaterLoad {
 };
 
 /// @param gravity  downwards acceleration, m/s2
-WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const Water> water,
-                     double gravity);
+/// @param outline  place for the row's outline
+WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const Water> water, double gravity,
+                     TrialOutline &outline);
 
 } // namespace gcpdda

@@ -87,8 +87,8 @@ struct Deformation {
   Mat2 anchor_force;  ///< fixed points
 };
 
-/// An edge of a block in a system where some deform. Four numbers: the lanes read them so
-/// (src/contact/lane_motion.hpp).
+/// An edge at the trial configuration, of a system where some block deforms. Four numbers: the lanes read
+/// them so (src/contact/lane_motion.hpp).
 struct DeformedEdge {
   Vec2 slope;          ///< minus the gradient of the depth below it: F^-T N/J, N the reference normal
   double length = 0.0; ///< m
@@ -178,10 +178,16 @@ struct TrialIncrement {
 struct alignas(64) BlockMotion {
   Vec2 centroid; ///< of the trial configuration
   Vec2 velocity;
-  TrialIncrement increment;
+  Vec2 step; ///< TrialIncrement::u
+  /// TrialIncrement::turn of a deformable block. Of a rigid one its first row, from which the second one
+  /// follows, and cosine and sine of the trial configuration's rotation, from which its outline does.
+  std::array<Vec2, 2> turn;
   double spin = 0.0; ///< rad/s
   double unused = 0.0;
   Aabb box; ///< of the trial configuration
+
+  /// Of a rigid block.
+  [[nodiscard]] Rotation rotation() const { return {turn[1].x, turn[1].y}; }
 };
 
 /// Where a block was (x - x_0) when a stage began and when its motion was last looked at.
@@ -216,7 +222,6 @@ struct BlockSystem {
   std::vector<std::uint32_t> vertex_begin{0};
   std::vector<Vec2> reference_vertex; ///< relative to the centroid
   std::vector<Vec2> reference_normal;
-  std::vector<double> edge_length; ///< current; pose() changes that of deformable blocks only
   /// Law of each edge, index into JointLaws::laws, -1: by the materials. Empty until a row has one; then as
   /// long as the lists above. It is packed for rows with such edges alone.
   std::vector<std::int32_t> edge_joint;
@@ -236,12 +241,13 @@ struct BlockSystem {
   std::vector<std::uint32_t> mark_begin{0}; ///< one entry for mobile blocks of a scene with stages
   std::vector<BlockMark> mark;
 
-  // Derived from the trial configuration, see pose().
-  std::vector<BlockMotion> motion; ///< pose() finds centroid and box of it
+  // Derived from the trial configuration, see pose(). Outlines of rigid blocks stand nowhere: to turn them
+  // takes no longer than to read them (TrialOutline).
+  std::vector<BlockMotion> motion; ///< pose() finds centroid, box and rotation of it
+  std::vector<Mat2> trial_inverse; ///< F*^-1, by entry of `deformation`
+  // Empty where no block deforms.
   std::vector<Vec2> vertex;
-  std::vector<Vec2> normal;
-  std::vector<Mat2> trial_inverse;         ///< F*^-1, by entry of `deformation`
-  std::vector<DeformedEdge> deformed_edge; ///< by vertex; empty where no block deforms
+  std::vector<DeformedEdge> deformed_edge;
 
   [[nodiscard]] std::size_t num_rows() const { return properties.size(); }
   [[nodiscard]] std::size_t num_mobile() const { return num_owned + num_ghosts; }
@@ -253,6 +259,12 @@ struct BlockSystem {
 
   [[nodiscard]] bool is_deformable(std::size_t row) const {
     return deformation_begin[row + 1] > deformation_begin[row];
+  }
+  /// How the trial configuration of a row moved since the last evaluation.
+  [[nodiscard]] TrialIncrement increment_of(std::size_t row) const {
+    const auto &[first, second] = motion[row].turn;
+    return {motion[row].step, is_deformable(row) ? Mat2{first.x, first.y, second.x, second.y}
+                                                 : Mat2{first.x, first.y, -first.y, first.x}};
   }
   [[nodiscard]] bool has_matrix(std::size_t row) const { return matrix_begin[row + 1] > matrix_begin[row]; }
   /// Of a deformable row.
@@ -303,7 +315,7 @@ struct BlockSystem {
   /// share them.
   static constexpr auto lists() {
     return std::make_tuple(std::make_tuple(&BlockSystem::vertex_begin, &BlockSystem::reference_vertex,
-                                           &BlockSystem::reference_normal, &BlockSystem::edge_length),
+                                           &BlockSystem::reference_normal),
                            std::make_tuple(&BlockSystem::deformation_begin, &BlockSystem::deformation),
                            std::make_tuple(&BlockSystem::matrix_begin, &BlockSystem::matrix),
                            std::make_tuple(&BlockSystem::load_begin, &BlockSystem::load),
@@ -341,8 +353,24 @@ std::span<BlockMark> mark_rows(BlockSystem &system);
 /// Drop all rows from `count` on. The ranges' counts are the caller's.
 void keep_rows(BlockSystem &system, std::size_t count);
 
-/// World vertices, normals and boxes of rows [first, last) at their trial configuration.
+/// Find what is derived from the trial configuration of rows [first, last).
 void pose(BlockSystem &system, std::size_t first, std::size_t last);
+
+/// World vertices of a row at its trial configuration, outward unit normals and lengths of the edges that
+/// start at them.
+struct TrialOutline {
+  std::vector<Vec2> vertex;
+  std::vector<Vec2> normal;
+  std::vector<double> length;
+
+  TrialOutline() = default;
+  TrialOutline(const BlockSystem &system, std::size_t row) { find(system, row); }
+  /// @param row  is posed
+  void find(const BlockSystem &system, std::size_t row);
+};
+
+/// Length of the edge from vertex k of a row in its own axes, m.
+double reference_length(const BlockSystem &system, std::size_t row, std::size_t k);
 
 /// World vertices of one row at t_n.
 std::vector<Vec2> current_vertices(const BlockSystem &system, std::size_t row);

@@ -323,7 +323,8 @@ private:
   mutable ContactDigest digest_;
   mutable bool is_digested_ = false;
   Bolts bolts_;
-  BlockForces forces_; ///< at the last evaluation
+  BlockForces forces_;   ///< at the last evaluation
+  TrialOutline outline_; ///< of a block in water
   /// What free blocks' AppliedForces follow from, if nothing has touched them or their masses since.
   std::optional<BodyForces> standing_;
   /// How far a step has come with the owned rows.
