@@ -64,9 +64,10 @@ void OneBlock::step() {
   const double dt = problem_.time_step;
   const RigidDof v = system_.velocity[0];
   const RigidDof a = system_.acceleration[0];
-  system_.trial_previous[0] = system_.trial[0];
+  const RigidDof before = system_.trial[0];
   system_.trial[0] =
       system_.displacement[0] + scheme_.trial_velocity * dt * v + scheme_.trial_acceleration * dt * dt * a;
+  system_.motion[0].set_increment(system_.trial[0] - before);
   pose(system_, 0, 1);
   const RigidDof a_new =
       (1.0 / (1.0 - scheme_.alpha_m)) * (accelerate(system_.properties[0], evaluate()) - scheme_.alpha_m * a);
@@ -131,7 +132,7 @@ void OneBlock::stretch_spring(double normal_force, Vec2 tangent, Vec2 arm, doubl
   spring_ = tangential_ratio * problem_.normal_stiffness *
             (variant_.length == SpringLength::current ? extent : longest_);
   if (!is_new) {
-    const RigidDof step = system_.trial[0] - system_.trial_previous[0];
+    const RigidDof step = system_.motion[0].increment();
     const double half_sine = std::sin(0.5 * step.r);
     const Vec2 slide = variant_.slide == Slide::velocities
                            ? problem_.time_step * velocity_at(arm)
@@ -194,10 +195,12 @@ double OneBlock::potential_at(const RigidDof &trial) {
 }
 
 double OneBlock::energy() {
-  const RigidDof rate = (1.0 / problem_.time_step) * (system_.trial[0] - system_.trial_previous[0]);
+  const RigidDof increment = system_.motion[0].increment();
+  const RigidDof rate = (1.0 / problem_.time_step) * increment;
   const double kinetic =
       0.5 * (mass() * dot(rate.u, rate.u) + system_.properties[0].inertia * rate.r * rate.r);
-  const double potential = 0.5 * (potential_at(system_.trial_previous[0]) + potential_at(system_.trial[0]));
+  const double potential =
+      0.5 * (potential_at(system_.trial[0] - increment) + potential_at(system_.trial[0]));
   const double stick = spring_ > 0.0 ? 0.5 * shear_before_ * shear_ / spring_ : 0.0;
   return kinetic + potential + stick;
 }

@@ -84,11 +84,12 @@ bool counts_here(const BlockSystem &system, BlockIndex lower) {
   return lower.value < system.num_owned || system.is_fixed(lower.value);
 }
 
-void BlockSums::start(const BlockSystem &system, const Candidates &candidates) {
+void BlockSums::start(BlockSystem &system, const Candidates &candidates) {
   has_dyads_ = !system.deformation.empty();
   is_again_ = false;
   is_added_ = candidates.is_added;
-  clear_sums(system);
+  sums_ = std::span(system.contact).first(system.num_owned);
+  clear_gradients(system);
   group_.resize(PlainPair::pairs_in_group);
   group_dyads_.resize(has_dyads_ ? PlainPair::pairs_in_group : 0);
   waiting_ = candidates.waiting;
@@ -100,11 +101,17 @@ void BlockSums::start(const BlockSystem &system, const Candidates &candidates) {
 
 void BlockSums::start_again(const BlockSystem &system) {
   is_again_ = true;
-  clear_sums(system);
+  std::fill(sums_.begin(), sums_.end(), BlockContactSum{});
+  clear_gradients(system);
 }
 
-void BlockSums::clear_sums(const BlockSystem &system) {
-  sums_.assign(system.num_owned, {});
+void BlockSums::clear(BlockSystem &system, std::size_t first, std::size_t last) {
+  if (first < last) {
+    std::fill_n(system.contact.begin() + static_cast<std::ptrdiff_t>(first), last - first, BlockContactSum{});
+  }
+}
+
+void BlockSums::clear_gradients(const BlockSystem &system) {
   gradients_.assign(system.deformation.size(), {});
   count_ = {};
   largest_squared_ = 0.0;

@@ -12,6 +12,12 @@ namespace gcpdda {
 
 namespace {
 
+RigidDof dofs_of(const BlockSystem &system, std::size_t row, Configuration configuration) {
+  return configuration == Configuration::trial || system.is_fixed(row)
+             ? system.trial[row]
+             : system.trial[row] - system.motion[row].increment();
+}
+
 /// Displacement of a block's material points: u + (F - I) X.
 struct Displacement {
   Vec2 u;
@@ -19,7 +25,7 @@ struct Displacement {
 
   Displacement(const BlockSystem &system, std::size_t row, Configuration configuration) {
     const bool now = configuration == Configuration::trial;
-    const RigidDof &dof = now || system.is_fixed(row) ? system.trial[row] : system.trial_previous[row];
+    const RigidDof dof = dofs_of(system, row, configuration);
     u = dof.u;
     if (system.is_deformable(row)) {
       const Deformation &d = system.deformation_of(row);
@@ -101,10 +107,7 @@ BondOpening opening_of(const BlockSystem &system, const CandidatePair &pair, con
   }
   const Displacement lower(system, pair.lower.value, configuration);
   const Displacement higher(system, pair.higher.value, configuration);
-  const bool now = configuration == Configuration::trial;
-  const auto turned = [&](BlockIndex row) {
-    return now || system.is_fixed(row.value) ? system.trial[row.value].r : system.trial_previous[row.value].r;
-  };
+  const auto turned = [&](BlockIndex row) { return dofs_of(system, row.value, configuration).r; };
   opening.normal = Rotation::of(0.5 * (turned(pair.lower) + turned(pair.higher)))(shared->normal);
   opening.length = shared->length;
   for (const std::size_t k : {0U, 1U}) {

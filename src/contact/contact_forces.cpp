@@ -27,7 +27,7 @@ void fetch_pair(const Candidates &candidates, const ContactHistory &history, std
 
 /// How a trial configuration moved since the one before, in a form without cancellation.
 TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
-  const RigidDof step = system.trial[row] - system.trial_previous[row];
+  const RigidDof step = system.motion[row].increment();
   if (system.is_deformable(row)) {
     const Deformation &d = system.deformation_of(row);
     return {step.u, (d.trial - d.trial_previous) * system.trial_inverse[system.deformation_begin[row]]};
@@ -50,6 +50,7 @@ ContactForces &ContactForces::operator=(ContactForces &&) noexcept = default;
 
 void ContactForces::find_motions(BlockSystem &system, std::size_t first, std::size_t last) {
   velocity_gradients_.resize(system.deformation.size());
+  sums_.clear(system, first, std::min(last, system.num_owned));
   const std::size_t width = batch_->width();
   const auto in_lanes = [&](std::size_t row) { // did they?
     const std::size_t deformable = system.deformation_begin[row + width] - system.deformation_begin[row];
@@ -67,13 +68,15 @@ void ContactForces::find_motions(BlockSystem &system, std::size_t first, std::si
     }
     const RigidDof &velocity = system.velocity[row];
     BlockMotion &motion = system.motion[row];
+    if (system.is_fixed(row)) { // its row may have been that of a block that moves
+      motion.set_increment({});
+    }
     motion.velocity = velocity.u;
     motion.spin = velocity.r;
-    const TrialIncrement increment = system.is_fixed(row) ? TrialIncrement{} : trial_increment(system, row);
-    motion.step = increment.u;
-    motion.turn[0] = {increment.turn.xx, increment.turn.xy};
+    const Mat2 turn = trial_increment(system, row).turn;
+    motion.turn[0] = {turn.xx, turn.xy};
     if (system.is_deformable(row)) {
-      motion.turn[1] = {increment.turn.yx, increment.turn.yy};
+      motion.turn[1] = {turn.yx, turn.yy};
       const std::size_t k = system.deformation_begin[row];
       velocity_gradients_[k] = system.deformation[k].rate * system.trial_inverse[k];
     }

@@ -195,7 +195,7 @@ void ContactForces::add_dilation_works(const Candidates &candidates, BlockSystem
     const bool alone = system.is_fixed(pair.lower.value) || system.is_fixed(pair.higher.value);
     for (const BlockIndex row : {pair.lower, pair.higher}) {
       if (row.value < system.num_owned) {
-        system.ledger[row.value].shear_work += (alone ? 1.0 : 0.5) * work.work;
+        system.ledger[row.value].shear += (alone ? 1.0 : 0.5) * work.work;
       }
     }
   }

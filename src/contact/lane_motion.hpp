@@ -190,11 +190,12 @@ struct RigidMotion : TranslatingMotion {
 private:
   [[gnu::always_inline]] static void take_turn(const LaneBlocks &blocks, Lanes &spin, LaneVec &step,
                                                Lanes &sine, Lanes &versine) {
-    const FourLanes increment = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->step.x; });
-    spin = Lanes::of([&](std::size_t i) { return blocks.motion[i]->spin; });
-    step = {increment[0], increment[1]};
-    versine = increment[2]; // a small turn is {versine, -sine; sine, versine}
-    sine = -increment[3];
+    const FourLanes moved = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->step.x; });
+    const LaneVec turn = LaneVec::of([&](std::size_t i) { return &blocks.motion[i]->turn[0]; });
+    step = {moved[0], moved[1]};
+    spin = moved[3];
+    versine = turn.x; // a small turn is {versine, -sine; sine, versine}
+    sine = -turn.y;
   }
 };
 
@@ -252,10 +253,11 @@ private:
 /// What PlainBatch::find_motions() says.
 inline bool find_rigid_motions(BlockSystem &system, std::size_t first) {
   static_assert(sizeof(RigidDof) == 3 * sizeof(double));
-  const ThreeLanes trial = load_triples(&system.trial[first].u.x);
-  const ThreeLanes previous = load_triples(&system.trial_previous[first].u.x);
+  static_assert(offsetof(BlockMotion, rotated) == offsetof(BlockMotion, step) + 2 * sizeof(double) &&
+                offsetof(BlockMotion, spin) == offsetof(BlockMotion, rotated) + sizeof(double));
   const ThreeLanes velocity = load_triples(&system.velocity[first].u.x);
-  const Lanes turn = trial[2] - previous[2];
+  const FourLanes moved = load_by_lane([&](std::size_t i) { return &system.motion[first + i].step.x; });
+  const Lanes &turn = moved[2];
   if ((!LaneTurn::is_small(turn)).any()) {
     return false;
   }
@@ -264,12 +266,9 @@ inline bool find_rigid_motions(BlockSystem &system, std::size_t first) {
   for (std::size_t i = 0; i < num_lanes; ++i) {
     to[i] = reinterpret_cast<std::byte *>(&system.motion[first + i]);
   }
-  static_assert(offsetof(BlockMotion, turn) == offsetof(BlockMotion, step) + 2 * sizeof(double) &&
-                offsetof(BlockMotion, spin) == offsetof(BlockMotion, step) + 6 * sizeof(double));
   store_pairs(to, offsetof(BlockMotion, velocity), velocity[0], velocity[1]);
-  store_by_lane(to, offsetof(BlockMotion, step), trial[0] - previous[0], trial[1] - previous[1], versine,
-                -sine);
-  store_pairs(to, offsetof(BlockMotion, spin), velocity[2], 0.0);
+  store_pairs(to, offsetof(BlockMotion, rotated), turn, velocity[2]);
+  store_pairs(to, offsetof(BlockMotion, turn), versine, -sine);
   return true;
 }
 
@@ -281,9 +280,8 @@ inline void find_deforming_motions(BlockSystem &system, std::size_t first,
   const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
     return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
   };
-  const ThreeLanes trial = load_triples(&system.trial[first].u.x);
-  const ThreeLanes previous = load_triples(&system.trial_previous[first].u.x);
   const ThreeLanes velocity = load_triples(&system.velocity[first].u.x);
+  const Lanes rotated = Lanes::of([&](std::size_t i) { return system.motion[first + i].rotated; });
   const LaneMat to_reference = LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
   const LaneMat turn = (load(&Deformation::trial) - load(&Deformation::trial_previous)) * to_reference;
   const LaneMat rate = load(&Deformation::rate) * to_reference;
@@ -294,9 +292,8 @@ inline void find_deforming_motions(BlockSystem &system, std::size_t first,
     to_gradients[i] = reinterpret_cast<std::byte *>(&velocity_gradients[entry + i]);
   }
   store_pairs(to, offsetof(BlockMotion, velocity), velocity[0], velocity[1]);
-  store_by_lane(to, offsetof(BlockMotion, step), trial[0] - previous[0], trial[1] - previous[1], turn.xx(),
-                turn.xy());
-  store_by_lane(to, offsetof(BlockMotion, turn) + sizeof(Vec2), turn.yx(), turn.yy(), velocity[2], 0.0);
+  store_pairs(to, offsetof(BlockMotion, rotated), rotated, velocity[2]);
+  store_by_lane(to, offsetof(BlockMotion, turn), turn.xx(), turn.xy(), turn.yx(), turn.yy());
   store_by_lane(to_gradients, 0, rate.xx(), rate.xy(), rate.yx(), rate.yy());
 }
 

@@ -10,7 +10,15 @@
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-constexpr BlockLanes blocks{num_lanes,      pose_rigid_quads,   pose_deformable_quads, step_deformables,
-                            step_free_rows, gather_deformables, predict_deformables};
+constexpr BlockLanes blocks{num_lanes,
+                            pose_rigid_quads,
+                            pose_deformable_quads,
+                            step_deformables,
+                            step_free_rows,
+                            gather_deformables,
+                            predict_rigids,
+                            predict_deformables,
+                            add_half_works_of_rigids,
+                            add_half_works_of_deformables};
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

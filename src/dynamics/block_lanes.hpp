@@ -74,10 +74,12 @@ using RowsAtOnce = std::span<const std::size_t>;
 /// pose() of rigid or of deformable rows with four vertices, the centroids of whose motions are known.
 using PoseQuads = void (*)(BlockSystem &system, const RowsAtOnce &rows);
 
-/// Deformable rows [first, first + width) at x + by_velocity x' + by_acceleration x''; the trial
-/// configuration before becomes trial_previous.
-using PredictDeformables = void (*)(BlockSystem &system, std::size_t first, double by_velocity,
-                                    double by_acceleration);
+/// Rows [first, first + width), all rigid or all deformable, at x + by_velocity x' + by_acceleration x''.
+using PredictRows = void (*)(BlockSystem &system, std::size_t first, double by_velocity,
+                             double by_acceleration);
+
+/// Does to rows [first, first + width), all rigid or all deformable, what add_half_works() says.
+using AddHalfWorks = void (*)(BlockSystem &system, std::size_t first);
 
 struct BlockLanes {
   std::size_t width; ///< what is done at a time
@@ -86,8 +88,16 @@ struct BlockLanes {
   StepDeformables step_deformables;
   StepFreeRows step_free_rows;
   GatherDeformables gather_deformables;
-  PredictDeformables predict_deformables;
+  PredictRows predict_rigids;
+  PredictRows predict_deformables;
+  AddHalfWorks add_half_works_of_rigids;
+  AddHalfWorks add_half_works_of_deformables;
 };
+
+/// Does nothing act on owned rows [first, last) but contacts, weight and shaking?
+inline bool are_free(const BlockSystem &system, std::size_t first, std::size_t last) {
+  return system.applied_begin[first] == system.applied_begin[last];
+}
 
 /// All instructions give the same bits.
 BlockLanes block_lanes(Instructions instructions);

@@ -9,14 +9,6 @@ namespace gcpdda {
 
 namespace {
 
-bool are_free(const BlockSystem &system, std::size_t first, std::size_t last) {
-  const auto has_none = [&](const std::vector<std::uint32_t> &begin) { return begin[first] == begin[last]; };
-  return has_none(system.load_begin) && has_none(system.anchor_begin) && has_none(system.dashpot_begin) &&
-         std::none_of(system.properties.begin() + static_cast<std::ptrdiff_t>(first),
-                      system.properties.begin() + static_cast<std::ptrdiff_t>(last),
-                      [](const BlockProperties &p) { return p.keeps_its_velocity(); });
-}
-
 bool are_free_and_rigid(const BlockSystem &system, std::size_t first, std::size_t last) {
   return system.deformation_begin[first] == system.deformation_begin[last] &&
          system.matrix_begin[first] == system.matrix_begin[last] && are_free(system, first, last);

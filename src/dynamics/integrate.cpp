@@ -145,24 +145,31 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpa
   pose(system, 0, 0);                      // lists have their lengths
   const TrialFactors next(scheme, time_step);
   const BlockLanes lanes = block_lanes(Instructions::widest);
-  const auto are_deformable = [&](std::size_t row, std::size_t last) {
-    return row + lanes.width <= last &&
-           system.deformation_begin[row + lanes.width] - system.deformation_begin[row] == lanes.width;
+  const auto in_lanes = [&](std::size_t row, std::size_t last) { // were they?
+    const std::size_t end = row + lanes.width;
+    if (end > last) {
+      return false;
+    }
+    const std::size_t num_deformable = system.deformation_begin[end] - system.deformation_begin[row];
+    if (num_deformable == 0) {
+      lanes.predict_rigids(system, row, next.by_velocity, next.by_acceleration);
+    } else if (num_deformable == lanes.width) {
+      prefetch(system.deformation.data() + system.deformation_begin[end], lanes.width * sizeof(Deformation));
+      lanes.predict_deformables(system, row, next.by_velocity, next.by_acceleration);
+    }
+    return num_deformable == 0 || num_deformable == lanes.width;
   };
   for (std::size_t first = rows.first; first < rows.last; first += rows_at_once) {
     const std::size_t last = std::min(rows.last, first + rows_at_once);
     for (std::size_t i = first; i < last; ++i) {
-      while (are_deformable(i, last)) {
-        prefetch(system.deformation.data() + system.deformation_begin[i + lanes.width],
-                 lanes.width * sizeof(Deformation));
-        lanes.predict_deformables(system, i, next.by_velocity, next.by_acceleration);
+      while (in_lanes(i, last)) {
         i += lanes.width;
       }
       if (i == last) {
         break;
       }
       const TrialConfiguration trial = next_trial(system, next, i);
-      system.trial_previous[i] = system.trial[i];
+      system.motion[i].set_increment(trial.motion - system.trial[i]);
       system.trial[i] = trial.motion;
       if (system.is_deformable(i)) {
         Deformation &d = system.deformation_of(i);
@@ -181,16 +188,17 @@ void accelerate(BlockSystem &system, const BlockForces &forces) {
   for (std::size_t i = 0; i < system.num_owned; ++i) {
     const bool held = system.has_matrix(i) && !system.anchors_of(i).empty();
     if (!system.is_deformable(i)) {
-      system.acceleration[i] = held ? accelerate_held(system, i, forces.rigid[i], {}).rigid
-                                    : accelerate(system.properties[i], forces.rigid[i]);
+      system.acceleration[i] = held ? accelerate_held(system, i, system.contact[i].force, {}).rigid
+                                    : accelerate(system.properties[i], system.contact[i].force);
       continue;
     }
     Deformation &d = system.deformation_of(i);
     d.internal = elastic_force(d, d.trial);
     const Mat2 force = forces.gradient[system.deformation_begin[i]] - d.internal;
-    const HeldAcceleration a = held ? accelerate_held(system, i, forces.rigid[i], force)
-                                    : HeldAcceleration{accelerate(system.properties[i], forces.rigid[i]),
-                                                       force * inverse(d.second_moment)};
+    const HeldAcceleration a =
+        held ? accelerate_held(system, i, system.contact[i].force, force)
+             : HeldAcceleration{accelerate(system.properties[i], system.contact[i].force),
+                                force * inverse(d.second_moment)};
     d.acceleration = a.gradient;
     system.acceleration[i] = {a.rigid.u, spin_rate_of(d.gradient, d.rate, d.acceleration)};
   }
@@ -214,7 +222,7 @@ std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForc
            "every deformable block that is free to move has its matrix");
     const RigidDof a = system.acceleration[i];
     const RigidDof a_new = (1.0 / (1.0 - scheme.alpha_m)) *
-                           (accelerate(system.properties[i], forces.rigid[i]) - scheme.alpha_m * a);
+                           (accelerate(system.properties[i], system.contact[i].force) - scheme.alpha_m * a);
     const RigidDof d_new =
         system.displacement[i] + (time_step * system.velocity[i] +
                                   time_step * time_step * ((0.5 - scheme.beta) * a + scheme.beta * a_new));

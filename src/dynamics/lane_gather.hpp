@@ -30,10 +30,9 @@ inline void gather_deformables(BlockSystem &system, std::size_t first, const Fre
   const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
     return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
   };
-  const LaneAppliedTwice applied = apply_to_free(system, first, rows, LaneMasses(&system.properties[first]));
-  const LaneLedger before = LaneLedger::load(&system.ledger[first]);
-  LaneLedger ledger = before;
-  LaneRigid force = gather_free_forces(first, rows, applied.now, ledger);
+  const LaneApplied applied(rows.body, LaneMasses(&system.properties[first]));
+  LaneContacts sum = LaneContacts::load(&system.contact[first]);
+  sum.force.u = sum.force.u + applied.load + applied.gravity;
 
   const LaneMat to_reference = LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
   const auto on_gradient = [&](Mat2 BlockGradientSum::*field) __attribute__((always_inline)) {
@@ -44,32 +43,26 @@ inline void gather_deformables(BlockSystem &system, std::size_t first, const Fre
   const LaneMat shear = on_gradient(&BlockGradientSum::shear);
   LaneMat damping = on_gradient(&BlockGradientSum::damping);
   LaneMat gradient = on_gradient(&BlockGradientSum::force) + none;
-  ledger.shear_force.r = 0.0; // stands in the deformation
-  ledger.damping_force.r = 0.0;
+  sum.shear.r = 0.0; // stands in the deformation
+  sum.damping.r = 0.0;
   const LaneMat trial = load(&Deformation::trial);
   if (rows.local_damping != 0.0) {
     const Lanes share = rows.local_damping;
     const LaneVec v = LaneVec::of([&](std::size_t i) { return &system.velocity[first + i].u; });
-    const LaneVec taken = share * LaneVec{lane_against(force.u.x, v.x), lane_against(force.u.y, v.y)};
+    const LaneVec taken = share * LaneVec{lane_against(sum.force.u.x, v.x), lane_against(sum.force.u.y, v.y)};
     const LaneMat taken_gradient =
         lane_damping(trial, gradient - load(&Deformation::internal) + load(&Deformation::anchor_force),
                      load(&Deformation::rate), share);
     gradient = gradient + taken_gradient;
     damping = damping + taken_gradient;
-    force = force + LaneRigid{taken, 0.0};
-    ledger.damping_force.u += taken;
+    sum.force.u += taken;
+    sum.damping.u += taken;
   }
-  force.store(rows.forces[first]);
+  sum.store(&system.contact[first]);
 
-  add_works(before, applied, half_increments(system, first), ledger);
-  const LaneMat stretch = trial - load(&Deformation::trial_previous);
-  const auto half_work = [&](const LaneMat &f) __attribute__((always_inline)) {
-    return Lanes(0.5) * contract(f, stretch);
-  };
-  ledger.works[0] += half_work(load(&Deformation::shear_force)) + half_work(shear);
-  ledger.works[1] += half_work(load(&Deformation::damping_force)) + half_work(damping);
-  ledger.works[2] += half_work(load(&Deformation::load_force)) + half_work(none);
-  ledger.store(&system.ledger[first]);
+  FourLanes works = lane_half_works(sum, applied, half_increments(system, first));
+  add_on_gradient(shear, damping, none, trial - load(&Deformation::trial_previous), works);
+  add_to_ledger(works, &system.ledger[first]);
 
   std::array<std::byte *, num_lanes> to;
   std::array<std::byte *, num_lanes> to_forces;

@@ -6,6 +6,7 @@
 #include "block_lanes.hpp"
 
 #include "gcpdda/base/lanes.hpp"
+#include "gcpdda/geometry/lane_mat.hpp"
 
 #include <array>
 #include <cstddef>
@@ -61,58 +62,35 @@ template <class T> [[gnu::always_inline]] inline std::array<std::byte *, num_lan
   return to;
 }
 
-/// BlockLedger, one in each lane.
-struct LaneLedger {
-  LaneRigid shear_force;
-  LaneRigid damping_force;
-  FourLanes works; ///< shear, damping, load, gravity
+/// BlockContactSum, one in each lane.
+struct LaneContacts {
+  LaneRigid force;
+  LaneRigid shear;
+  LaneRigid damping;
 
-  [[gnu::always_inline]] static LaneLedger load(const BlockLedger *first) {
+  [[gnu::always_inline]] static LaneContacts load(const BlockContactSum *first) {
     const FourLanes a = load_four(first, 0);
-    const FourLanes b = load_four(first, bytes);
-    return {{{a[0], a[1]}, a[2]}, {{a[3], b[0]}, b[1]}, load_four(first, works_at)};
+    const FourLanes b = load_four(first, 4 * sizeof(double));
+    const FourLanes c = load_four(first, 5 * sizeof(double));
+    return {{{a[0], a[1]}, a[2]}, {{a[3], b[0]}, b[1]}, {{b[2], c[2]}, c[3]}};
   }
-  [[gnu::always_inline]] void store(BlockLedger *first) const {
+  /// All but the force.
+  [[gnu::always_inline]] static LaneContacts load_parts(const BlockContactSum *first) {
+    const FourLanes a = load_four(first, 3 * sizeof(double));
+    const FourLanes b = load_four(first, 5 * sizeof(double));
+    return {{{0.0, 0.0}, 0.0}, {{a[0], a[1]}, a[2]}, {{a[3], b[2]}, b[3]}};
+  }
+  [[gnu::always_inline]] void store(BlockContactSum *first) const {
     const auto to = places_of(first);
-    store_by_lane(to, 0, shear_force.u.x, shear_force.u.y, shear_force.r, damping_force.u.x);
-    store_by_lane(to, bytes, damping_force.u.y, damping_force.r, works[0], works[1]);
-    store_by_lane(to, works_at, works[0], works[1], works[2], works[3]);
+    store_by_lane(to, 0, force.u.x, force.u.y, force.r, shear.u.x);
+    store_by_lane(to, 4 * sizeof(double), shear.u.y, shear.r, damping.u.x, damping.u.y);
+    store_by_lane(to, 5 * sizeof(double), shear.r, damping.u.x, damping.u.y, damping.r);
   }
 
 private:
-  static constexpr std::size_t bytes = 4 * sizeof(double); ///< what is read and written at a time
-  static constexpr std::size_t works_at = offsetof(BlockLedger, shear_work);
-  static_assert(offsetof(BlockLedger, shear_force) == 0 &&
-                offsetof(BlockLedger, damping_force) == 3 * sizeof(double) &&
-                works_at == 6 * sizeof(double) && offsetof(BlockLedger, damping_work) == 7 * sizeof(double) &&
-                offsetof(BlockLedger, load_work) == 8 * sizeof(double) &&
-                offsetof(BlockLedger, gravity_work) == 9 * sizeof(double));
-};
-
-/// AppliedForces of free blocks, one in each lane: they have no anchors.
-struct LaneApplied {
-  LaneRigid load;
-  LaneVec gravity;
-
-  [[gnu::always_inline]] static LaneApplied load_from(const AppliedForces *first) {
-    const FourLanes a = load_four(first, 0);
-    const FourLanes b = load_four(first, sizeof(double));
-    return {{{a[0], a[1]}, a[2]}, {b[2], b[3]}};
-  }
-  [[gnu::always_inline]] void store(AppliedForces *first) const {
-    const auto to = places_of(first);
-    store_by_lane(to, 0, load.u.x, load.u.y, load.r, gravity.x);
-    store_by_lane(to, sizeof(double), load.u.y, load.r, gravity.x, gravity.y);
-  }
-
-private:
-  static_assert(offsetof(AppliedForces, load) == 0 && offsetof(AppliedForces, gravity) == 3 * sizeof(double));
-};
-
-/// Now and at the evaluation before.
-struct LaneAppliedTwice {
-  LaneApplied before;
-  LaneApplied now;
+  static_assert(sizeof(BlockContactSum) == 9 * sizeof(double) &&
+                offsetof(BlockContactSum, shear) == 3 * sizeof(double) &&
+                offsetof(BlockContactSum, damping) == 6 * sizeof(double));
 };
 
 /// Masses and the like of rows [first, first + num_lanes).
@@ -137,47 +115,69 @@ private:
                 offsetof(BlockProperties, radius) == at + 3 * sizeof(double));
 };
 
-/// What weight and shaking do to free rows [first, first + num_lanes), which is noted.
-[[gnu::always_inline]] inline LaneAppliedTwice apply_to_free(BlockSystem &system, std::size_t first,
-                                                             const FreeRows &rows, const LaneMasses &of) {
-  const LaneApplied now{
-      {LaneVec{0.0, 0.0} + (LaneVec{0.0, 0.0} - of.mass * LaneVec{rows.shaking.x, rows.shaking.y}), 0.0},
-      of.mass / of.scaling * LaneVec{rows.gravity.x, rows.gravity.y}};
-  if (rows.are_applied) {
-    return {now, now};
-  }
-  const LaneApplied before = LaneApplied::load_from(&system.applied[first]);
-  now.store(&system.applied[first]);
-  return {before, now};
-}
+/// What weight and shaking do to free blocks, one in each lane, as applied_by().
+struct LaneApplied {
+  LaneVec load;
+  LaneVec gravity;
 
-/// What contacts and that do to them in all; what of it stands in the ledger gets there, but for the works.
-[[gnu::always_inline]] inline LaneRigid gather_free_forces(std::size_t first, const FreeRows &rows,
-                                                           const LaneApplied &applied, LaneLedger &ledger) {
-  static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
-  const BlockContactSum *contacts = &rows.contacts[first];
-  const FourLanes sums_0 = load_four(contacts, 0);
-  const FourLanes sums_1 = load_four(contacts, 4 * sizeof(double));
-  const FourLanes sums_2 = load_four(contacts, 5 * sizeof(double));
-  ledger.shear_force = {{sums_0[3], sums_1[0]}, sums_1[1]};
-  ledger.damping_force = {{sums_1[2], sums_2[2]}, sums_2[3]};
-  LaneRigid force = LaneRigid{{sums_0[0], sums_0[1]}, sums_0[2]} + applied.load;
-  force.u += applied.gravity;
-  return force;
-}
+  [[gnu::always_inline]] LaneApplied(const BodyForces &body, const LaneMasses &of)
+      : load(LaneVec{0.0, 0.0} - of.mass * LaneVec{body.shaking.x, body.shaking.y}),
+        gravity(of.mass / of.scaling * LaneVec{body.gravity.x, body.gravity.y}) {}
+};
 
 /// Half the way of rows [first, first + num_lanes) between their last two trial configurations.
 [[gnu::always_inline]] inline LaneRigid half_increments(const BlockSystem &system, std::size_t first) {
-  return Lanes(0.5) * (LaneRigid::load(system.trial[first]) - LaneRigid::load(system.trial_previous[first]));
+  static_assert(offsetof(BlockMotion, rotated) == offsetof(BlockMotion, step) + 2 * sizeof(double));
+  const FourLanes four = load_four(&system.motion[first], offsetof(BlockMotion, step));
+  return Lanes(0.5) * LaneRigid{{four[0], four[1]}, four[2]};
 }
 
-/// Onto the works of `now`: half with the forces of `before`, half with its own.
-[[gnu::always_inline]] inline void add_works(const LaneLedger &before, const LaneAppliedTwice &applied,
-                                             const LaneRigid &half_increment, LaneLedger &now) {
-  now.works = {before.works[0] + work(before.shear_force + now.shear_force, half_increment),
-               before.works[1] + work(before.damping_force + now.damping_force, half_increment),
-               before.works[2] + work(applied.before.load + applied.now.load, half_increment),
-               before.works[3] + dot(applied.before.gravity + applied.now.gravity, half_increment.u)};
+/// HalfWorks, one in each lane: of shear, damping, load and gravity.
+[[gnu::always_inline]] inline FourLanes
+lane_half_works(const LaneContacts &contacts, const LaneApplied &applied, const LaneRigid &half_increment) {
+  return {work(contacts.shear, half_increment), work(contacts.damping, half_increment),
+          dot(applied.load, half_increment.u), dot(applied.gravity, half_increment.u)};
+}
+
+/// What forces on F add to them.
+[[gnu::always_inline]] inline void add_on_gradient(const LaneMat &shear, const LaneMat &damping,
+                                                   const LaneMat &load, const LaneMat &stretch,
+                                                   FourLanes &works) {
+  const auto half_work = [&](const LaneMat &f) __attribute__((always_inline)) {
+    return Lanes(0.5) * contract(f, stretch);
+  };
+  works[0] += half_work(shear);
+  works[1] += half_work(damping);
+  works[2] += half_work(load);
+}
+
+[[gnu::always_inline]] inline void add_to_ledger(const FourLanes &works, BlockLedger *first) {
+  static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
+  const FourLanes before = load_four(first, 0);
+  store_by_lane(places_of(first), 0, before[0] + works[0], before[1] + works[1], before[2] + works[2],
+                before[3] + works[3]);
+}
+
+/// What add_half_works() says of free rows [first, first + num_lanes), rigid or deformable ones.
+inline void add_half_works_of_rigids(BlockSystem &system, std::size_t first) {
+  const LaneApplied applied(system.body, LaneMasses(&system.properties[first]));
+  add_to_ledger(lane_half_works(LaneContacts::load_parts(&system.contact[first]), applied,
+                                half_increments(system, first)),
+                &system.ledger[first]);
+}
+
+inline void add_half_works_of_deformables(BlockSystem &system, std::size_t first) {
+  const Deformation *deformation = &system.deformation[system.deformation_begin[first]];
+  const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
+    return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
+  };
+  const LaneApplied applied(system.body, LaneMasses(&system.properties[first]));
+  FourLanes works = lane_half_works(LaneContacts::load_parts(&system.contact[first]), applied,
+                                    half_increments(system, first));
+  add_on_gradient(load(&Deformation::shear_force), load(&Deformation::damping_force),
+                  load(&Deformation::load_force),
+                  load(&Deformation::trial) - load(&Deformation::trial_previous), works);
+  add_to_ledger(works, &system.ledger[first]);
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -22,10 +22,10 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
 inline FreeStep step_free_rows(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                const Scheme &scheme, double dt) {
   const LaneMasses of(&system.properties[first]);
-  const LaneAppliedTwice applied = apply_to_free(system, first, rows, of);
-  const LaneLedger before = LaneLedger::load(&system.ledger[first]);
-  LaneLedger ledger = before;
-  LaneRigid force = gather_free_forces(first, rows, applied.now, ledger);
+  const LaneApplied applied(rows.body, of);
+  LaneContacts sum = LaneContacts::load(&system.contact[first]);
+  LaneRigid &force = sum.force;
+  force.u = force.u + applied.load + applied.gravity;
 
   const LaneRigid v = LaneRigid::load(system.velocity[first]);
   if (rows.local_damping != 0.0) {
@@ -33,12 +33,10 @@ inline FreeStep step_free_rows(BlockSystem &system, std::size_t first, const Fre
                             LaneRigid{{lane_against(force.u.x, v.u.x), lane_against(force.u.y, v.u.y)},
                                       lane_against(force.r, v.r)};
     force = force + taken;
-    ledger.damping_force = ledger.damping_force + taken;
+    sum.damping = sum.damping + taken;
   }
-  force.store(rows.forces[first]);
-
-  add_works(before, applied, half_increments(system, first), ledger);
-  ledger.store(&system.ledger[first]);
+  sum.store(&system.contact[first]);
+  add_to_ledger(lane_half_works(sum, applied, half_increments(system, first)), &system.ledger[first]);
 
   const LaneRigid a = LaneRigid::load(system.acceleration[first]);
   const LaneRigid d = LaneRigid::load(system.displacement[first]);

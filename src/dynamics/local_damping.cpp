@@ -33,8 +33,8 @@ void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forc
   if (share == 0.0 || system.properties[row].keeps_its_velocity()) {
     return;
   }
-  RigidDof &force = forces.rigid[row];
-  const RigidDof f = force + system.applied[row].anchor;
+  BlockContactSum &sum = system.contact[row];
+  const RigidDof f = sum.force + system.anchor_force(row);
   const RigidDof &v = system.velocity[row];
   RigidDof taken = share * RigidDof{{against(f.u.x, v.u.x), against(f.u.y, v.u.y)}, against(f.r, v.r)};
   if (system.is_deformable(row)) {
@@ -45,8 +45,8 @@ void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forc
     gradient += taken_gradient;
     d.damping_force += taken_gradient;
   }
-  force += taken;
-  system.ledger[row].damping_force += taken;
+  sum.force += taken;
+  sum.damping += taken;
 }
 
 void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double mass_damping) {
@@ -63,8 +63,8 @@ void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &force
     forces.gradient[system.deformation_begin[row]] += taken_gradient;
     d.damping_force += taken_gradient;
   }
-  forces.rigid[row] += taken;
-  system.ledger[row].damping_force += taken;
+  system.contact[row].force += taken;
+  system.contact[row].damping += taken;
 }
 
 } // namespace gcpdda

@@ -135,7 +135,7 @@ HeldAcceleration accelerate_held(const BlockSystem &system, std::size_t row, con
 
 void make_block_matrices(BlockSystem &system, const Scheme &scheme, double time_step, Elasticity elasticity,
                          double normal_stiffness, double stiffness_damping) {
-  system.matrix_begin.assign(1, 0);
+  system.matrix_begin.clear();
   system.matrix.clear();
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (!system.properties[row].keeps_its_velocity() &&

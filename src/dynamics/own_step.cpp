@@ -23,8 +23,8 @@ bool is_finite(const RigidDof &a) {
 
 /// Their work goes by the trapezoid over increments of x*: this half now, the other after the next predict().
 void note_anchors(BlockSystem &system, std::size_t row, const RigidDof &force) {
-  system.applied[row].anchor = force;
-  system.ledger[row].load_work += 0.5 * work(force, system.trial[row] - system.trial_previous[row]);
+  system.applied_to(row)->anchor = force;
+  system.ledger[row].load += 0.5 * work(force, system.motion[row].increment());
 }
 
 using Dofs = std::array<double, 6>;
@@ -129,7 +129,7 @@ void note_springs(BlockSystem &system, std::size_t row, const OwnSprings &spring
   Deformation &d = system.deformation_of(row);
   const AnchorForce force = springs.force(system.acceleration[row].u, d.acceleration);
   note_anchors(system, row, {force.u, 0.0});
-  system.ledger[row].load_work += 0.5 * contract(force.gradient, d.trial - d.trial_previous);
+  system.ledger[row].load += 0.5 * contract(force.gradient, d.trial - d.trial_previous);
   d.anchor_force = force.gradient;
 }
 
@@ -137,7 +137,7 @@ void note_springs(BlockSystem &system, std::size_t row, const OwnSprings &spring
 void note_viscous(BlockSystem &system, std::size_t row, const Mat2 &viscous) {
   Deformation &d = system.deformation_of(row);
   d.damping_force += -1.0 * viscous;
-  system.ledger[row].damping_work -= 0.5 * contract(viscous, d.trial - d.trial_previous);
+  system.ledger[row].damping -= 0.5 * contract(viscous, d.trial - d.trial_previous);
 }
 
 /// Deformable rows on their way to the lanes.
@@ -221,8 +221,8 @@ std::optional<std::size_t> step_by_own_matrices(BlockSystem &system, const Block
       continue;
     }
     if (system.is_deformable(row)) {
-      deformables.add(row, forces.rigid[row].u, forces.gradient[system.deformation_begin[row]]);
-    } else if (!step_rigid(system, row, forces.rigid[row], step)) {
+      deformables.add(row, system.contact[row].force.u, forces.gradient[system.deformation_begin[row]]);
+    } else if (!step_rigid(system, row, system.contact[row].force, step)) {
       broken = broken.value_or(row);
     }
   }

@@ -17,7 +17,8 @@
 namespace gcpdda::checkpoint {
 
 inline constexpr const char *format = "gcpdda checkpoint";
-inline constexpr std::int64_t version = 4; ///< since 4 there are bolts
+inline constexpr std::int64_t version =
+    5; ///< since 5 there are body forces, and no trial_previous of rigid blocks
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -34,7 +35,11 @@ inline constexpr std::array real_facts{RealFact{"/clock/time", &RunFacts::time},
                                        RealFact{"/run/stick_at_start", &RunFacts::stick_at_start},
                                        RealFact{"/run/max_overlap", &RunFacts::max_overlap},
                                        RealFact{"/run/max_overlap_share", &RunFacts::max_overlap_share},
-                                       RealFact{"/run/fastest_turn", &RunFacts::fastest_turn}};
+                                       RealFact{"/run/fastest_turn", &RunFacts::fastest_turn},
+                                       RealFact{"/run/gravity_x", &RunFacts::gravity_x},
+                                       RealFact{"/run/gravity_y", &RunFacts::gravity_y},
+                                       RealFact{"/run/shaking_x", &RunFacts::shaking_x},
+                                       RealFact{"/run/shaking_y", &RunFacts::shaking_y}};
 inline constexpr const char *frame_times = "/run/frame_times";
 inline constexpr const char *ledger = "/run/ledger";
 inline constexpr const char *stage_counts = "/stage/counts";
@@ -117,11 +122,23 @@ template <auto Member> constexpr Field<BlockSystem> of_ledger(const char *name) 
   }
   > (name);
 }
-template <auto Member> constexpr Field<BlockSystem> of_applied(const char *name) {
+template <auto Member> constexpr Field<BlockSystem> of_contact(const char *name) {
   return field < BlockSystem, [](auto &system, std::size_t row) -> auto & {
-    return system.applied[row].*Member;
+    return system.contact[row].*Member;
   }
   > (name);
+}
+template <auto Member> constexpr Field<BlockSystem> of_applied(const char *name) {
+  using Value = std::remove_cvref_t<decltype(std::declval<AppliedForces &>().*Member)>;
+  return {name, doubles_of<Value>,
+          [](const BlockSystem &system, std::size_t row, double *to) {
+            put(applied_forces(system, row).*Member, to);
+          },
+          [](BlockSystem &system, std::size_t row, const double *from) {
+            if (AppliedForces *applied = system.applied_to(row)) { // else it follows from BlockSystem::body
+              take(applied->*Member, from);
+            }
+          }};
 }
 template <auto Member> constexpr Field<BlockSystem> of_mark(const char *name) {
   return {
@@ -151,23 +168,22 @@ template <auto Member> constexpr Field<std::vector<RegionRecord>> of_region(cons
 } // namespace detail
 
 // Left out: what the scene says (properties, shapes, stiffness, loads, anchors, initial strain), what follows
-// from it and the time step (matrices), and where blocks were at the last refresh, since a restart begins
-// with one.
+// from it and the time step (matrices), where blocks were at the last refresh, since a restart begins with
+// one, and what acts on them in all, since a step begins without it.
 inline constexpr std::array block_fields{
     detail::of_row<&BlockSystem::displacement>("/block/displacement"),
     detail::of_row<&BlockSystem::velocity>("/block/velocity"),
     detail::of_row<&BlockSystem::acceleration>("/block/acceleration"),
     detail::of_row<&BlockSystem::trial>("/block/trial"),
-    detail::of_row<&BlockSystem::trial_previous>("/block/trial_previous"),
-    detail::of_ledger<&BlockLedger::shear_force>("/block/shear_force"),
-    detail::of_ledger<&BlockLedger::damping_force>("/block/damping_force"),
+    detail::of_contact<&BlockContactSum::shear>("/block/shear_force"),
+    detail::of_contact<&BlockContactSum::damping>("/block/damping_force"),
     detail::of_applied<&AppliedForces::load>("/block/load_force"),
     detail::of_applied<&AppliedForces::anchor>("/block/anchor_force"),
     detail::of_applied<&AppliedForces::gravity>("/block/gravity_force"),
-    detail::of_ledger<&BlockLedger::shear_work>("/block/shear_work"),
-    detail::of_ledger<&BlockLedger::damping_work>("/block/damping_work"),
-    detail::of_ledger<&BlockLedger::load_work>("/block/load_work"),
-    detail::of_ledger<&BlockLedger::gravity_work>("/block/gravity_work"),
+    detail::of_ledger<&BlockLedger::shear>("/block/shear_work"),
+    detail::of_ledger<&BlockLedger::damping>("/block/damping_work"),
+    detail::of_ledger<&BlockLedger::load>("/block/load_work"),
+    detail::of_ledger<&BlockLedger::gravity>("/block/gravity_work"),
     detail::of_mark<&BlockMark::stage>("/block/at_stage_begin"),
     detail::of_mark<&BlockMark::look>("/block/at_last_look")};
 inline constexpr std::array deformation_fields{
@@ -193,9 +209,10 @@ inline constexpr const char *region_states = "/region/state"; ///< u8
 inline constexpr const char *region_laws = "/region/law";     ///< i32
 
 // A field that is added to the state must join one of the lists above, or the words over them.
-static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 9);
+static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 8);
 static_assert(sizeof(BlockMark) == 6 * sizeof(double));
-static_assert(sizeof(BlockLedger) == 10 * sizeof(double));
+static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
+static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
 static_assert(sizeof(Deformation) == (13 * 4 + 3) * sizeof(double));
 static_assert(sizeof(RegionMemory) == 9 * sizeof(double));

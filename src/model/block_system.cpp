@@ -51,6 +51,23 @@ void append_attachments(BlockSystem &system, const SceneBlock &block, Vec2 centr
   for (const Vec2 point : block.fixed_points) {
     system.anchor.push_back({point - centroid, 0.0, {}});
   }
+  if (!block.loads.empty() || !block.fixed_points.empty() || block.driven) {
+    system.applied.emplace_back();
+  }
+}
+
+/// Owned rows of which needs(row) holds have an entry of a list, with what they had in it; others have none.
+template <class Entry, class Needs>
+void list_rows(const BlockSystem &system, Needs &&needs, RowOffsets &begin, std::vector<Entry> &list) {
+  const std::vector<Entry> before = std::exchange(list, {});
+  const RowOffsets begin_before = std::exchange(begin, {});
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    if (row < system.num_owned && needs(row)) {
+      const std::uint32_t first = begin_before[row];
+      list.push_back(first < begin_before[row + 1] ? before[first] : Entry{});
+    }
+    begin.push_back(static_cast<std::uint32_t>(list.size()));
+  }
 }
 
 } // namespace
@@ -149,23 +166,36 @@ void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, st
 
 std::span<BlockMark> mark_rows(BlockSystem &system) {
   if (system.mark_begin[system.num_owned] != system.num_owned) {
-    const std::vector<BlockMark> before = std::exchange(system.mark, {});
-    const std::vector<std::uint32_t> begin = system.mark_begin;
-    for (std::uint32_t row = 0; row < system.num_rows(); ++row) {
-      const bool has = row < system.num_owned;
-      system.mark_begin[row + 1] = system.mark_begin[row] + (has ? 1U : 0U);
-      if (has) {
-        system.mark.push_back(begin[row] == begin[row + 1] ? BlockMark{} : before[begin[row]]);
-      }
-    }
+    list_rows(
+        system, [](std::size_t) { return true; }, system.mark_begin, system.mark);
   }
   return {system.mark.data(), system.num_owned};
 }
 
+void list_applied(BlockSystem &system, bool all) {
+  const auto has_any = [](const RowOffsets &begin, std::size_t row) { return begin[row] < begin[row + 1]; };
+  const auto needs = [&](std::size_t row) {
+    return all || has_any(system.load_begin, row) || has_any(system.anchor_begin, row) ||
+           has_any(system.dashpot_begin, row) || system.properties[row].keeps_its_velocity();
+  };
+  list_rows(system, needs, system.applied_begin, system.applied);
+}
+
+namespace {
+
+void keep_offsets(std::vector<std::uint32_t> &begin, std::size_t num_rows) {
+  begin.resize(num_rows + 1);
+}
+void keep_offsets(RowOffsets &begin, std::size_t num_rows) {
+  begin.resize(num_rows);
+}
+
+} // namespace
+
 void keep_rows(BlockSystem &system, std::size_t count) {
   std::apply([&](auto... field) { ((system.*field).resize(count), ...); }, BlockSystem::row_fields());
   const auto keep_list = [&](auto begins, auto... fields) {
-    (system.*begins).resize(count + 1);
+    keep_offsets(system.*begins, count);
     ((system.*fields).resize((system.*begins).back()), ...);
   };
   std::apply([&](auto... list) { (std::apply(keep_list, list), ...); }, BlockSystem::lists());

@@ -338,12 +338,13 @@ void Ghosts::begin(const BlockSystem &system,
 
 void Ghosts::finish(BlockSystem &system) {
   motion_.finish();
+  pose(system, 0, 0); // lists have their lengths
   for (const Neighbour &n : neighbours_) {
     const std::byte *from = n.receive.data();
     for (const std::uint32_t row : n.receive_rows) {
       GhostMotion motion;
       from = take(from, motion);
-      system.trial_previous[row] = system.trial[row];
+      system.motion[row].set_increment(motion.trial - system.trial[row]);
       system.trial[row] = motion.trial;
       system.velocity[row] = motion.velocity;
       if (system.is_deformable(row)) {

@@ -48,6 +48,7 @@ void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, c
     }
     sorted.num_owned = order.size();
     sorted.num_fixed = system.num_fixed;
+    sorted.body = system.body;
     system = std::move(sorted);
   }
   system.num_ghosts = 0;

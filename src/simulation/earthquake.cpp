@@ -102,7 +102,7 @@ void Simulation::add_dashpot(const SceneBlock &block, const Material &material) 
   }
   if (!edges.empty()) {
     blocks_.dashpot.push_back(dashpot_of(edges));
-    blocks_.dashpot_begin.back() = static_cast<std::uint32_t>(blocks_.dashpot.size());
+    blocks_.dashpot_begin.lengthen(row, 1);
   }
 }
 
@@ -115,6 +115,7 @@ void Simulation::wake_dashpots() {
 
 void Simulation::prepare_matrices() {
   wake_dashpots();
+  list_applied(blocks_, !scene_.water.empty() || !stage_.unloading.empty());
   make_block_matrices(blocks_, scheme_, plan_.time_step, scene_.run.elasticity, stiffest_joint(scene_.joints),
                       scene_.run.rayleigh.stiffness_damping);
 }

@@ -5,7 +5,6 @@
 #include "gcpdda/contact/pair_energies.hpp"
 #include "gcpdda/contact/region_law.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/simulation/half_works.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -276,14 +275,14 @@ Terms current_terms(Simulation &simulation) {
   simulation.look_ahead([&](const BlockSystem &blocks) {
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
       const BlockLedger &ledger = blocks.ledger[row];
-      const HalfWorks half = half_works(blocks, row);
-      const RigidDof increment = blocks.trial[row] - blocks.trial_previous[row];
+      const HalfWorks half = half_works(blocks, row, applied_forces(blocks, row));
+      const RigidDof increment = blocks.motion[row].increment();
       terms.kinetic.add(
           kinetic_energy(blocks, row, (1.0 / time_step) * increment, stretch_rate(blocks, row, time_step)));
-      terms.gravity.add(-(ledger.gravity_work + half.gravity));
-      terms.shear_work.add(ledger.shear_work + half.shear);
-      terms.damping_work.add(ledger.damping_work + half.damping);
-      terms.load_work.add(ledger.load_work + half.load + anchor_half_work(blocks, row));
+      terms.gravity.add(-(ledger.gravity + half.gravity));
+      terms.shear_work.add(ledger.shear + half.shear);
+      terms.damping_work.add(ledger.damping + half.damping);
+      terms.load_work.add(ledger.load + half.load + anchor_half_work(blocks, row));
     }
     add_strain(blocks, Moment::middle, terms.strain);
     add_normal(simulation, 0.5, terms.normal);
@@ -303,7 +302,7 @@ double unbalanced_ratio(const Simulation &simulation) {
   std::array<double, 2> largest{};
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     if (!blocks.properties[row].keeps_its_velocity()) {
-      largest[0] = std::max(largest[0], norm(simulation.forces().rigid[row].u));
+      largest[0] = std::max(largest[0], norm(blocks.contact[row].force.u));
       largest[1] =
           std::max(largest[1], blocks.properties[row].heavy_mass() * norm(simulation.scene().run.gravity));
     }

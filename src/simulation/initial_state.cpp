@@ -109,8 +109,8 @@ void Simulation::check_bonds() {
 
 void Simulation::accelerate_owned() {
   sum_contacts_of_blocks();
-  standing_.reset();
-  gather_forces(0, blocks_.num_owned, {gravity(), ground_acceleration()});
+  blocks_.body = {gravity(), ground_acceleration()};
+  gather_forces(0, blocks_.num_owned, blocks_.body);
   accelerate(blocks_, forces_);
   prescribe_motion();
 }

@@ -53,7 +53,7 @@ std::int64_t state_bytes(const Simulation &simulation) {
   add(simulation.history().overlaps);
   add(simulation.history().plain);
   add(simulation.history().regions);
-  bytes += blocks.num_owned * (sizeof(BlockContactSum) + sizeof(RigidDof) + sizeof(ContactDigest::OnRow));
+  bytes += blocks.num_owned * sizeof(ContactDigest::OnRow);
   add(simulation.domain_map().owner);
   return static_cast<std::int64_t>(bytes);
 }

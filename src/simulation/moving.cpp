@@ -13,7 +13,6 @@
 // before they stand in their rows. Each row does the same operations on the same numbers whenever it does
 // them, so the order changes no bit.
 
-#include "gcpdda/simulation/half_works.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 
 #include <algorithm>
@@ -44,8 +43,8 @@ void Simulation::send_trials() {
   find_prescribed_rows();
   ghosts_.begin(blocks_, [&](std::uint32_t row) {
     TrialConfiguration trial = next_trial(blocks_, scheme_, plan_.time_step, row);
-    for (const auto &[prescribed, motion] : prescribed_rows_) {
-      trial.motion = prescribed == row ? motion : trial.motion;
+    for (const PrescribedRow &prescribed : prescribed_rows_) {
+      trial.motion = prescribed.row == row ? prescribed.trial : trial.motion;
     }
     return trial;
   });
@@ -57,7 +56,8 @@ void Simulation::find_prescribed_rows() {
   prescribed_rows_.clear();
   for (const auto &[block, motion] : prescribed_) {
     if (const auto row = owned_row(blocks_, block)) {
-      prescribed_rows_.emplace_back(*row, motion.displacement(when));
+      const RigidDof trial = motion.displacement(when);
+      prescribed_rows_.push_back({*row, trial, trial - blocks_.trial[*row]});
     }
   }
 }
@@ -65,13 +65,15 @@ void Simulation::find_prescribed_rows() {
 void Simulation::predict_rows(std::size_t first, std::size_t last, bool for_contacts) {
   const auto scope = phases_.measure(Phase::predict);
   const auto find_motions = [&](std::size_t from, std::size_t to) {
-    for (const auto &[row, motion] : prescribed_rows_) {
+    for (const auto &[row, motion, increment] : prescribed_rows_) {
       if (from <= row && row < to) {
         blocks_.trial[row] = motion;
+        blocks_.motion[row].set_increment(increment);
         pose(blocks_, row, row + 1);
       }
     }
     if (for_contacts) {
+      add_half_works(blocks_, from, to);
       contacts_.find_motions(blocks_, from, to);
     }
   };
@@ -91,7 +93,6 @@ void Simulation::prescribe_motion() {
 }
 
 void Simulation::prepare_forces() {
-  forces_.rigid.resize(blocks_.num_owned);
   forces_.gradient.resize(blocks_.deformation.size());
   forces_.wave = incoming_wave();
   forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
@@ -143,7 +144,7 @@ void Simulation::move_blocks() {
     move_rows(rows.first, rows.last);
   }
   move_rows(moving_.moved, blocks_.num_owned);
-  standing_ = has_free_rows() ? std::optional(moving_.body) : std::nullopt;
+  blocks_.body = moving_.body;
   if (moving_.broken) {
     keep_first(local_fault_,
                {Fault::Cause::not_finite, blocks_.properties[*moving_.broken].id, {}, 0.0, 0.0});
@@ -177,23 +178,13 @@ std::size_t Simulation::move_free_rows(std::size_t first, std::size_t end) {
 }
 
 bool Simulation::has_free_rows() const {
-  return scene_.water.empty() && stage_.unloading.empty() && scene_.run.rayleigh.mass_damping == 0.0;
+  return scene_.run.rayleigh.mass_damping == 0.0;
 }
 
 FreeRows Simulation::free_rows(const BodyForces &body) {
-  return {contacts_.sums().of_blocks(),
-          forces_.rigid,
-          body.gravity,
-          body.shaking,
-          standing_ == body,
-          local_damping_,
-          calm_motion(),
-          contacts_.sums().of_gradients(),
-          forces_.gradient};
+  return {body, local_damping_, calm_motion(), contacts_.sums().of_gradients(), forces_.gradient};
 }
 
-// The works of the ledger go by the trapezoid over increments of x*: half with the forces of the last
-// evaluation, half with those of this one.
 void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
   const auto scope = phases_.measure(Phase::forces);
   const bool are_gathered_together = has_free_rows() && bolts_.empty();
@@ -204,52 +195,50 @@ void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyFo
         break;
       }
     }
-    BlockLedger &ledger = blocks_.ledger[row];
-    const BlockLedger before = ledger;
-    const AppliedForces applied_before = blocks_.applied[row];
-    const HalfWorks stretched =
-        blocks_.is_deformable(row) ? half_works_on_gradient(blocks_.deformation_of(row)) : HalfWorks{};
-    ledger.load_work += anchor_half_work(blocks_, row);
-    const BlockContactSum &contacts = contacts_.sums().of_blocks()[row];
-    ledger.shear_force = contacts.shear;
-    ledger.damping_force = contacts.damping;
-    forces_.rigid[row] = contacts.force;
     const WaterLoad water = scene_.water.empty()
                                 ? WaterLoad{}
                                 : water_load(blocks_, row, scene_.water, -body.gravity.y, outline_);
-    gather_block(row, body, water);
+    const AppliedForces applied = gather_block(row, body, water);
     if (blocks_.is_deformable(row)) {
       gather_gradient(row, water);
     }
     apply_mass_damping(blocks_, row, forces_, scene_.run.rayleigh.mass_damping);
     apply_local_damping(blocks_, row, forces_, local_damping_);
-    add_works(blocks_, row, before, applied_before, stretched);
+    add_to_ledger(blocks_, row, half_works(blocks_, row, applied));
   }
 }
 
-void Simulation::gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water) {
+// Returns what is applied, which is noted where the row has a place for it.
+AppliedForces Simulation::gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water) {
   const BlockProperties &block = blocks_.properties[row];
-  AppliedForces &applied = blocks_.applied[row];
+  RigidDof &force = blocks_.contact[row].force;
+  AppliedForces *const own = blocks_.applied_to(row);
+  const bool is_deformable = blocks_.is_deformable(row); // then moments stand in the deformation
   if (block.keeps_its_velocity()) {
-    applied.load = -1.0 * forces_.rigid[row];
-    forces_.rigid[row] = {};
-    return;
+    expect(own != nullptr, "what drives a block has its place");
+    const RigidDof held = std::exchange(force, {});
+    return *own = {{-1.0 * held.u, is_deformable ? 0.0 : -held.r}, {}, {}};
   }
-  applied.gravity = block.heavy_mass() * body.gravity;
-  applied.load = stage_.unloading.empty() ? RigidDof{} : unloading_of(block.id).rigid;
-  for (const MaterialLoad &load : blocks_.loads_of(row)) {
-    const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
-    applied.load += {load.force, cross(arm, load.force)};
+  AppliedForces applied = applied_by(body, block);
+  if (own != nullptr) {
+    applied.anchor = own->anchor;
+    applied.load += stage_.unloading.empty() ? RigidDof{} : unloading_of(block.id).rigid;
+    for (const MaterialLoad &load : blocks_.loads_of(row)) {
+      const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
+      applied.load += {load.force, cross(arm, load.force)};
+    }
+    applied.load += {water.force, water.torque()};
+    applied.load.r = is_deformable ? 0.0 : applied.load.r;
+    *own = applied;
   }
-  applied.load += {water.force - block.mass * body.shaking, water.torque()};
-  forces_.rigid[row] += applied.load;
-  forces_.rigid[row].u += applied.gravity;
+  force += applied.load;
+  force.u += applied.gravity;
+  return applied;
 }
 
 // What works on F; the moments of the rigid part are in it.
 void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   Deformation &d = blocks_.deformation_of(row);
-  BlockLedger &ledger = blocks_.ledger[row];
   const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
   const BlockGradientSum sum =
       in_reference_axes(contacts_.sums().of_gradients()[blocks_.deformation_begin[row]], to_reference);
@@ -263,9 +252,8 @@ void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   if (!bolts_.empty()) {
     forces_.gradient[blocks_.deformation_begin[row]] += bolts_.gradient_force(blocks_.deformation_begin[row]);
   }
-  for (RigidDof *force : {&ledger.shear_force, &ledger.damping_force, &blocks_.applied[row].load}) {
-    force->r = 0.0;
-  }
+  blocks_.contact[row].shear.r = 0.0;
+  blocks_.contact[row].damping.r = 0.0;
 }
 
 } // namespace gcpdda

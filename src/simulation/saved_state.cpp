@@ -57,6 +57,10 @@ RunFacts Simulation::facts() const {
   facts.max_overlap = largest[0];
   facts.max_overlap_share = largest[1];
   facts.fastest_turn = largest[2];
+  facts.gravity_x = blocks_.body.gravity.x;
+  facts.gravity_y = blocks_.body.gravity.y;
+  facts.shaking_x = blocks_.body.shaking.x;
+  facts.shaking_y = blocks_.body.shaking.y;
   return facts;
 }
 

@@ -1,7 +1,6 @@
 #include "gcpdda/simulation/simulation.hpp"
 
 #include "gcpdda/parallel/migration.hpp"
-#include "gcpdda/simulation/half_works.hpp"
 
 #include <algorithm>
 #include <array>

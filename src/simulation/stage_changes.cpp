@@ -59,10 +59,8 @@ void replace_loads(BlockSystem &system, std::size_t row, const std::vector<Point
   const auto begin = system.load.begin() + system.load_begin[row];
   const auto place = system.load.erase(begin, system.load.begin() + system.load_begin[row + 1]);
   system.load.insert(place, own.begin(), own.end());
-  const std::uint32_t before = system.load_begin[row + 1] - system.load_begin[row];
-  for (std::size_t later = row + 1; later < system.load_begin.size(); ++later) {
-    system.load_begin[later] += static_cast<std::uint32_t>(own.size()) - before;
-  }
+  const std::int64_t before = system.load_begin[row + 1] - system.load_begin[row];
+  system.load_begin.lengthen(row, std::ssize(own) - before);
 }
 
 bool same_loads(const std::vector<PointLoad> &a, const std::vector<PointLoad> &b) {
@@ -162,6 +160,8 @@ void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, 
   remove_blocks(saved.removed);
   stage_ = saved;
   bolts_ = Bolts::from_numbers(facts.bolt_counts, facts.bolt_numbers);
+  list_applied(blocks_, !scene_.water.empty() || !stage_.unloading.empty());
+  blocks_.body = {{facts.gravity_x, facts.gravity_y}, {facts.shaking_x, facts.shaking_y}};
 }
 
 bool Simulation::is_removed(std::int64_t block) const {

@@ -103,9 +103,9 @@ void Simulation::look_at_stage() {
     if (block.keeps_its_velocity()) {
       continue;
     }
-    const AppliedForces &applied = blocks_.applied[row];
+    const AppliedForces applied = applied_forces(blocks_, row);
     const RigidDof &v = blocks_.velocity[row];
-    const RigidDof force = forces_.rigid[row] + applied.anchor;
+    const RigidDof force = blocks_.contact[row].force + applied.anchor;
     const double along_x = undamped(force.u.x, v.u.x, local_damping_);
     const double along_y = undamped(force.u.y, v.u.y, local_damping_);
     const double turning =
@@ -176,7 +176,7 @@ void Simulation::book_stop() {
     }
     const RigidDof ahead = by_velocity * blocks_.velocity[row] + by_acceleration * blocks_.acceleration[row];
     const RigidDof behind = blocks_.displacement[row] - blocks_.trial[row];
-    RigidDof force = forces_.rigid[row] + blocks_.applied[row].anchor;
+    RigidDof force = blocks_.contact[row].force + blocks_.anchor_force(row);
     Mat2 stretch;
     double work_on_gradient = 0.0;
     if (blocks_.is_deformable(row)) {
@@ -189,9 +189,8 @@ void Simulation::book_stop() {
           contract(forces_.gradient[blocks_.deformation_begin[row]] - d.internal + d.anchor_force,
                    gradient_ahead - gradient_behind);
     }
-    blocks_.ledger[row].damping_work +=
-        0.5 * (work(force, ahead - behind) + work_on_gradient) -
-        kinetic_energy_of(blocks_, row, (1.0 / dt) * (behind + ahead), stretch);
+    blocks_.ledger[row].damping += 0.5 * (work(force, ahead - behind) + work_on_gradient) -
+                                   kinetic_energy_of(blocks_, row, (1.0 / dt) * (behind + ahead), stretch);
   }
 }
 
@@ -217,7 +216,6 @@ void Simulation::end_stage() {
   stage_.results = stage_results();
   stage_.end_time = time();
   stage_.ended = true;
-  standing_.reset();
   if (stage.kind == StageKind::settle) {
     unscale_masses();
     if (stage_.verdict == Verdict::settled) {
@@ -243,7 +241,9 @@ void Simulation::set_to_rest() {
 
 // The contact forces of the present trial configuration once more: nothing has moved since.
 void Simulation::evaluate_still() {
-  blocks_.trial_previous = blocks_.trial;
+  for (BlockMotion &motion : blocks_.motion) {
+    motion.set_increment({});
+  }
   for (Deformation &d : blocks_.deformation) {
     d.trial_previous = d.trial;
   }

@@ -151,7 +151,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     const auto id = static_cast<double>(blocks.properties[row].id.value);
     blocks.displacement[row] = {{id + 0.25, -id}, 1.0 / (id + 3.0)};
-    blocks.ledger[row].load_work = 3.0 * id;
+    blocks.ledger[row].load = 3.0 * id;
     if (blocks.is_deformable(row)) {
       blocks.deformation_of(row).rate = {id, 2 * id, 3 * id, 4 * id};
     }
@@ -189,7 +189,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
   for (std::size_t row = 0; row < slab.num_owned; ++row) {
     const auto id = static_cast<double>(slab.properties[row].id.value);
     EXPECT_EQ(slab.displacement[row], (RigidDof{{id + 0.25, -id}, 1.0 / (id + 3.0)}));
-    EXPECT_EQ(slab.ledger[row].load_work, 3.0 * id);
+    EXPECT_EQ(slab.ledger[row].load, 3.0 * id);
     if (slab.is_deformable(row)) {
       EXPECT_EQ(slab.deformation_of(row).rate.yy, 4 * id);
     }

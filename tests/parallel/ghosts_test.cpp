@@ -197,10 +197,11 @@ TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
   const CellGrid grid = CellGrid::over({{0.0, 0.0}, {region, region}}, 400);
   Case c(world, map_of(grid, [&](int i, int j) { return (i + j) % world.size(); }), 5);
   std::mt19937_64 random(17);
+  pose(c.whole, 0, c.whole.num_rows());
   for (int round = 0; round < 20; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
     for (std::size_t id = 0; id < num_mobile; ++id) { // every rank moves the whole
-      c.whole.trial_previous[id] = c.whole.trial[id];
+      c.whole.motion[id].set_increment(moved(id, round) - c.whole.trial[id]);
       c.whole.trial[id] = moved(id, round);
       c.whole.velocity[id] = testing::any_bits(random);
       if (c.whole.is_deformable(id)) {
@@ -212,7 +213,6 @@ TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
     }
     pose(c.whole, 0, c.whole.num_rows());
     for (std::size_t row = 0; row < c.mine.num_owned; ++row) { // and what it owns
-      c.mine.trial_previous[row] = c.mine.trial[row];
       c.mine.trial[row] = c.whole.trial[c.id_of(row)];
       c.mine.velocity[row] = c.whole.velocity[c.id_of(row)];
       if (c.mine.is_deformable(row)) {
@@ -224,6 +224,7 @@ TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
     expect_bits_of_whole(c);
     for (std::size_t row = c.mine.num_owned; row < c.mine.first_fixed(); ++row) {
       const std::size_t id = c.id_of(row);
+      EXPECT_EQ(c.mine.motion[row].increment(), c.whole.motion[id].increment());
       EXPECT_EQ(c.mine.motion[row].centroid, c.whole.motion[id].centroid);
       EXPECT_EQ(c.mine.motion[row].box.low, c.whole.motion[id].box.low);
       EXPECT_EQ(c.mine.motion[row].box.high, c.whole.motion[id].box.high);
@@ -293,7 +294,7 @@ TEST(Ghosts, AreOldUntilTheUpdateIsFinished) {
   c.ghosts.finish(c.mine);
   for (std::size_t row = c.mine.num_owned; row < c.mine.num_mobile(); ++row) {
     EXPECT_EQ(c.mine.trial[row], moved(c.id_of(row), 3));
-    EXPECT_EQ(c.mine.trial_previous[row], before[row]);
+    EXPECT_EQ(c.mine.motion[row].increment(), moved(c.id_of(row), 3) - before[row]);
   }
 }
 

@@ -142,7 +142,7 @@ private:
         whole_.displacement[id].u -= strayed;
       }
       whole_.acceleration[id].r = hashed(k, step, 3);
-      whole_.ledger[id].shear_work += hashed(k, step, 4);
+      whole_.ledger[id].shear += hashed(k, step, 4);
     }
     for (std::size_t row = 0; row < mine_.num_owned; ++row) {
       const auto id = static_cast<std::size_t>(mine_.properties[row].id.value);

@@ -100,7 +100,7 @@ BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double r
       system.deformation_of(row).gradient = trial;
       system.matrix.emplace_back();
       fill_with_any_bits(system.matrix.back(), random);
-      system.matrix_begin.back() = static_cast<std::uint32_t>(system.matrix.size());
+      system.matrix_begin.lengthen(row, 1);
     }
     if (block.fixed) {
       ++system.num_fixed;
@@ -113,14 +113,17 @@ BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double r
     };
     system.displacement[row] = moved();
     system.trial[row] = moved();
-    for (auto field : {&BlockSystem::velocity, &BlockSystem::acceleration, &BlockSystem::trial_previous,
-                       &BlockSystem::refreshed}) {
+    for (auto field : {&BlockSystem::velocity, &BlockSystem::acceleration, &BlockSystem::refreshed}) {
       (system.*field)[row] = any_bits(random);
     }
     fill_with_any_bits(system.ledger[row], random);
-    fill_with_any_bits(system.applied[row], random);
+    fill_with_any_bits(system.contact[row], random);
+    if (k % 3 == 0) {
+      fill_with_any_bits(system.applied.emplace_back(), random);
+      system.applied_begin.lengthen(row, 1);
+    }
     fill_with_any_bits(system.mark.emplace_back(), random);
-    system.mark_begin.back() = static_cast<std::uint32_t>(system.mark.size());
+    system.mark_begin.lengthen(row, 1);
   }
   return system;
 }

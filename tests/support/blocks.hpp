@@ -78,6 +78,7 @@ struct ContactBench {
   ContactForces forces;
   ContactHistory history;
   Candidates candidates;
+  std::vector<RigidDof> moved_on; ///< trial configurations of owned rows at the last evaluation
 
   ContactBench(BlockSystem blocks, JointLaws joints, double damping_ratio = 0.0,
                Instructions instructions = Instructions::widest)
@@ -92,6 +93,7 @@ struct ContactBench {
       }
     }
     candidates = make_candidates(system, pairs, forces.parameters(), {}, history, infinite_skin);
+    moved_on.resize(system.num_owned);
   }
 
   /// What evaluate() saw of the first region.
@@ -102,10 +104,13 @@ struct ContactBench {
   /// Forces at the present trial configuration; the last one becomes the previous one.
   const Seen &evaluate() {
     pose(system, 0, system.num_rows());
+    for (std::size_t row = 0; row < system.num_owned; ++row) {
+      system.motion[row].set_increment(system.trial[row] - moved_on[row]);
+    }
     report = forces.evaluate(system, candidates, history);
     regions = Regions(system, candidates, history, forces);
     for (std::size_t row = 0; row < system.num_owned; ++row) {
-      system.trial_previous[row] = system.trial[row];
+      moved_on[row] = system.trial[row];
       if (system.is_deformable(row)) {
         system.deformation_of(row).trial_previous = system.deformation_of(row).trial;
       }

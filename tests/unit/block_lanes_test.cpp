@@ -60,7 +60,7 @@ struct Blocks {
     for (std::size_t row = 0; row < num_blocks; ++row) {
       system.velocity[row] = next_dofs(engine, 0.5);
       system.acceleration[row] = next_dofs(engine, 30.0);
-      forces.rigid.push_back(next_dofs(engine, 1e5));
+      system.contact[row].force = next_dofs(engine, 1e5);
     }
     for (Deformation &d : system.deformation) {
       // Most turn little in the step, some by more than a series reaches.
@@ -90,8 +90,8 @@ void expect_same(const BlockSystem &a, const BlockSystem &b) {
     EXPECT_EQ(a.displacement[row], b.displacement[row]);
     EXPECT_EQ(a.velocity[row], b.velocity[row]);
     EXPECT_EQ(a.acceleration[row], b.acceleration[row]);
-    EXPECT_EQ(a.ledger[row].load_work, b.ledger[row].load_work);
-    EXPECT_EQ(a.ledger[row].damping_work, b.ledger[row].damping_work);
+    EXPECT_EQ(a.ledger[row].load, b.ledger[row].load);
+    EXPECT_EQ(a.ledger[row].damping, b.ledger[row].damping);
   }
   for (std::size_t k = 0; k < a.deformation.size(); ++k) {
     SCOPED_TRACE(k);
@@ -182,18 +182,23 @@ TEST(DeformableLanes, ObeyTheEquationOfMotion) {
     EXPECT_NEAR(norm(mean * old.second_moment - force), 0.0, rounding);
     if (row % 5 != 0) {
       const Vec2 a = (1.0 - am) * after.system.acceleration[row].u + am * before.system.acceleration[row].u;
-      EXPECT_NEAR(norm(before.system.properties[row].mass * a - before.forces.rigid[row].u), 0.0, 1e-8);
+      EXPECT_NEAR(norm(before.system.properties[row].mass * a - before.system.contact[row].force.u), 0.0,
+                  1e-8);
     }
   }
 }
 
 void expect_same(const BlockLedger &a, const BlockLedger &b) {
-  EXPECT_EQ(a.shear_force, b.shear_force);
-  EXPECT_EQ(a.damping_force, b.damping_force);
-  EXPECT_EQ(a.shear_work, b.shear_work);
-  EXPECT_EQ(a.damping_work, b.damping_work);
-  EXPECT_EQ(a.load_work, b.load_work);
-  EXPECT_EQ(a.gravity_work, b.gravity_work);
+  EXPECT_EQ(a.shear, b.shear);
+  EXPECT_EQ(a.damping, b.damping);
+  EXPECT_EQ(a.load, b.load);
+  EXPECT_EQ(a.gravity, b.gravity);
+}
+
+void expect_same(const BlockContactSum &a, const BlockContactSum &b) {
+  EXPECT_EQ(a.force, b.force);
+  EXPECT_EQ(a.shear, b.shear);
+  EXPECT_EQ(a.damping, b.damping);
 }
 
 void expect_same(const AppliedForces &a, const AppliedForces &b) {
@@ -237,10 +242,10 @@ void expect_same_motion(const std::vector<std::string> &sets) {
       EXPECT_EQ(together.blocks().displacement[row], one_by_one.blocks().displacement[row]);
       EXPECT_EQ(together.blocks().velocity[row], one_by_one.blocks().velocity[row]);
       EXPECT_EQ(together.blocks().acceleration[row], one_by_one.blocks().acceleration[row]);
-      EXPECT_EQ(together.forces().rigid[row], one_by_one.forces().rigid[row]);
+      expect_same(together.blocks().contact[row], one_by_one.blocks().contact[row]);
       expect_same(together.blocks().ledger[row], one_by_one.blocks().ledger[row]);
-      expect_same(together.blocks().applied[row], one_by_one.blocks().applied[row]);
-      friction += std::abs(together.blocks().ledger[row].shear_work);
+      expect_same(applied_forces(together.blocks(), row), applied_forces(one_by_one.blocks(), row));
+      friction += std::abs(together.blocks().ledger[row].shear);
     }
     EXPECT_GT(friction, 0.0) << "blocks that touch";
     for (std::size_t k = 0; k < together.blocks().deformation.size(); ++k) {
@@ -270,8 +275,6 @@ constexpr std::size_t driven = 22;     // ends a run of free rows
 
 struct FreeBlocks {
   BlockSystem system;
-  std::vector<BlockContactSum> contacts;
-  std::vector<RigidDof> forces{num_free};
 
   FreeBlocks() {
     std::mt19937 engine(5);
@@ -280,25 +283,23 @@ struct FreeBlocks {
       block.vertices = {{0.0, 0.0}, {2.0 + next(engine), 0.3}, {1.7, 1.2}, {0.0, 1.0}};
       block.driven = row == driven;
       append_block(system, BlockId{static_cast<std::int64_t>(row)}, block, {"rock", 2500.0, 0.0, 0.0});
-      contacts.push_back({next_dofs(engine, 1e5), next_dofs(engine, 1e4), next_dofs(engine, 1e4)});
+      system.contact[row] = {next_dofs(engine, 1e5), next_dofs(engine, 1e4), next_dofs(engine, 1e4)};
     }
     system.num_owned = num_free;
-    system.matrix_begin.assign(num_free + 1, 0);
+    pose(system, 0, 0);
     for (std::size_t row = 0; row < num_free; ++row) {
-      for (auto *field : {&system.displacement, &system.velocity, &system.acceleration, &system.trial,
-                          &system.trial_previous}) {
+      for (auto *field : {&system.displacement, &system.velocity, &system.acceleration, &system.trial}) {
         (*field)[row] = next_dofs(engine, 1.0);
       }
-      system.ledger[row].shear_force = next_dofs(engine, 1e4);
-      system.applied[row].load = next_dofs(engine, 1e4);
+      system.motion[row].set_increment(next_dofs(engine, 1.0));
     }
     system.velocity[3].u.x = 0.0; // nothing to damp
-    contacts[not_finite].force.r = std::numeric_limits<double>::infinity();
+    system.contact[not_finite].force.r = std::numeric_limits<double>::infinity();
   }
 
   std::size_t step(Instructions instructions, std::optional<std::size_t> &broken) {
-    return advance_free_rows(system, {contacts, forces, {0.3, -9.81}, {0.7, 0.1}, false, 0.6, calm},
-                             usual_scheme(), time_step, 0, num_free, broken, restless, instructions);
+    return advance_free_rows(system, {{{0.3, -9.81}, {0.7, 0.1}}, 0.6, calm}, usual_scheme(), time_step, 0,
+                             num_free, broken, restless, instructions);
   }
 
   double calm = std::numeric_limits<double>::infinity();
@@ -326,9 +327,8 @@ TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
       EXPECT_EQ(wider.system.velocity[row], portable.system.velocity[row]);
       EXPECT_EQ(wider.system.acceleration[row], portable.system.acceleration[row]);
       if (row != not_finite) { // infinite less infinite
-        EXPECT_EQ(wider.forces[row], portable.forces[row]);
+        expect_same(wider.system.contact[row], portable.system.contact[row]);
         expect_same(wider.system.ledger[row], portable.system.ledger[row]);
-        expect_same(wider.system.applied[row], portable.system.applied[row]);
       }
     }
   }
@@ -337,7 +337,7 @@ TEST(FreeRows, HaveTheSameBitsWithAllInstructions) {
 TEST(FreeRows, AreLookedAtWhereTheyMoveMuch) {
   for (const Instructions instructions : {Instructions::portable, Instructions::avx2, Instructions::widest}) {
     FreeBlocks blocks;
-    blocks.contacts.assign(num_free, {});
+    blocks.system.contact.assign(num_free, {});
     blocks.system.displacement.assign(num_free, {});
     constexpr std::size_t far = 5;
     blocks.system.displacement[far].r = 0.5; // of a block with a radius of 1 m or so
@@ -388,7 +388,7 @@ TEST(Predict, MovesDeformableBlocksSideBySideAsEachAlone) {
   for (std::size_t row = 0; row < count; ++row) {
     SCOPED_TRACE(row);
     EXPECT_EQ(system.trial[row], alone[row].trial[0]);
-    EXPECT_EQ(system.trial_previous[row], alone[row].trial_previous[0]);
+    EXPECT_EQ(system.motion[row].increment(), alone[row].motion[0].increment());
     EXPECT_EQ(system.deformation[row].trial, alone[row].deformation[0].trial);
     EXPECT_EQ(system.deformation[row].trial_previous, alone[row].deformation[0].trial_previous);
   }

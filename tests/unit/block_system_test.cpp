@@ -203,10 +203,9 @@ BlockSystem filled_system() {
     system.velocity[row] = dof();
     system.acceleration[row] = dof();
     system.trial[row] = dof();
-    system.trial_previous[row] = dof();
     system.refreshed[row] = dof();
-    system.ledger[row] = {dof(), dof(), number(), number(), number(), number()};
-    system.applied[row] = {dof(), dof().u, dof()};
+    system.contact[row] = {dof(), dof(), dof()};
+    system.ledger[row] = {number(), number(), number(), number()};
     system.properties[row].material = static_cast<std::int32_t>(row) + 4;
   }
   Deformation &d = system.deformation[0];
@@ -222,6 +221,7 @@ BlockSystem filled_system() {
       entry = number();
     }
   }
+  system.applied[0] = {dof(), dof().u, dof()};
   system.anchor[0].stiffness = number();
   system.anchor[0].held = {number(), number()};
   return system;
@@ -249,11 +249,11 @@ void expect_same_row(const BlockSystem &a, std::size_t i, const BlockSystem &b, 
   EXPECT_EQ(p.width, q.width);
   EXPECT_EQ(p.centroid, q.centroid);
   for (const auto field : {&BlockSystem::displacement, &BlockSystem::velocity, &BlockSystem::acceleration,
-                           &BlockSystem::trial, &BlockSystem::trial_previous, &BlockSystem::refreshed}) {
+                           &BlockSystem::trial, &BlockSystem::refreshed}) {
     EXPECT_EQ((a.*field)[i], (b.*field)[j]);
   }
   expect_same_bytes(std::span(&a.ledger[i], 1), std::span(&b.ledger[j], 1));
-  expect_same_bytes(std::span(&a.applied[i], 1), std::span(&b.applied[j], 1));
+  expect_same_bytes(std::span(&a.contact[i], 1), std::span(&b.contact[j], 1));
   const auto expect_same_list = [&](auto begins, auto... fields) {
     const auto slice = [&](const BlockSystem &system, auto field, std::size_t row) {
       return std::span(system.*field)

@@ -207,10 +207,10 @@ TEST(Friction, IncrementsDoNotSubtractPositions) {
   const double shear = bench.memory().shear;
   const RigidDof common{{1e6 / 3.0, 1e6 / 7.0}, 0.0};
   bench.system.trial[0] += common;
-  bench.system.trial_previous[0] = bench.system.trial[0] - common;
+  bench.moved_on[0] = bench.system.trial[0] - common;
   bench.system.trial[1] += common;
   bench.evaluate();
-  // trial - trial_previous rounds at 3e5 m for both blocks: 1e-10 m.
+  // The increment rounds at 3e5 m for both blocks: 1e-10 m.
   EXPECT_NEAR(bench.memory().shear, shear, 1e-10 * tangential);
 }
 

@@ -50,7 +50,7 @@ BlockSystem one_block(BlockKind kind = BlockKind::deformable, bool plane_strain 
 }
 
 BlockForces no_forces(const BlockSystem &system) {
-  return {std::vector<RigidDof>(system.num_owned), std::vector<Mat2>(system.deformation.size())};
+  return {std::vector<Mat2>(system.deformation.size())};
 }
 
 void put(BlockSystem &system, const Mat2 &gradient) {
@@ -144,7 +144,7 @@ TEST(Accelerate, DeformableRows) {
   BlockSystem system = one_block();
   put(system, random_gradient(engine, 0.01));
   BlockForces forces = no_forces(system);
-  forces.rigid[0].u = {3e3, -1e3};
+  system.contact[0].force.u = {3e3, -1e3};
   forces.gradient[0] = 1e4 * random_gradient(engine, 0.5);
   accelerate(system, forces);
   const Deformation &d = system.deformation[0];
@@ -189,10 +189,12 @@ TEST(Predict, KeepsTheUnwrappedAngle) {
 
 TEST(SolveAndUpdate, KeepsABrokenDeformableBlock) {
   const double bad = std::numeric_limits<double>::quiet_NaN();
-  for (const BlockForces &forces :
-       {BlockForces{{{{bad, 0.0}, 0.0}}, {{}}}, BlockForces{{{}}, {{0.0, bad, 0.0, 0.0}}},
-        BlockForces{{{}}, {{-1e13, 0.0, 0.0, 0.0}}}}) { // the last one turns it inside out
+  for (const auto &[force, on_gradient] :
+       {std::pair(bad, Mat2{}), std::pair(0.0, Mat2{0.0, bad, 0.0, 0.0}),
+        std::pair(0.0, Mat2{-1e13, 0.0, 0.0, 0.0})}) { // the last one turns it inside out
     BlockSystem system = one_block();
+    system.contact[0].force.u.x = force;
+    const BlockForces forces{{on_gradient}};
     make_block_matrices(system, usual_scheme(), 1e-3, Elasticity::implicit, 1e9);
     predict(system, usual_scheme(), 1e-3);
     EXPECT_EQ(solve_and_update(system, forces, usual_scheme(), 1e-3, Elasticity::implicit),
@@ -279,13 +281,14 @@ TEST(LocalDamping, ShareOfZeroChangesNoBit) {
   system.velocity[0] = {{1.0, -2.0}, 3.0};
   system.deformation[0].rate = random_gradient(engine, 1.0);
   BlockForces forces = no_forces(system);
-  forces.rigid[0] = {{1.0, 2.0}, 3.0};
+  const RigidDof force{{1.0, 2.0}, 3.0};
+  system.contact[0].force = force;
   forces.gradient[0] = random_gradient(engine, 1.0);
   const BlockForces before = forces;
   apply_local_damping(system, 0, forces, 0.0);
-  EXPECT_EQ(forces.rigid, before.rigid);
+  EXPECT_EQ(system.contact[0].force, force);
   EXPECT_EQ(forces.gradient, before.gradient);
-  EXPECT_EQ(system.ledger[0].damping_force, RigidDof{});
+  EXPECT_EQ(system.contact[0].damping, RigidDof{});
 }
 
 // Every component loses its share if it drives the motion and gains it if it brakes; the loss is on record.
@@ -299,15 +302,15 @@ TEST(LocalDamping, TakesAShareOfEachComponent) {
     d.internal = 1e8 * random_gradient(engine, 1.0);
     system.velocity[0].u = {next(engine), 0.0};
     BlockForces forces = no_forces(system);
-    forces.rigid[0].u = {next(engine), 2.0};
+    const double fx = next(engine);
+    system.contact[0].force.u = {fx, 2.0};
     forces.gradient[0] = 1e8 * random_gradient(engine, 1.0);
     const BlockForces before = forces;
     constexpr double share = 0.7;
     apply_local_damping(system, 0, forces, share);
-    const double fx = before.rigid[0].u.x;
-    EXPECT_DOUBLE_EQ(forces.rigid[0].u.x,
+    EXPECT_DOUBLE_EQ(system.contact[0].force.u.x,
                      fx - share * std::abs(fx) * std::copysign(1.0, system.velocity[0].u.x));
-    EXPECT_EQ(forces.rigid[0].u.y, 2.0) << "nothing moves that way";
+    EXPECT_EQ(system.contact[0].force.u.y, 2.0) << "nothing moves that way";
     const Mat2 back = transposed(rotation_of(d.trial));
     const GradientDof f = force_dof(back * (before.gradient[0] - d.internal));
     const GradientDof taken = force_dof(back * d.damping_force);

@@ -63,7 +63,8 @@ Balance balance_of(const Simulation &simulation) {
   }
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     const double size = std::sqrt(blocks.properties[row].area);
-    balance.unbalanced = std::max(balance.unbalanced, norm(simulation.forces().rigid[row].u) / largest);
+    balance.unbalanced =
+        std::max(balance.unbalanced, norm(simulation.blocks().contact[row].force.u) / largest);
     if (blocks.is_deformable(row)) {
       const Mat2 net =
           simulation.forces().gradient[blocks.deformation_begin[row]] - blocks.deformation_of(row).internal;

@@ -28,7 +28,7 @@ BlockSystem two_blocks() {
   return system;
 }
 
-const BlockForces no_forces{std::vector<RigidDof>(2), {}};
+const BlockForces no_forces;
 
 TEST(SolveAndUpdate, KeepsTheStateOfABlockWhoseForceIsNotFinite) {
   const Scheme scheme = make_scheme(SchemeKind::generalized_alpha, 0.8, ContactTime::leapfrog);
@@ -38,8 +38,9 @@ TEST(SolveAndUpdate, KeepsTheStateOfABlockWhoseForceIsNotFinite) {
          {RigidDof{{bad, 0.0}, 0.0}, RigidDof{{0.0, bad}, 0.0}, RigidDof{{0.0, 0.0}, bad}}) {
       BlockSystem system = two_blocks();
       const RigidDof velocity = system.velocity[1];
-      const BlockForces forces{{{{2600.0, 0.0}, 0.0}, force}, {}};
-      EXPECT_EQ(solve_and_update(system, forces, scheme, 0.1, Elasticity::implicit),
+      system.contact[0].force = {{2600.0, 0.0}, 0.0};
+      system.contact[1].force = force;
+      EXPECT_EQ(solve_and_update(system, no_forces, scheme, 0.1, Elasticity::implicit),
                 std::optional<std::size_t>(1));
       EXPECT_EQ(system.displacement[1], RigidDof{});
       EXPECT_EQ(system.velocity[1], velocity);
@@ -62,10 +63,11 @@ TEST(SolveAndUpdate, DrivenBlockKeepsItsVelocity) {
   BlockSystem system;
   append_block(system, BlockId{0}, block, {"rock", 2000.0, 0.0, 0.0});
   system.num_owned = 1;
-  const BlockForces forces{{{{1e300, -1e300}, 1e300}}, {}};
-  BlockForces damped = forces;
-  apply_local_damping(system, 0, damped, 0.8);
-  EXPECT_EQ(damped.rigid, forces.rigid);
+  const RigidDof force{{1e300, -1e300}, 1e300};
+  system.contact[0].force = force;
+  BlockForces forces;
+  apply_local_damping(system, 0, forces, 0.8);
+  EXPECT_EQ(system.contact[0].force, force);
   accelerate(system, forces);
   EXPECT_EQ(system.acceleration[0], RigidDof{});
   for (const SchemeKind kind : {SchemeKind::generalized_alpha, SchemeKind::newmark_dda,
@@ -114,7 +116,8 @@ TEST(Accelerate, AnchoredPointsStay) {
       pose(system, 0, 1);
       const Scheme scheme = make_scheme(SchemeKind::generalized_alpha, 0.8, ContactTime::leapfrog);
       make_block_matrices(system, scheme, 1e-3, Elasticity::implicit, 1e9);
-      accelerate(system, {{{{0.0, -1000.0}, 0.0}}, std::vector<Mat2>(system.deformation.size())});
+      system.contact[0].force = {{0.0, -1000.0}, 0.0};
+      accelerate(system, {std::vector<Mat2>(system.deformation.size())});
       // m (1/6 + arm^2) alpha = m g arm; a deformable block bends, so only its anchor is sure.
       const Mat2 turning = kind == BlockKind::rigid
                                ? Mat2{0.0, -system.acceleration[0].r, system.acceleration[0].r, 0.0}
@@ -133,11 +136,12 @@ TEST(Accelerate, AnchoredPointsStay) {
 TEST(LocalDamping, OfARigidBlock) {
   BlockSystem system = two_blocks();
   system.velocity[0] = {{-1.0, 1.0}, 0.0};
-  BlockForces forces{{{{4.0, -8.0}, 2.0}, {}}, {}};
+  system.contact[0].force = {{4.0, -8.0}, 2.0};
+  BlockForces forces;
   apply_local_damping(system, 0, forces, 0.5);
-  EXPECT_EQ(forces.rigid[0], (RigidDof{{6.0, -12.0}, 2.0}));
-  EXPECT_EQ(system.ledger[0].damping_force, (RigidDof{{2.0, -4.0}, 0.0}));
-  EXPECT_EQ(forces.rigid[1], RigidDof{});
+  EXPECT_EQ(system.contact[0].force, (RigidDof{{6.0, -12.0}, 2.0}));
+  EXPECT_EQ(system.contact[0].damping, (RigidDof{{2.0, -4.0}, 0.0}));
+  EXPECT_EQ(system.contact[1].force, RigidDof{});
 }
 
 // No vertex moves farther in a step than the bound says, free flight with spin included.

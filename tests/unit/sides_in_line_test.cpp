@@ -71,7 +71,7 @@ void move_together(std::mt19937 &engine, std::initializer_list<ContactBench *> b
       const Mat2 rate{random(0.1), random(0.1), random(0.1), random(0.1)};
       for (ContactBench *bench : benches) {
         bench->system.trial[of] = trial;
-        bench->system.trial_previous[of] = trial - step;
+        bench->moved_on[of] = trial - step;
         bench->system.velocity[of] = velocity;
         if (bench->system.is_deformable(of)) {
           Deformation &d = bench->system.deformation_of(of);

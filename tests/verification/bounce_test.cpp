@@ -17,7 +17,7 @@ constexpr double speed = 1.0; ///< m/s
 Vec2 trial_velocity(const Simulation &simulation, int block) {
   const BlockSystem &blocks = simulation.blocks();
   const std::size_t row = row_of(simulation, block);
-  return (1.0 / simulation.plan().time_step) * (blocks.trial[row] - blocks.trial_previous[row]).u;
+  return (1.0 / simulation.plan().time_step) * blocks.motion[row].step;
 }
 
 bool touching(const Simulation &simulation) {

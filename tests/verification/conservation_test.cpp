@@ -72,9 +72,9 @@ Momentum momentum(const Simulation &simulation) {
     const BlockProperties &p = blocks.properties[row];
     sum.linear += p.mass * blocks.velocity[row].u;
     sum.linear_scale += p.mass * norm(blocks.velocity[row].u);
-    const RigidDof rate =
-        (1.0 / simulation.plan().time_step) * (blocks.trial[row] - blocks.trial_previous[row]);
-    const Vec2 arm = p.centroid + blocks.trial_previous[row].u;
+    const RigidDof increment = blocks.motion[row].increment();
+    const RigidDof rate = (1.0 / simulation.plan().time_step) * increment;
+    const Vec2 arm = p.centroid + (blocks.trial[row] - increment).u;
     sum.angular += p.mass * cross(arm, rate.u) + p.inertia * rate.r;
     sum.angular_scale += p.mass * norm(arm) * norm(rate.u) + p.inertia * std::abs(rate.r);
   }

@@ -42,8 +42,9 @@ BlockSystem slab(BlockKind kind, double modulus, const std::vector<Vec2> &fixed_
   return system;
 }
 
-BlockForces no_forces(const BlockSystem &system) {
-  return {std::vector<RigidDof>(1), std::vector<Mat2>(system.deformation.size())};
+BlockForces no_forces(BlockSystem &system) {
+  system.contact[0].force = {};
+  return {std::vector<Mat2>(system.deformation.size())};
 }
 
 void put(BlockSystem &system, const Mat2 &gradient, const Mat2 &rate) {
@@ -255,9 +256,9 @@ BlockSystem pushed(BlockKind kind, double modulus, const Mat2 &turn = Mat2::iden
   } else {
     run.system.velocity[0].r = 0.5;
   }
-  const auto forces = [&](const BlockSystem &system) {
+  const auto forces = [&](BlockSystem &system) {
     BlockForces f = no_forces(system);
-    f.rigid[0] = {force, cross(Rotation::of(system.trial[0].r)(corner), force)};
+    system.contact[0].force = {force, cross(Rotation::of(system.trial[0].r)(corner), force)};
     if (kind == BlockKind::deformable) {
       f.gradient[0] = outer(force, corner);
     }
@@ -301,9 +302,9 @@ TEST(Objectivity, ATurnedStartGivesATurnedResult) {
   }
 }
 
-BlockForces weight(const BlockSystem &system) {
+BlockForces weight(BlockSystem &system) {
   BlockForces f = no_forces(system);
-  f.rigid[0].u = {0.0, -system.properties[0].mass * gravity};
+  system.contact[0].force.u = {0.0, -system.properties[0].mass * gravity};
   return f;
 }
 
@@ -330,7 +331,7 @@ Swing swing(BlockKind kind, double time_step, const Scheme &scheme = usual_schem
   const double angle = 0.5 * pi + start;
   const Vec2 point = run.system.anchor[0].point;
   const RigidDof at{point - turn_by(angle)(point), angle};
-  run.system.displacement[0] = run.system.trial[0] = run.system.trial_previous[0] = at;
+  run.system.displacement[0] = run.system.trial[0] = at;
   if (kind == BlockKind::deformable) {
     put(run.system, turn_by(angle), {});
   }
@@ -347,12 +348,7 @@ Swing swing(BlockKind kind, double time_step, const Scheme &scheme = usual_schem
   for (int k = 0; k < static_cast<int>(20.6 * exact / time_step); ++k) {
     predict(run.system, scheme, time_step);
     // The other half of what solve_and_update notes.
-    result.work +=
-        0.5 * work(run.system.applied[0].anchor, run.system.trial[0] - run.system.trial_previous[0]);
-    if (kind == BlockKind::deformable) {
-      const Deformation &d = run.system.deformation[0];
-      result.work += 0.5 * contract(d.anchor_force, d.trial - d.trial_previous);
-    }
+    result.work += anchor_half_work(run.system, 0);
     if (solve_and_update(run.system, weight(run.system), scheme, time_step, Elasticity::implicit)) {
       ADD_FAILURE() << "broken in step " << k;
       return result;
@@ -371,7 +367,7 @@ Swing swing(BlockKind kind, double time_step, const Scheme &scheme = usual_schem
     }
   }
   result.period = (last - first) / (crossings - 1) / exact - 1.0;
-  result.work += run.system.ledger[0].load_work;
+  result.work += run.system.ledger[0].load;
   result.work /= p.mass * gravity * arm * (1.0 - std::cos(start));
   return result;
 }

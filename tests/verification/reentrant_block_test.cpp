@@ -219,8 +219,9 @@ Momentum momentum(const Simulation &simulation) {
     const BlockProperties &p = blocks.properties[row];
     sum.linear += p.mass * blocks.velocity[row].u;
     sum.linear_scale += p.mass * norm(blocks.velocity[row].u);
-    const RigidDof v = rate * (blocks.trial[row] - blocks.trial_previous[row]);
-    const Vec2 arm = p.centroid + blocks.trial_previous[row].u;
+    const RigidDof increment = blocks.motion[row].increment();
+    const RigidDof v = rate * increment;
+    const Vec2 arm = p.centroid + (blocks.trial[row] - increment).u;
     double spin = p.inertia * v.r;
     if (blocks.is_deformable(row)) {
       const Deformation &d = blocks.deformation_of(row);

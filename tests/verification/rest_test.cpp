@@ -82,7 +82,7 @@ TEST(Rest, SymmetricWedgeOnAPlane) {
             head({.gravity = {}, .normal_stiffness = k_n}) +
             block_toml("floor", rectangle({-9.0, -4.0}, {9.0, 0.0}), "fixed = true") +
             block_toml("wedge", {{0.0, -depth}, {half_width, 1.0 - depth}, {-half_width, 1.0 - depth}})));
-    const RigidDof force = simulation.forces().rigid[row_of(simulation, 1)];
+    const RigidDof force = simulation.blocks().contact[row_of(simulation, 1)].force;
     expect_value(fmt::format("B2 wedge of half-angle {} degrees, 1 mm deep: force, N/m", half_angle),
                  0.5 * k_n * depth * depth * half_width * (1.0 + std::sin(half_angle * degree)), force.u.y,
                  1e-12);

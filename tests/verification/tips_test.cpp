@@ -65,7 +65,7 @@ Outcome collide(const std::string &toml) {
   double jump = 0.0;
   while (!simulation.finished()) {
     step(simulation);
-    const Vec2 force = simulation.forces().rigid[0].u;
+    const Vec2 force = simulation.blocks().contact[0].force.u;
     jump = std::max(jump, norm(force - last));
     last = force;
     out.max_force = std::max(out.max_force, norm(force));

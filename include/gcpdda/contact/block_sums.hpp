@@ -33,7 +33,9 @@ bool counts_here(const BlockSystem &system, BlockIndex lower);
 
 class BlockSums {
 public:
-  void start(const BlockSystem &system, const Candidates &candidates);
+  /// Onto BlockSystem::contact of owned rows, which are cleared before their first contact.
+  void start(BlockSystem &system, const Candidates &candidates);
+  static void clear(BlockSystem &system, std::size_t first, std::size_t last);
   /// The same regions are added once more, because they have changed: kept ones stay where they are.
   void start_again(const BlockSystem &system);
 
@@ -92,14 +94,14 @@ private:
   /// To the lower (k = 0) or the higher block of a pair, if it deforms.
   void add_dyads(const BlockSystem &system, const CandidatePair &pair, std::size_t k,
                  const RegionDyads &dyads, const RegionSums &region);
-  void clear_sums(const BlockSystem &system);
+  void clear_gradients(const BlockSystem &system);
   /// Of a pair that waits: mostly one that follows the last one asked for.
   RegionRange &range_of(std::uint32_t pair);
 
   bool has_dyads_ = false;
   bool is_again_ = false;
   std::span<const std::uint8_t> is_added_; ///< Candidates::is_added
-  std::vector<BlockContactSum> sums_;
+  std::span<BlockContactSum> sums_;        ///< BlockSystem::contact
   std::vector<BlockGradientSum> gradients_;
   ContactCount count_;                   ///< of pairs that are not kept
   double largest_squared_ = 0.0;         ///< of them

@@ -113,8 +113,9 @@ public:
     evaluate_interior(system, candidates, history);
     return evaluate_border(system, candidates, history);
   }
-  /// How rows [first, last) move, from their trial configurations and velocities: of all owned rows before
-  /// what follows, or once their trial configurations are known there.
+  /// How rows [first, last) move, from the increments of their trial configurations and velocities, and owned
+  /// rows have no contacts yet: of all owned rows before what follows, or once their trial configurations are
+  /// known there.
   void find_motions(BlockSystem &system, std::size_t first, std::size_t last);
   /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
   void evaluate_interior(BlockSystem &system, const Candidates &candidates, ContactHistory &history,

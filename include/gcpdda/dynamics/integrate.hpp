@@ -14,9 +14,8 @@
 
 namespace gcpdda {
 
-/// Contact forces and loads of owned blocks at the trial configuration, weight included.
+/// Besides BlockContactSum::force, what acts on owned blocks at the trial configuration.
 struct BlockForces {
-  std::vector<RigidDof> rigid; ///< (num_owned); r is not used for deformable rows
   /// int t X^T of deformable rows (N), by entry of BlockSystem::deformation; entries of other rows unused.
   std::vector<Mat2> gradient;
   Vec2 wave{};                    ///< velocity of the wave that comes in through viscous sides, m/s
@@ -54,7 +53,7 @@ struct RowSpan {
 TrialConfiguration next_trial(const BlockSystem &system, const Scheme &scheme, double time_step,
                               std::size_t row);
 
-/// It is set in rows [first, last), and the one before becomes trial_previous. Vertices are posed.
+/// It is set in rows [first, last), which are posed, with the increment from the one before.
 ///
 /// @param then  is told of some rows as soon as they are posed and still in the cache
 void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpan rows,
@@ -129,21 +128,34 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
 
-/// What acts on free rows: those without point loads, fixed points, viscous sides, bolts and water, which
-/// heed forces.
+/// What acts on free rows: those without an entry of BlockSystem::applied, where there are no bolts.
 struct FreeRows {
-  std::span<const BlockContactSum> contacts; ///< by row
-  std::span<RigidDof> forces;                ///< out, by row: in all
-  Vec2 gravity;
-  Vec2 shaking; ///< acceleration of the ground
-  /// AppliedForces of all free rows are what gravity and shaking make of them now: they need not be read.
-  bool are_applied = false;
+  BodyForces body; ///< now
   double local_damping = 0.0;
   double calm = std::numeric_limits<double>::infinity(); ///< most_motion() that needs no closer look, m
   // Of deformable rows, by entry of BlockSystem::deformation.
   std::span<const BlockGradientSum> gradients{}; ///< about their trial centroids
   std::span<Mat2> gradient_forces{};             ///< out: on F
 };
+
+/// Half the work of the forces of a block's last evaluation, over the last increment of its trial
+/// configuration (J/m): what the trapezoid takes from one end. Of fixed points and viscous sides none.
+struct HalfWorks {
+  double shear = 0.0;
+  double damping = 0.0;
+  double load = 0.0;
+  double gravity = 0.0;
+};
+HalfWorks half_works(const BlockSystem &system, std::size_t row, const AppliedForces &applied);
+void add_to_ledger(BlockSystem &system, std::size_t row, const HalfWorks &half);
+
+/// The same for fixed points and viscous sides, whose force is known only after the step it acts in.
+double anchor_half_work(const BlockSystem &system, std::size_t row);
+
+/// What the forces of the last evaluation do over the increment behind it, onto the works of owned rows
+/// [first, last), which have been predicted since.
+void add_half_works(BlockSystem &system, std::size_t first, std::size_t last,
+                    Instructions instructions = Instructions::widest);
 
 /// Gathers the forces on free deformable rows from `first` on, several at a time, as far as they come one
 /// behind the other, with local damping and the works of the ledger, to the bits that one after the other
@@ -154,8 +166,8 @@ std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, s
                                     std::size_t last, Instructions instructions = Instructions::widest);
 
 /// Advances free rigid rows from `first` on, several at a time, as far as they come one behind the other: the
-/// forces of their contacts and loads, local damping, the works of the ledger by the trapezoid over
-/// increments of the trial configuration, and the step, to the bits that one after the other would have.
+/// forces on them, local damping, the half of the works of the ledger that goes with these forces, and the
+/// step, to the bits that one after the other would have.
 ///
 /// @param broken  the first row whose new state is not finite, which keeps its old one, if it comes before
 ///                what stands here
@@ -168,12 +180,12 @@ std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const S
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its
 /// size against the velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force
-/// and that of anchors of the last step count in f. What is taken is added to the ledger's damping forces.
+/// and that of anchors of the last step count in f. What is taken is added to the damping forces.
 /// Driven blocks are left alone.
 void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double share);
 
-/// Mass-proportional damping of one owned row, f - alpha M v_n; what is taken is added to the ledger's
-/// damping forces. Driven blocks are left alone.
+/// Mass-proportional damping of one owned row, f - alpha M v_n; what is taken is added to the damping forces.
+/// Driven blocks are left alone.
 /// @param mass_damping  alpha, 1/s
 void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double mass_damping);
 

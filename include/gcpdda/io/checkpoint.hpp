@@ -39,6 +39,10 @@ struct RunFacts {
   double max_overlap = 0.0;
   double max_overlap_share = 0.0;
   double fastest_turn = 0.0;
+  double gravity_x = 0.0; ///< and what follows: BlockSystem::body, m/s2
+  double gravity_y = 0.0;
+  double shaking_x = 0.0;
+  double shaking_y = 0.0;
   std::vector<double> ledger; ///< of the energies, what stages changed at once (simulation/energy_ledger.hpp)
   std::int64_t more_mobile = 0;           ///< mobile blocks now, beyond those of the scene; not written
   std::vector<std::int64_t> stage_counts; ///< where the run stands in its stages (simulation/stages.hpp)

@@ -4,6 +4,7 @@
 #include "gcpdda/geometry/aabb.hpp"
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/model/row_offsets.hpp"
 #include "gcpdda/model/scene.hpp"
 
 #include <array>
@@ -125,9 +126,11 @@ struct BlockMatrix {
   std::array<double, 6> by_torque{}; ///< the solution under a unit torque, of a deformable block
 };
 
-/// What the contacts of one block add up to.
+/// What the contacts of one block add up to, about the trial centroid. Once the forces of a step are
+/// gathered, `force` is that of all that acts but the block's own springs, weight included, and `damping` has
+/// local and mass damping in it.
 struct BlockContactSum {
-  RigidDof force;   ///< about the trial centroid
+  RigidDof force;
   RigidDof shear;   ///< elastic friction in it
   RigidDof damping; ///< dashpots in it
 };
@@ -140,19 +143,23 @@ struct BlockGradientSum {
   Mat2 damping;
 };
 
-/// What the energy ledger carries for one block: forces of the last evaluation and their work so far, and
-/// that of AppliedForces, over increments of the trial configuration.
+/// What the energy ledger carries for one block: works so far of forces in BlockContactSum and of
+/// AppliedForces over increments of the trial configuration (J/m), by the trapezoid; what the last forces do
+/// over the increment that comes next is not yet in them.
 struct BlockLedger {
-  RigidDof shear_force;   ///< elastic part of friction
-  RigidDof damping_force; ///< dashpots and local damping
-  double shear_work = 0.0;
-  double damping_work = 0.0;
-  double load_work = 0.0;
-  double gravity_work = 0.0;
+  double shear = 0.0;
+  double damping = 0.0;
+  double load = 0.0;
+  double gravity = 0.0;
 };
 
-/// What acted on a block besides its contacts in the last evaluation. Apart from the ledger: that of most
-/// blocks is the same in every step.
+/// Accelerations that act on every block alike, m/s2.
+struct BodyForces {
+  Vec2 gravity;
+  Vec2 shaking; ///< of the ground
+};
+
+/// What acted on a block besides its contacts in the last evaluation.
 struct AppliedForces {
   RigidDof load; ///< point loads, water, shaking; of a driven block what drives it
   Vec2 gravity;
@@ -178,14 +185,17 @@ struct TrialIncrement {
 struct alignas(64) BlockMotion {
   Vec2 centroid; ///< of the trial configuration
   Vec2 velocity;
-  Vec2 step; ///< TrialIncrement::u
+  Vec2 step;            ///< of the centroid between the last two trial configurations
+  double rotated = 0.0; ///< between them, rad
+  double spin = 0.0;    ///< rad/s
   /// TrialIncrement::turn of a deformable block. Of a rigid one its first row, from which the second one
   /// follows, and cosine and sine of the trial configuration's rotation, from which its outline does.
   std::array<Vec2, 2> turn;
-  double spin = 0.0; ///< rad/s
-  double unused = 0.0;
   Aabb box; ///< of the trial configuration
 
+  /// x*_n - x*_{n-1}.
+  [[nodiscard]] RigidDof increment() const { return {step, rotated}; }
+  void set_increment(const RigidDof &increment) { step = increment.u, rotated = increment.r; }
   /// Of a rigid block.
   [[nodiscard]] Rotation rotation() const { return {turn[1].x, turn[1].y}; }
 };
@@ -205,6 +215,7 @@ struct BlockSystem {
   std::size_t num_owned = 0;
   std::size_t num_ghosts = 0;
   std::size_t num_fixed = 0;
+  BodyForces body; ///< of the last evaluation
 
   // State, one entry a row. What stands here migrates, makes a ghost, and is all that a restart needs.
   std::vector<BlockProperties> properties;
@@ -212,10 +223,9 @@ struct BlockSystem {
   std::vector<RigidDof> velocity;       ///< v_n
   std::vector<RigidDof> acceleration;   ///< a_n
   std::vector<RigidDof> trial;          ///< x*_n - x_0, where the contact forces are taken
-  std::vector<RigidDof> trial_previous; ///< x*_{n-1} - x_0
   std::vector<RigidDof> refreshed;      ///< x - x_0 at the last refresh of the neighbourhood
+  std::vector<BlockContactSum> contact; ///< of the last evaluation, of owned rows
   std::vector<BlockLedger> ledger;
-  std::vector<AppliedForces> applied;
 
   // Shape in the block's own axes, flat; row i owns [vertex_begin[i], vertex_begin[i + 1]). Edge k runs from
   // vertex k to the next one; its outward unit normal is stored, never recomputed from cut edges.
@@ -227,23 +237,25 @@ struct BlockSystem {
   std::vector<std::int32_t> edge_joint;
 
   // What only some blocks have, flat in the same way: row i owns [begin[i], begin[i + 1]).
-  std::vector<std::uint32_t> deformation_begin{0}; ///< one entry for a deformable block, none for others
+  RowOffsets deformation_begin; ///< one entry for a deformable block, none for others
   std::vector<Deformation> deformation;
-  std::vector<std::uint32_t> matrix_begin{
-      0}; ///< one entry for deformable blocks and those with anchors or dashpots
+  RowOffsets matrix_begin; ///< one entry for deformable blocks and those with anchors or dashpots
   std::vector<BlockMatrix> matrix;
-  std::vector<std::uint32_t> load_begin{0};
+  RowOffsets load_begin;
   std::vector<MaterialLoad> load;
-  std::vector<std::uint32_t> anchor_begin{0};
+  RowOffsets anchor_begin;
   std::vector<Anchor> anchor;
-  std::vector<std::uint32_t> dashpot_begin{0}; ///< one entry for blocks on viscous sides
+  RowOffsets dashpot_begin; ///< one entry for blocks on viscous sides
   std::vector<Dashpot> dashpot;
-  std::vector<std::uint32_t> mark_begin{0}; ///< one entry for mobile blocks of a scene with stages
+  /// One entry for blocks on which more acts than contacts and BodyForces, or that are driven.
+  RowOffsets applied_begin;
+  std::vector<AppliedForces> applied;
+  RowOffsets mark_begin; ///< one entry for mobile blocks of a scene with stages
   std::vector<BlockMark> mark;
 
   // Derived from the trial configuration, see pose(). Outlines of rigid blocks stand nowhere: to turn them
   // takes no longer than to read them (TrialOutline).
-  std::vector<BlockMotion> motion; ///< pose() finds centroid, box and rotation of it
+  std::vector<BlockMotion> motion; ///< pose() finds centroid, box and rotation of it, predict() the increment
   std::vector<Mat2> trial_inverse; ///< F*^-1, by entry of `deformation`
   // Empty where no block deforms.
   std::vector<Vec2> vertex;
@@ -279,6 +291,19 @@ struct BlockSystem {
     return {anchor.data() + anchor_begin[row], anchor_begin[row + 1] - anchor_begin[row]};
   }
 
+  /// Null where there is none.
+  [[nodiscard]] const AppliedForces *applied_to(std::size_t row) const {
+    return applied_begin[row] == applied_begin[row + 1] ? nullptr : &applied[applied_begin[row]];
+  }
+  [[nodiscard]] AppliedForces *applied_to(std::size_t row) {
+    return applied_begin[row] == applied_begin[row + 1] ? nullptr : &applied[applied_begin[row]];
+  }
+  /// AppliedForces::anchor.
+  [[nodiscard]] RigidDof anchor_force(std::size_t row) const {
+    const AppliedForces *own = applied_to(row);
+    return own == nullptr ? RigidDof{} : own->anchor;
+  }
+
   /// The row's dashpot where it acts; null where there is none.
   [[nodiscard]] const Dashpot *dashpot_of(std::size_t row) const {
     const std::uint32_t at = dashpot_begin[row];
@@ -308,8 +333,8 @@ struct BlockSystem {
   /// Every field with one entry a row: the one list that packing, migration and reordering share.
   static constexpr auto row_fields() {
     return std::make_tuple(&BlockSystem::properties, &BlockSystem::displacement, &BlockSystem::velocity,
-                           &BlockSystem::acceleration, &BlockSystem::trial, &BlockSystem::trial_previous,
-                           &BlockSystem::refreshed, &BlockSystem::ledger, &BlockSystem::applied);
+                           &BlockSystem::acceleration, &BlockSystem::trial, &BlockSystem::refreshed,
+                           &BlockSystem::contact, &BlockSystem::ledger);
   }
   /// Every field with any number of entries a row that cannot be derived: the offsets, then the fields that
   /// share them.
@@ -321,6 +346,7 @@ struct BlockSystem {
                            std::make_tuple(&BlockSystem::load_begin, &BlockSystem::load),
                            std::make_tuple(&BlockSystem::anchor_begin, &BlockSystem::anchor),
                            std::make_tuple(&BlockSystem::dashpot_begin, &BlockSystem::dashpot),
+                           std::make_tuple(&BlockSystem::applied_begin, &BlockSystem::applied),
                            std::make_tuple(&BlockSystem::mark_begin, &BlockSystem::mark));
   }
 };
@@ -349,6 +375,19 @@ void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, st
 
 /// Marks of owned rows, all of which get one.
 std::span<BlockMark> mark_rows(BlockSystem &system);
+
+/// What weight and shaking do to a block that nothing else acts on but contacts.
+inline AppliedForces applied_by(const BodyForces &body, const BlockProperties &block) {
+  return {{Vec2{} - block.mass * body.shaking, 0.0}, block.heavy_mass() * body.gravity, {}};
+}
+/// What was applied to a row in the last evaluation.
+inline AppliedForces applied_forces(const BlockSystem &system, std::size_t row) {
+  const AppliedForces *own = system.applied_to(row);
+  return own != nullptr ? *own : applied_by(system.body, system.properties[row]);
+}
+/// Rows that need an entry of BlockSystem::applied get one, others lose theirs.
+/// @param all  more acts on all blocks
+void list_applied(BlockSystem &system, bool all);
 
 /// Drop all rows from `count` on. The ranges' counts are the caller's.
 void keep_rows(BlockSystem &system, std::size_t count);

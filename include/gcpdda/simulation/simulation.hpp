@@ -193,15 +193,20 @@ public:
   /// return the state is as before, and what contacts say as well.
   template <class Look> void look_ahead(Look &&look) {
     const std::vector<RigidDof> trial = blocks_.trial;
-    const std::vector<RigidDof> previous = blocks_.trial_previous;
     const std::vector<Deformation> deformation = blocks_.deformation;
+    std::vector<RigidDof> increments;
+    for (const BlockMotion &motion : blocks_.motion) {
+      increments.push_back(motion.increment());
+    }
     send_trials();
     predict_rows(0, blocks_.num_owned, false);
     finish_ghosts();
     look(blocks_);
     blocks_.trial = trial;
-    blocks_.trial_previous = previous;
     blocks_.deformation = deformation;
+    for (std::size_t row = 0; row < increments.size(); ++row) {
+      blocks_.motion[row].set_increment(increments[row]);
+    }
     pose_in_lanes(blocks_, 0, blocks_.num_mobile());
   }
 
@@ -288,18 +293,11 @@ private:
   void take(const ForceReport &report);
   void sum_contacts_of_blocks();
   void move_blocks();
-  /// On every block alike, m/s2.
-  struct BodyForces {
-    Vec2 gravity;
-    Vec2 shaking; ///< acceleration of the ground
-
-    friend bool operator==(const BodyForces &, const BodyForces &) = default;
-  };
   /// May there be any?
   [[nodiscard]] bool has_free_rows() const;
   [[nodiscard]] FreeRows free_rows(const BodyForces &body);
   void gather_forces(std::size_t first, std::size_t last, const BodyForces &body);
-  void gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
+  AppliedForces gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);
   void report();
   /// Two blocks that close by half their width in a step skip the force that parts them, m.
@@ -325,8 +323,6 @@ private:
   Bolts bolts_;
   BlockForces forces_;   ///< at the last evaluation
   TrialOutline outline_; ///< of a block in water
-  /// What free blocks' AppliedForces follow from, if nothing has touched them or their masses since.
-  std::optional<BodyForces> standing_;
   /// How far a step has come with the owned rows.
   struct Moving {
     BodyForces body;
@@ -336,7 +332,12 @@ private:
     std::vector<RowSpan> waiting; ///< ... these
   };
   Moving moving_;
-  std::vector<std::pair<std::size_t, RigidDof>> prescribed_rows_; ///< trial displacements in the step at hand
+  struct PrescribedRow {
+    std::size_t row;
+    RigidDof trial; ///< in the step at hand
+    RigidDof increment;
+  };
+  std::vector<PrescribedRow> prescribed_rows_;
   std::vector<RowSpan> restless_; ///< owned rows whose motion in the last step has to be looked at
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
