@@ -33,25 +33,70 @@ std::string topology_name(int index) {
   return fmt::format("topology_{:06}.h5", index);
 }
 
-// XDMF wants its own mixture: for each cell 3 (a polygon), the number of its vertices, their numbers.
-void write_xdmf_cells(CollectiveFile &file, RowRange cells, RowRange points,
-                      const std::vector<std::int32_t> &sizes) {
-  std::vector<std::int64_t> mixed;
-  std::int64_t vertex = points.first;
-  for (const std::int32_t size : sizes) {
-    mixed.push_back(3);
-    mixed.push_back(size);
-    for (std::int32_t i = 0; i < size; ++i) {
-      mixed.push_back(vertex++);
-    }
+/// A dataset, and the buffer that its pieces are made in.
+template <class T> struct Column {
+  CollectiveFile::Table table;
+  std::vector<T> values;
+
+  /// Where the values of this many rows go.
+  T *make_room(std::size_t num_rows) {
+    values.resize(table.columns * num_rows);
+    return values.data();
   }
-  file.dataset(
-      xdmf_cells,
-      {points.first + 2 * cells.first, points.count + 2 * cells.count, points.total + 2 * cells.total},
-      mixed);
+};
+template <class T> void write_column(CollectiveFile &file, const Column<T> &column, std::int64_t first) {
+  file.write(column.table, first, std::span<const T>(column.values));
 }
 
-/// Datasets of a frame, and the buffers that their pieces are made in.
+/// Datasets of a topology.
+class TopologyTables {
+public:
+  TopologyTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points)
+      : file_(file), cells_(file, num_cells, num_points, vtk::CellType::polygon),
+        block_{file.table<std::int64_t>(vtk::cell_data("block"), num_cells), {}},
+        material_{file.table<std::int32_t>(vtk::cell_data("material"), num_cells), {}},
+        xdmf_cells_{file.table<std::int64_t>(xdmf_cells, num_points + 2 * num_cells), {}} {}
+
+  /// Collective.
+  void write(std::int64_t first_cell, std::int64_t first_point,
+             const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t num_points) {
+    fill(rows, first_point, static_cast<std::size_t>(num_points));
+    cells_.write(first_cell, first_point, sizes_);
+    write_column(file_, block_, first_cell);
+    write_column(file_, material_, first_cell);
+    write_column(file_, xdmf_cells_, first_point + 2 * first_cell);
+  }
+
+private:
+  void fill(const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t first_point,
+            std::size_t num_points) {
+    sizes_.clear();
+    std::int64_t *block = block_.make_room(rows.size());
+    std::int32_t *material = material_.make_room(rows.size());
+    std::int64_t *mixed = xdmf_cells_.make_room(num_points + 2 * rows.size());
+    std::int64_t vertex = first_point;
+    for (const auto &[row, first] : rows) {
+      sizes_.push_back(row->num_vertices);
+      *block++ = row->block;
+      *material++ = row->material;
+      // XDMF wants its own mixture: for each cell 3 (a polygon), the number of its vertices, their numbers.
+      *mixed++ = 3;
+      *mixed++ = row->num_vertices;
+      std::iota(mixed, mixed + row->num_vertices, vertex);
+      mixed += row->num_vertices;
+      vertex += row->num_vertices;
+    }
+  }
+
+  CollectiveFile &file_;
+  vtk::CellTables cells_;
+  Column<std::int64_t> block_;
+  Column<std::int32_t> material_;
+  Column<std::int64_t> xdmf_cells_;
+  std::vector<std::int32_t> sizes_; ///< vertices of each cell
+};
+
+/// Datasets of a frame.
 class FrameTables {
 public:
   FrameTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points)
@@ -67,28 +112,14 @@ public:
   void write(std::int64_t first_cell, std::int64_t first_point,
              const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t num_points) {
     fill(rows, static_cast<std::size_t>(num_points));
-    write(points_, first_point);
-    write(kind_, first_cell);
+    write_column(file_, points_, first_point);
+    write_column(file_, kind_, first_cell);
     for (const Column<double> *column : {&rotation_, &displacement_, &velocity_, &stress_, &contact_force_}) {
-      write(*column, first_cell);
+      write_column(file_, *column, first_cell);
     }
   }
 
 private:
-  template <class T> struct Column {
-    CollectiveFile::Table table;
-    std::vector<T> values;
-
-    /// Where the values of this many rows go.
-    T *make_room(std::size_t num_rows) {
-      values.resize(table.columns * num_rows);
-      return values.data();
-    }
-  };
-  template <class T> void write(const Column<T> &column, std::int64_t first) {
-    file_.write(column.table, first, std::span<const T>(column.values));
-  }
-
   static double *put(double *place, const std::array<double, 3> &triple) {
     return std::copy(triple.begin(), triple.end(), place);
   }
@@ -217,18 +248,8 @@ FrameWriter::FrameWriter(const Communicator &communicator, std::filesystem::path
 
 FrameWriter::~FrameWriter() = default;
 
-/// What a topology holds of this rank's slab.
-struct FrameWriter::Cells {
-  std::vector<std::int64_t> block;
-  std::vector<std::int32_t> material;
-  std::vector<std::int32_t> num_vertices;
-  RowRange cells;
-  RowRange points;
-};
-
 // The same for all frames until blocks go: whoever owns them then, a strip has its place in the file.
-FrameWriter::Cells FrameWriter::survey(const FrameSource &source) {
-  Cells slab;
+FrameWriter::Topology FrameWriter::survey(int index, const FrameSource &source) {
   FrameStrips strips(communicator_, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
   places_.clear();
   Place place;
@@ -237,21 +258,16 @@ FrameWriter::Cells FrameWriter::survey(const FrameSource &source) {
     place = {place.first_cell + place.num_cells, std::ssize(strips.rows()),
              place.first_point + place.num_points, strips.num_vertices()};
     places_.push_back(place);
-    for (const auto &[row, vertex] : strips.rows()) {
-      slab.block.push_back(row->block);
-      slab.material.push_back(row->material);
-      slab.num_vertices.push_back(row->num_vertices);
-    }
   }
-  slab.cells = rows_in_rank_order(communicator_, place.first_cell + place.num_cells);
-  slab.points = rows_in_rank_order(communicator_, place.first_point + place.num_points);
+  const RowRange cells = rows_in_rank_order(communicator_, place.first_cell + place.num_cells);
+  const RowRange points = rows_in_rank_order(communicator_, place.first_point + place.num_points);
   for (Place &strip : places_) {
-    strip.first_cell += slab.cells.first;
-    strip.first_point += slab.points.first;
+    strip.first_cell += cells.first;
+    strip.first_point += points.first;
   }
   expect_on_all_ranks(communicator_, strips.are_sound(),
                       "each block on exactly one rank's frame data, with its vertices");
-  return slab;
+  return {index, cells.total, points.total};
 }
 
 void FrameWriter::write(int index, double time, const FrameSource &source) {
@@ -262,12 +278,12 @@ void FrameWriter::write(int index, double time, const FrameSource &source) {
   if (topologies_.empty() || topologies_.back().num_cells != num_cells) {
     expect(topologies_.empty() ? num_cells == num_blocks_ : num_cells < topologies_.back().num_cells,
            "all blocks in the first frame, none that come later");
-    const Cells slab = survey(source);
-    expect(slab.cells.total == num_cells, "as many rows as the source says");
-    write_topology(index, slab);
+    const Topology topology = survey(index, source);
+    expect(topology.num_cells == num_cells, "as many rows as the source says");
+    write_topology(topology, source);
   } else if (places_.empty()) {
-    const Cells slab = survey(source);
-    expect(slab.points.total == topologies_.back().num_points, "as many vertices as in the topology");
+    expect(survey(index, source).num_points == topologies_.back().num_points,
+           "as many vertices as in the topology");
   }
   const std::string topology = topology_name(topologies_.back().first_frame);
 
@@ -280,7 +296,7 @@ void FrameWriter::write(int index, double time, const FrameSource &source) {
   for (const char *name : constant_cell_data) {
     file.link(vtk::cell_data(name), topology);
   }
-  expect_on_all_ranks(communicator_, write_strips(file, source), "each block once, with the vertices it had");
+  write_strips<FrameTables>(file, topologies_.back(), source);
   publish_behind(file, path);
   frames_.emplace_back(index, time);
   write_indices_behind();
@@ -294,10 +310,11 @@ void FrameWriter::publish_behind(CollectiveFile &file, const std::filesystem::pa
   }
 }
 
-// False on a rank whose rows are not what they should be; it writes none of them.
-bool FrameWriter::write_strips(CollectiveFile &file, const FrameSource &source) const {
-  bool as_expected = true;
-  FrameTables tables(file, topologies_.back().num_cells, topologies_.back().num_points);
+template <class Tables>
+void FrameWriter::write_strips(CollectiveFile &file, const Topology &topology,
+                               const FrameSource &source) const {
+  bool as_expected = true; // a rank whose rows are not what they should be writes none of them
+  Tables tables(file, topology.num_cells, topology.num_points);
   FrameStrips strips(communicator_, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
   for (int number = 0; number < strips.size(); ++number) {
     strips.bring(number);
@@ -311,22 +328,18 @@ bool FrameWriter::write_strips(CollectiveFile &file, const FrameSource &source) 
     }
     file.start_to_sync();
   }
-  return as_expected;
+  expect_on_all_ranks(communicator_, as_expected, "each block once, with the vertices it had");
 }
 
-void FrameWriter::write_topology(int index, const Cells &slab) {
-  const auto &[blocks, materials, sizes, cells, points] = slab;
-  CollectiveFile file(communicator_, directory_ / "frames" / topology_name(index));
+// Brings the strips once more: a dataset cannot be made before survey has its length.
+void FrameWriter::write_topology(const Topology &topology, const FrameSource &source) {
+  CollectiveFile file(communicator_, directory_ / "frames" / topology_name(topology.first_frame));
   file.group("/VTKHDF");
   file.group("/VTKHDF/CellData");
-  vtk::CellTables(file, cells.total, points.total, vtk::CellType::polygon)
-      .write(cells.first, points.first, sizes);
-  file.dataset(vtk::cell_data("block"), cells, blocks);
-  file.dataset(vtk::cell_data("material"), cells, materials);
-  write_xdmf_cells(file, cells, points, sizes);
+  write_strips<TopologyTables>(file, topology, source);
   file.publish();
   all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
-  topologies_.push_back({index, cells.total, points.total});
+  topologies_.push_back(topology);
 }
 
 const FrameWriter::Topology &FrameWriter::topology_of(int frame) const {

@@ -87,6 +87,10 @@ int scattered(std::int64_t id, int size) {
 int all_on_last(std::int64_t, int size) {
   return size - 1;
 }
+constexpr std::int64_t num_lost = 50;
+int scattered_but_the_lost(std::int64_t id, int size) {
+  return id < num_lost ? -1 : scattered(id, size);
+}
 
 FrameData my_blocks(const Communicator &communicator, std::int64_t num_blocks, int frame, Owner owner) {
   std::vector<std::int64_t> mine;
@@ -232,6 +236,32 @@ INSTANTIATE_TEST_SUITE_P(, Frames,
                                            Case{"OneBlock", 1, all_on_last},
                                            Case{"AllOnOneRank", 50, all_on_last}),
                          case_name);
+
+// With the first strips of the root, on three ranks all of them, which has the first offset to write.
+TEST(FramesThatLoseBlocks, HoldTheOthersWhateverTheNumberOfStrips) {
+  const Communicator world = Communicator::world();
+  const SharedFolder folder(world);
+  constexpr std::int64_t num_blocks = 137;
+  const auto write = [](const Communicator &communicator, const fs::path &directory,
+                        std::int64_t ids_per_strip) {
+    FrameWriter writer(communicator, directory, num_blocks, ids_per_strip);
+    writer.write(0, 0.0, GivenFrame(my_blocks(communicator, num_blocks, 0, scattered)));
+    writer.write(1, 0.1, GivenFrame(my_blocks(communicator, num_blocks, 1, scattered_but_the_lost)));
+    EXPECT_TRUE(writer.all_writes_collective());
+    writer.finish();
+  };
+  write(world, folder.path("all"), 8);
+  if (world.is_root()) {
+    write(Communicator::self(), folder.path("one"), num_blocks);
+    EXPECT_EQ(compare_runs(folder.path("all"), folder.path("one")), std::vector<std::string>{});
+    EXPECT_TRUE(fs::exists(folder.path("all") / "frames/topology_000001.h5"));
+    const FrameContent content = read_frame(folder.path("all") / "frames/frame_000001.hdf");
+    EXPECT_EQ(content.offsets.front(), 0);
+    EXPECT_EQ(content.offsets.back(), std::ssize(content.points));
+    EXPECT_EQ(content.block.front(), num_lost);
+    EXPECT_EQ(std::ssize(content.block), num_blocks - num_lost);
+  }
+}
 
 TEST(FrameTrouble, IsAFileErrorOnEveryRank) {
   const Communicator world = Communicator::world();

@@ -153,11 +153,11 @@ private:
     std::int64_t first_point = 0;
     std::int64_t num_points = 0;
   };
-  struct Cells;
   [[nodiscard]] const Topology &topology_of(int frame) const;
-  [[nodiscard]] Cells survey(const FrameSource &source);
-  void write_topology(int index, const Cells &cells);
-  bool write_strips(CollectiveFile &file, const FrameSource &source) const;
+  [[nodiscard]] Topology survey(int index, const FrameSource &source);
+  void write_topology(const Topology &topology, const FrameSource &source);
+  template <class Tables>
+  void write_strips(CollectiveFile &file, const Topology &topology, const FrameSource &source) const;
 
   std::vector<Topology> topologies_; ///< by first frame
   std::vector<Place> places_;        ///< empty where nobody has looked yet
