@@ -12,73 +12,6 @@ namespace gcpdda {
 
 namespace {
 
-/// Background grid over the boxes of the mobile blocks.
-struct SearchGrid {
-  Aabb region;
-  double cell = 1.0;
-  std::int64_t columns = 1;
-  std::int64_t rows = 1;
-
-  [[nodiscard]] std::int64_t column(double x) const {
-    return std::clamp(static_cast<std::int64_t>((x - region.low.x) / cell), std::int64_t{0}, columns - 1);
-  }
-  [[nodiscard]] std::int64_t row(double y) const {
-    return std::clamp(static_cast<std::int64_t>((y - region.low.y) / cell), std::int64_t{0}, rows - 1);
-  }
-  /// Visit the cells that a box covers inside the region.
-  template <class Visit> void cover(const Aabb &box, Visit &&visit) const {
-    if (!box.meets(region)) {
-      return;
-    }
-    for (std::int64_t j = row(box.low.y); j <= row(box.high.y); ++j) {
-      for (std::int64_t i = column(box.low.x); i <= column(box.high.x); ++i) {
-        visit(static_cast<std::size_t>(j * columns + i));
-      }
-    }
-  }
-};
-
-SearchGrid make_grid(std::span<const Aabb> boxes, std::size_t num_mobile) {
-  SearchGrid grid;
-  double extent = 0.0;
-  for (const Aabb &box : boxes.first(num_mobile)) {
-    grid.region.include(box);
-    extent += std::max(box.extent().x, box.extent().y);
-  }
-  const double count = static_cast<double>(num_mobile);
-  const Vec2 size = grid.region.extent();
-  // About one mean block a cell, but never more cells than a few per block: stray blocks may be far apart.
-  grid.cell = std::max(extent / count, std::sqrt(size.x * size.y / (4.0 * count)));
-  grid.cell = std::max(grid.cell, std::max(size.x, size.y) / (4.0 * count));
-  grid.columns = static_cast<std::int64_t>(size.x / grid.cell) + 1;
-  grid.rows = static_cast<std::int64_t>(size.y / grid.cell) + 1;
-  return grid;
-}
-
-/// Rows by cell, compressed.
-struct CellLists {
-  std::vector<std::uint32_t> begin;
-  std::vector<std::uint32_t> rows;
-};
-
-CellLists fill_cells(const SearchGrid &grid, std::span<const Aabb> boxes) {
-  CellLists cells;
-  cells.begin.assign(static_cast<std::size_t>(grid.columns * grid.rows) + 1, 0);
-  for (const Aabb &box : boxes) {
-    grid.cover(box, [&](std::size_t cell) { ++cells.begin[cell + 1]; });
-  }
-  for (std::size_t c = 1; c < cells.begin.size(); ++c) {
-    cells.begin[c] += cells.begin[c - 1];
-  }
-  cells.rows.resize(cells.begin.back());
-  std::vector<std::uint32_t> next(cells.begin.begin(), cells.begin.end() - 1);
-  for (std::size_t row = 0; row < boxes.size(); ++row) {
-    grid.cover(boxes[row],
-               [&](std::size_t cell) { cells.rows[next[cell]++] = static_cast<std::uint32_t>(row); });
-  }
-  return cells;
-}
-
 /// A pair, plain as far as its laws allow.
 CandidatePair make_pair(const BlockSystem &system, BlockIndex lower, BlockIndex higher,
                         const ContactParameters &parameters) {
@@ -114,25 +47,7 @@ struct EdgeChain {
 /// which do not change with time, at the material point that was in C.
 class ChainFinder {
 public:
-  ChainFinder(const BlockSystem &system, double skin) : system_(system), half_skin_(0.5 * skin) {
-    vertex_.reserve(system.reference_vertex.size());
-    slope_.reserve(system.reference_vertex.size());
-    box_.reserve(system.num_rows());
-    for (std::size_t row = 0; row < system.num_rows(); ++row) {
-      const Rotation turn = Rotation::of(system.refreshed[row].r);
-      const Mat2 gradient = system.is_deformable(row) ? system.deformation_of(row).refreshed
-                                                      : Mat2{turn.c, -turn.s, turn.s, turn.c};
-      const Mat2 of_slopes = transposed(inverse(gradient));
-      const Vec2 centre = system.properties[row].centroid + system.refreshed[row].u;
-      Aabb box;
-      for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k) {
-        vertex_.push_back(centre + gradient(system.reference_vertex[k]));
-        slope_.push_back(of_slopes(system.reference_normal[k]));
-        box.include(vertex_.back());
-      }
-      box_.push_back(box);
-    }
-  }
+  ChainFinder(const BlockSystem &system, double skin) : system_(system), half_skin_(0.5 * skin) {}
 
   /// Do the shapes of a pair allow it to be plain?
   [[nodiscard]] bool is_plain(std::size_t lower, std::size_t higher) const {
@@ -140,20 +55,22 @@ public:
   }
   /// The edges of a plain pair that can take part; false if the blocks cannot touch.
   bool find(std::size_t lower, std::size_t higher, EdgeChain &lower_chain, EdgeChain &higher_chain) {
-    const double rounding = 1e-9 * (norm(box_[lower].extent()) + norm(box_[higher].extent()));
-    const Aabb first = box_[lower].inflated(half_skin_);
-    const Aabb second = box_[higher].inflated(half_skin_);
+    lower_.take(system_, lower);
+    higher_.take(system_, higher);
+    const double rounding = 1e-9 * (norm(lower_.box.extent()) + norm(higher_.box.extent()));
+    const Aabb first = lower_.box.inflated(half_skin_);
+    const Aabb second = higher_.box.inflated(half_skin_);
     const Aabb common{{std::max(first.low.x, second.low.x), std::max(first.low.y, second.low.y)},
                       {std::min(first.high.x, second.high.x), std::min(first.high.y, second.high.y)}};
     const Aabb region = common.inflated(half_skin_ + rounding);
-    if (!mark_edges(lower, region, rounding)) {
+    if (!mark_edges(lower_, region, rounding)) {
       return false;
     }
-    lower_chain = chain_of(lower, higher);
-    if (!mark_edges(higher, region, rounding)) {
+    lower_chain = chain_of(lower_, higher_);
+    if (!mark_edges(higher_, region, rounding)) {
       return false;
     }
-    higher_chain = chain_of(higher, lower);
+    higher_chain = chain_of(higher_, lower_);
     return true;
   }
 
@@ -162,14 +79,42 @@ public:
   }
 
 private:
+  /// A block with few edges at the refresh.
+  struct Shape {
+    std::size_t row = static_cast<std::size_t>(-1);
+    std::size_t count = 0;
+    std::array<Vec2, most_plain_edges> vertex;
+    std::array<Vec2, most_plain_edges> slope; ///< minus the gradient of each edge's distance, that of the
+                                              ///< reference polygon
+    Aabb box;
+
+    void take(const BlockSystem &system, std::size_t wanted) {
+      if (row == wanted) { // pairs of one lower block follow one another
+        return;
+      }
+      row = wanted;
+      count = 0;
+      box = {};
+      const Rotation turn = Rotation::of(system.refreshed[row].r);
+      const Mat2 gradient = system.is_deformable(row) ? system.deformation_of(row).refreshed
+                                                      : Mat2{turn.c, -turn.s, turn.s, turn.c};
+      const Mat2 of_slopes = transposed(inverse(gradient));
+      const Vec2 centre = system.properties[row].centroid + system.refreshed[row].u;
+      for (std::size_t k = system.vertex_begin[row]; k < system.vertex_begin[row + 1]; ++k, ++count) {
+        vertex[count] = centre + gradient(system.reference_vertex[k]);
+        slope[count] = of_slopes(system.reference_normal[k]);
+        box.include(vertex[count]);
+      }
+    }
+  };
+
   [[nodiscard]] bool has_few_edges(std::size_t row) const {
     return system_.properties[row].is_convex && system_.num_vertices(row) <= most_plain_edges;
   }
 
   /// Mark the edges of a block that can take part; false if none can.
-  bool mark_edges(std::size_t row, const Aabb &region, double rounding) {
-    const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
-    const std::span<const Vec2> slope = system_.of_row(slope_, row);
+  bool mark_edges(const Shape &shape, const Aabb &region, double rounding) {
+    const auto &[row, count, vertex, slope, box] = shape;
     takes_part_.fill(true);
     if (!std::isfinite(half_skin_)) {
       return true;
@@ -177,14 +122,14 @@ private:
     const Vec2 centre = 0.5 * (region.low + region.high);
     const Vec2 half = 0.5 * region.extent();
     double smallest_high = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < vertex.size(); ++j) {
+    for (std::size_t j = 0; j < count; ++j) {
       const double middle = dot(slope[j], vertex[j] - centre);
       const double spread = std::abs(slope[j].x) * half.x + std::abs(slope[j].y) * half.y;
       smallest_high = std::min(smallest_high, middle + spread);
       low_[j] = middle - spread;
     }
-    for (std::size_t j = 0; j < vertex.size(); ++j) {
-      const std::array<Vec2, 2> ends{vertex[j], vertex[j + 1 == vertex.size() ? 0 : j + 1]};
+    for (std::size_t j = 0; j < count; ++j) {
+      const std::array<Vec2, 2> ends{vertex[j], vertex[j + 1 == count ? 0 : j + 1]};
       takes_part_[j] = low_[j] <= smallest_high + rounding || bounding_box(ends).meets(region);
     }
     return smallest_high >= -rounding;
@@ -193,8 +138,8 @@ private:
   /// The marked edges, or all where they are not neighbours. All of them start at the vertex farthest outside
   /// the other block, as good as a gap: sums along the chain so meet the edges that touch in the same order
   /// whatever else is in it, and whatever number a vertex has.
-  [[nodiscard]] EdgeChain chain_of(std::size_t row, std::size_t other) const {
-    const std::size_t n = system_.num_vertices(row);
+  [[nodiscard]] EdgeChain chain_of(const Shape &shape, const Shape &other) const {
+    const std::size_t n = shape.count;
     EdgeChain chain;
     std::size_t starts = 0;
     for (std::size_t j = 0; j < n; ++j) {
@@ -204,19 +149,16 @@ private:
         ++starts;
       }
     }
-    return starts == 1 ? chain : EdgeChain{farthest_outside(row, other), n};
+    return starts == 1 ? chain : EdgeChain{farthest_outside(shape, other), n};
   }
 
-  [[nodiscard]] std::size_t farthest_outside(std::size_t row, std::size_t other) const {
-    const std::span<const Vec2> vertex = system_.of_row(vertex_, row);
-    const std::span<const Vec2> line = system_.of_row(vertex_, other);
-    const std::span<const Vec2> slope = system_.of_row(slope_, other);
+  static std::size_t farthest_outside(const Shape &shape, const Shape &other) {
     std::size_t farthest = 0;
     double most = -std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < vertex.size(); ++k) {
+    for (std::size_t k = 0; k < shape.count; ++k) {
       double outside = -std::numeric_limits<double>::infinity();
-      for (std::size_t j = 0; j < line.size(); ++j) {
-        outside = std::max(outside, dot(slope[j], vertex[k] - line[j]));
+      for (std::size_t j = 0; j < other.count; ++j) {
+        outside = std::max(outside, dot(other.slope[j], shape.vertex[k] - other.vertex[j]));
       }
       if (outside > most) {
         most = outside;
@@ -228,9 +170,9 @@ private:
 
   const BlockSystem &system_;
   double half_skin_;
-  std::vector<Vec2> vertex_; ///< at the refresh
-  std::vector<Vec2> slope_;  ///< minus the gradient of each edge's distance, that of the reference polygon
-  std::vector<Aabb> box_;
+  // Of the pair at hand.
+  Shape lower_;
+  Shape higher_;
   // Of the block at hand.
   std::array<double, most_plain_edges> low_{};
   std::array<bool, most_plain_edges> takes_part_{};
@@ -247,10 +189,10 @@ void order_evaluation(const BlockSystem &system, Candidates &candidates) {
   };
   const auto order = [&](const PlainPair &plain) {
     return std::tuple(has_ghost(plain.pair), plain.group(), plain.kind.is_deformable, plain.kind.lower_edges,
-                      plain.kind.higher_edges, plain.kind.has_few_edges);
+                      plain.kind.higher_edges, plain.kind.has_few_edges, plain.pair);
   };
-  std::stable_sort(candidates.plain.begin(), candidates.plain.end(),
-                   [&](const PlainPair &a, const PlainPair &b) { return order(a) < order(b); });
+  std::sort(candidates.plain.begin(), candidates.plain.end(),
+            [&](const PlainPair &a, const PlainPair &b) { return order(a) < order(b); });
   candidates.num_interior_plain =
       static_cast<std::size_t>(std::count_if(candidates.plain.begin(), candidates.plain.end(),
                                              [&](const PlainPair &plain) { return !has_ghost(plain.pair); }));
@@ -365,80 +307,52 @@ void append_places(bool is_plain, PlainOverlap overlap, std::size_t begin, Conta
   const bool has_plain = is_plain && count > 0;
   history.overlaps.push_back(has_plain ? overlap : PlainOverlap::none);
   history.plain.push_back(has_plain ? history.regions[begin] : RegionState{});
-  history.ranges.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)});
   if (is_plain) {
     history.regions.resize(begin);
-    history.ranges.back() = {};
+  } else {
+    history.ranges.resize(history.plain.size());
+    history.ranges.back() = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)};
   }
 }
+
+/// Records of one kind, by pairs that are asked for in ascending order.
+template <class Record> class RecordsInOrder {
+public:
+  explicit RecordsInOrder(std::vector<Record> &records) : records_(records), next_(records.begin()) {
+    const auto by_pair = [](const Record &a, const Record &b) { return key(a) < key(b); };
+    if (!std::is_sorted(records.begin(), records.end(), by_pair)) {
+      // Several regions of a pair keep their order: both sides of a border wrote them in the same one.
+      std::stable_sort(records.begin(), records.end(), by_pair);
+    }
+  }
+  /// visit(memory).
+  template <class Visit> void for_pair(BlockId lower, BlockId higher, Visit &&visit) {
+    const std::pair wanted(lower, higher);
+    while (next_ != records_.end() && key(*next_) < wanted) {
+      ++next_;
+    }
+    for (; next_ != records_.end() && key(*next_) == wanted; ++next_) {
+      visit(next_->memory);
+    }
+  }
+
+private:
+  static std::pair<BlockId, BlockId> key(const Record &record) { return {record.lower, record.higher}; }
+
+  std::vector<Record> &records_;
+  typename std::vector<Record>::const_iterator next_;
+};
 
 } // namespace
 
-std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin) {
-  return reach_boxes(system, skin, 0, system.num_rows());
-}
-
-std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin, std::size_t first, std::size_t last) {
-  std::vector<Aabb> boxes;
-  boxes.reserve(last - first);
-  std::vector<Vec2> vertices;
-  for (std::size_t row = first; row < last; ++row) {
-    vertices.clear();
-    append_current_vertices(system, row, vertices);
-    boxes.push_back(bounding_box(vertices).inflated(system.is_fixed(row) ? 0.0 : 0.5 * skin));
-  }
-  return boxes;
-}
-
-std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &system,
-                                                          std::span<const Aabb> boxes) {
-  std::vector<std::pair<BlockIndex, BlockIndex>> pairs;
-  if (system.num_owned == 0) {
-    return pairs;
-  }
-  const SearchGrid grid = make_grid(boxes, system.num_mobile());
-  const CellLists cells = fill_cells(grid, boxes);
-  for (std::size_t cell = 0; cell + 1 < cells.begin.size(); ++cell) {
-    for (std::uint32_t i = cells.begin[cell]; i < cells.begin[cell + 1]; ++i) {
-      const std::uint32_t p = cells.rows[i];
-      if (p >= system.num_owned) {
-        break; // rows ascend within a cell: no owned block follows
-      }
-      for (std::uint32_t j = i + 1; j < cells.begin[cell + 1]; ++j) {
-        const std::uint32_t q = cells.rows[j];
-        if (!boxes[p].meets(boxes[q]) ||
-            (system.properties[p].keeps_its_velocity() && system.properties[q].keeps_its_velocity())) {
-          continue;
-        }
-        // Several cells may hold the pair: the one with the lower left corner of the common box counts.
-        const Vec2 corner{std::max(boxes[p].low.x, boxes[q].low.x), std::max(boxes[p].low.y, boxes[q].low.y)};
-        if (static_cast<std::size_t>(grid.row(corner.y) * grid.columns + grid.column(corner.x)) != cell) {
-          continue;
-        }
-        const bool ordered = system.properties[p].id < system.properties[q].id;
-        pairs.emplace_back(BlockIndex{ordered ? p : q}, BlockIndex{ordered ? q : p});
-      }
-    }
-  }
-  const auto key = [&](const std::pair<BlockIndex, BlockIndex> &pair) {
-    return std::pair(system.properties[pair.first.value].id, system.properties[pair.second.value].id);
-  };
-  std::sort(pairs.begin(), pairs.end(), [&](const auto &a, const auto &b) { return key(a) < key(b); });
-  return pairs;
-}
-
 Candidates make_candidates(const BlockSystem &system,
                            std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
-                           const ContactParameters &parameters, std::vector<RegionRecord> memory,
-                           ContactHistory &history, double skin) {
+                           const ContactParameters &parameters, ContactMemory memory, ContactHistory &history,
+                           double skin) {
   Candidates candidates = with_room(pairs.size(), parameters.joints);
-  // Several regions of a pair keep their order: both sides of a border wrote them in the same one.
-  const auto record_key = [](const RegionRecord &r) { return std::pair(r.lower, r.higher); };
-  std::stable_sort(memory.begin(), memory.end(), [&](const RegionRecord &a, const RegionRecord &b) {
-    return record_key(a) < record_key(b);
-  });
+  RecordsInOrder plain_records(memory.plain);
+  RecordsInOrder other_records(memory.others);
   forget_all(pairs.size(), history);
-  auto record = memory.begin();
   ChainFinder finder(system, skin);
   for (const auto &[lower, higher] : pairs) {
     EdgeChain lower_chain;
@@ -453,18 +367,20 @@ Candidates make_candidates(const BlockSystem &system,
     if (is_plain) {
       append_plain(system, finder, lower_chain, higher_chain, candidates);
     }
-    const std::pair key(system.properties[lower.value].id, system.properties[higher.value].id);
-    while (record != memory.end() && record_key(*record) < key) {
-      ++record;
-    }
     const std::size_t begin = history.regions.size();
-    for (; record != memory.end() && record_key(*record) == key; ++record) {
+    const auto add = [&](const RegionMemory &memory_of_region) {
       const auto known = history.regions.begin() + static_cast<std::ptrdiff_t>(begin);
       if (std::none_of(known, history.regions.end(),
-                       [&](const RegionMemory &m) { return m.is_same_region(record->memory); })) {
-        history.regions.push_back(record->memory);
+                       [&](const RegionMemory &m) { return m.is_same_region(memory_of_region); })) {
+        history.regions.push_back(memory_of_region);
       }
-    }
+    };
+    const BlockId lower_id = system.properties[lower.value].id;
+    const BlockId higher_id = system.properties[higher.value].id;
+    plain_records.for_pair(lower_id, higher_id, [&](const RegionState &state) {
+      add(RegionMemory{state, {}, {}, 0, 0});
+    });
+    other_records.for_pair(lower_id, higher_id, add);
     if (candidate.is_mixed && history.regions.size() > begin && history.regions[begin].law >= 0) {
       take_law(system, parameters, history.regions[begin].law, candidates.pairs.back());
     }
@@ -473,8 +389,8 @@ Candidates make_candidates(const BlockSystem &system,
   }
 
   order_evaluation(system, candidates);
-  if (candidates.general.empty()) {
-    history.ranges = {};
+  if (!candidates.general.empty()) {
+    history.ranges.resize(candidates.pairs.size());
   }
   find_waiting(system, candidates);
   find_rows_of_groups(system, candidates);

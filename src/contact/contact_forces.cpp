@@ -25,19 +25,22 @@ void fetch_pair(const Candidates &candidates, const ContactHistory &history, std
   prefetch(&history.plain[pair], sizeof(RegionState));
 }
 
-/// How a trial configuration moved since the one before, in a form without cancellation.
-TrialIncrement trial_increment(const BlockSystem &system, std::size_t row) {
-  const RigidDof step = system.motion[row].increment();
-  if (system.is_deformable(row)) {
-    const Deformation &d = system.deformation_of(row);
-    return {step.u, (d.trial - d.trial_previous) * system.trial_inverse[system.deformation_begin[row]]};
+// TrialIncrement::turn between a trial configuration and the one before, in a form without cancellation.
+
+/// Of a rigid block that rotated so far, rad.
+Mat2 turn_of_rigid(double rotated) {
+  SmallTurn turn = SmallTurn::of(rotated);
+  if (std::abs(rotated) > SmallTurn::largest) {
+    const double half = std::sin(0.5 * rotated);
+    turn = {std::sin(rotated), 2.0 * half * half};
   }
-  SmallTurn turn = SmallTurn::of(step.r);
-  if (std::abs(step.r) > SmallTurn::largest) {
-    const double half = std::sin(0.5 * step.r);
-    turn = {std::sin(step.r), 2.0 * half * half};
-  }
-  return {step.u, {turn.versine, -turn.sine, turn.sine, turn.versine}};
+  return {turn.versine, -turn.sine, turn.sine, turn.versine};
+}
+
+/// By entry of BlockSystem::deformation.
+Mat2 turn_of_deformable(const BlockSystem &system, std::size_t entry) {
+  const Deformation &d = system.deformation[entry];
+  return (d.trial - d.trial_previous) * system.trial_inverse[entry];
 }
 
 } // namespace
@@ -68,16 +71,14 @@ void ContactForces::find_motions(BlockSystem &system, std::size_t first, std::si
     }
     const RigidDof &velocity = system.velocity[row];
     BlockMotion &motion = system.motion[row];
-    if (system.is_fixed(row)) { // its row may have been that of a block that moves
-      motion.set_increment({});
-    }
     motion.velocity = velocity.u;
     motion.spin = velocity.r;
-    const Mat2 turn = trial_increment(system, row).turn;
+    const std::size_t k = system.deformation_begin[row];
+    const bool is_deformable = system.is_deformable(row);
+    const Mat2 turn = is_deformable ? turn_of_deformable(system, k) : turn_of_rigid(motion.rotated);
     motion.turn[0] = {turn.xx, turn.xy};
-    if (system.is_deformable(row)) {
+    if (is_deformable) {
       motion.turn[1] = {turn.yx, turn.yy};
-      const std::size_t k = system.deformation_begin[row];
       velocity_gradients_[k] = system.deformation[k].rate * system.trial_inverse[k];
     }
   }
@@ -416,19 +417,24 @@ void ContactForces::note_depth(const BlockSystem &system, const CandidatePair &p
   }
 }
 
-ComingConfiguration::ComingConfiguration(const BlockSystem &system)
-    : increments(system.num_rows()), centroids(system.num_rows()) {
+ComingConfiguration::ComingConfiguration(const BlockSystem &system) {
+  steps_.reserve(system.num_rows());
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
-    centroids[row] = system.motion[row].centroid;
+    steps_.push_back(system.is_fixed(row) ? RigidDof{} : system.motion[row].increment());
   }
-  for (std::size_t row = 0; row < system.first_fixed(); ++row) {
-    increments[row] = trial_increment(system, row);
+  for (std::size_t entry = 0; entry < system.deformation.size(); ++entry) {
+    turns_.push_back(turn_of_deformable(system, entry));
   }
 }
 
-double ComingConfiguration::slide(const CandidatePair &pair, Vec2 point, Vec2 normal) const {
-  const auto increment_of = [&](BlockIndex row) {
-    return increment_at(increments[row.value], point - centroids[row.value]);
+double ComingConfiguration::slide(const BlockSystem &system, const CandidatePair &pair, Vec2 point,
+                                  Vec2 normal) const {
+  const auto increment_of = [&](BlockIndex index) {
+    const std::size_t row = index.value;
+    const RigidDof &step = steps_[row];
+    const Mat2 turn =
+        system.is_deformable(row) ? turns_[system.deformation_begin[row]] : turn_of_rigid(step.r);
+    return increment_at({step.u, turn}, point - (system.motion[row].centroid + step.u));
   };
   return dot(increment_of(pair.lower) - increment_of(pair.higher), perp(normal));
 }

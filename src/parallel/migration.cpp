@@ -55,10 +55,27 @@ void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, c
   append_rows(system, fixed, 0, fixed.num_rows());
 }
 
+/// Those of blocks that leave go to their new owners as well.
+template <class Record>
+void share_records(const Communicator &communicator, const std::unordered_map<std::int64_t, int> &destination,
+                   std::vector<Record> &records) {
+  std::vector<std::vector<Record>> leaving(static_cast<std::size_t>(communicator.size()));
+  for (const Record &record : records) {
+    for (const BlockId id : {record.lower, record.higher}) {
+      if (const auto found = destination.find(id.value); found != destination.end()) {
+        leaving[static_cast<std::size_t>(found->second)].push_back(record);
+      }
+    }
+  }
+  for (const auto &brought : communicator.all_to_all(leaving)) {
+    records.insert(records.end(), brought.begin(), brought.end());
+  }
+}
+
 } // namespace
 
 std::int64_t migrate(const Communicator &communicator, const DomainMap &map, BlockSystem &system,
-                     std::vector<RegionRecord> &memory) {
+                     ContactMemory &memory) {
   std::vector<Bytes> leaving(static_cast<std::size_t>(communicator.size()));
   std::unordered_map<std::int64_t, int> destination;
   std::vector<std::size_t> staying;
@@ -71,21 +88,12 @@ std::int64_t migrate(const Communicator &communicator, const DomainMap &map, Blo
       destination.emplace(system.properties[row].id.value, rank);
     }
   }
-  std::vector<std::vector<RegionRecord>> records(leaving.size());
-  for (const RegionRecord &record : memory) {
-    for (const BlockId id : {record.lower, record.higher}) {
-      if (const auto found = destination.find(id.value); found != destination.end()) {
-        records[static_cast<std::size_t>(found->second)].push_back(record);
-      }
-    }
-  }
   BlockSystem arrived;
   for (const Bytes &message : communicator.all_to_all(std::move(leaving))) {
     unpack_rows(message, arrived);
   }
-  for (const auto &brought : communicator.all_to_all(records)) {
-    memory.insert(memory.end(), brought.begin(), brought.end());
-  }
+  share_records(communicator, destination, memory.plain);
+  share_records(communicator, destination, memory.others);
   settle_rows(system, staying, arrived);
   return static_cast<std::int64_t>(destination.size());
 }

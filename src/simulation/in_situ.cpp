@@ -54,7 +54,7 @@ void Simulation::press() {
   std::vector<std::vector<Vec2>> moves(num_ranks);
   {
     BlockSystem placed = blocks_;
-    std::vector<RegionRecord> none;
+    ContactMemory none;
     migrate(communicator_, map_, placed, none);
     Ghosts ghosts(communicator_);
     ghosts.rebuild(placed, reach_boxes(placed, base_skin_));

@@ -69,10 +69,18 @@ RegionRecord Simulation::record_of(std::size_t pair, const RegionMemory &region)
           blocks_.properties[candidates_.pairs[pair].higher.value].id, region};
 }
 
-std::vector<RegionRecord> Simulation::remembered_contacts() const {
-  std::vector<RegionRecord> memory;
+ContactMemory Simulation::remembered_contacts() const {
+  ContactMemory memory;
+  memory.plain.reserve(history_.num_plain());
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    history_.for_pair(k, [&](const RegionMemory &region) { memory.push_back(record_of(k, region)); });
+    if (history_.has_plain(k)) {
+      const CandidatePair &pair = candidates_.pairs[k];
+      memory.plain.push_back({blocks_.properties[pair.lower.value].id,
+                              blocks_.properties[pair.higher.value].id, history_.plain[k]});
+    } else {
+      history_.for_pair(k,
+                        [&](const RegionMemory &region) { memory.others.push_back(record_of(k, region)); });
+    }
   }
   return memory;
 }

@@ -105,7 +105,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
   plan_stage();
   warn_of_lively_impacts();
   prepare_matrices();
-  refresh(restored_ ? std::move(restored_->memory) : std::vector<RegionRecord>());
+  refresh(restored_ ? ContactMemory{{}, std::move(restored_->memory)} : ContactMemory{});
   warn_of_driven_paths(scene_, blocks_, notes_);
   if (restored_) {
     go_on();
@@ -141,15 +141,19 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
   if (scene_.in_situ.present) {
     press();
   }
-  std::vector<RegionRecord> none;
+  ContactMemory memory;
   if (!restart_from.empty()) { // rows are those of the slab still
     const Scene start = scene_;
     const BlockSystem begin = blocks_;
     restored_ =
         restore_newest_checkpoint(communicator_, restart_from, identity_, blocks_,
                                   [&](const RunFacts &facts) { begin_as_restored(start, begin, facts); });
+    memory.others = std::move(restored_->memory);
   }
-  migrate(communicator_, map_, blocks_, restored_ ? restored_->memory : none);
+  migrate(communicator_, map_, blocks_, memory);
+  if (restored_) {
+    restored_->memory = std::move(memory.others);
+  }
   map_ = partition_cells(map_.grid, count_contact_work(), communicator_.size(), &partition_);
 }
 

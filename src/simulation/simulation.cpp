@@ -21,7 +21,7 @@ constexpr double failed = 3.0;
 void Simulation::step() {
   const bool borders_moved = rebalance_if_uneven();
   if (stale_ || borders_moved) { // stale: some block may use up half the skin in this step; all ranks agree
-    refresh(remembered_contacts());
+    refresh();
   }
   load_time_ = time() + scheme_.load_time * plan_.time_step;
   send_trials();
@@ -47,16 +47,23 @@ Vec2 Simulation::gravity() const {
 
 // Each block to the rank that owns its centroid, who is seen by whom, which pairs may touch: on a finished
 // state.
-void Simulation::refresh(std::vector<RegionRecord> memory) {
+void Simulation::refresh(std::optional<ContactMemory> given) {
   const auto scope = phases_.measure(Phase::refresh);
   bolts_.share(communicator_);
+  // Rows change places. What is made anew goes first: old and new lists together would be the largest thing
+  // in memory.
+  blocks_.motion = {};
+  digest_.reset();
+  ContactMemory memory = given ? std::move(*given) : remembered_contacts();
+  candidates_ = {};
+  history_.plain = {};
   const std::int64_t left = migrate(communicator_, map_, blocks_, memory);
 
   // Fast blocks would use up the usual skin at once: it grows so that half of it outlasts several steps.
   constexpr double steps_in_skin = 16.0;
   std::array<double, 2> largest{};
   auto &[reach, dilation] = largest;
-  for (const RegionRecord &record : memory) { // a joint that slip has opened still acts
+  for (const RegionRecord &record : memory.others) { // a joint that slip has opened still acts
     dilation = std::max(dilation, norm(record.memory.dilation));
   }
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
@@ -79,9 +86,9 @@ void Simulation::refresh(std::vector<RegionRecord> memory) {
       reach_boxes(blocks_, reach_skin, blocks_.num_owned, blocks_.first_fixed());
   boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(blocks_.num_owned), ghost_boxes.begin(),
                ghost_boxes.end());
-  candidates_ = {}; // the old and the new list together would be the largest thing in memory
-  candidates_ = make_candidates(blocks_, find_pairs(blocks_, boxes), contacts_.parameters(),
-                                std::move(memory), history_, skin_);
+  const auto pairs = find_pairs(blocks_, boxes);
+  boxes = {};
+  candidates_ = make_candidates(blocks_, pairs, contacts_.parameters(), std::move(memory), history_, skin_);
   pose(blocks_, blocks_.first_fixed(), blocks_.num_rows());
   pose_in_lanes(blocks_, 0, blocks_.num_mobile());
   bolts_.connect(blocks_);
@@ -165,7 +172,7 @@ void Simulation::evaluate_bolts() {
 
 void Simulation::take(const ForceReport &report) {
   force_report_ = report;
-  is_digested_ = false;
+  digest_.reset();
   if (report.fault) {
     keep_first(local_fault_, *report.fault);
   }

@@ -283,7 +283,7 @@ void Simulation::begin_next_stage() {
   const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
   const bool takes_away = stage.kind == StageKind::excavate || opens_viscous_sides();
   if (takes_away) {
-    refresh(remembered_contacts());
+    refresh();
     evaluate_still();
     if (stage.kind == StageKind::excavate) {
       excavate(select_blocks(stage.excavated), stage.relax);
@@ -291,10 +291,12 @@ void Simulation::begin_next_stage() {
       excavate(held_beyond_viscous_sides(), std::numeric_limits<double>::infinity());
     }
   }
-  std::vector<RegionRecord> memory = remembered_contacts();
-  std::erase_if(memory, [&](const RegionRecord &record) {
+  ContactMemory memory = remembered_contacts();
+  const auto is_gone = [&](const auto &record) {
     return is_removed(record.lower.value) || is_removed(record.higher.value);
-  });
+  };
+  std::erase_if(memory.plain, is_gone);
+  std::erase_if(memory.others, is_gone);
   if (takes_away) {
     remove_blocks(stage_.removed);
   }

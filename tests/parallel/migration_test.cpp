@@ -89,9 +89,12 @@ public:
     move(step);
     all_ = next_memories(all_, step, [](const Pair &) { return true; });
     held_ = next_memories(held_, step, [&](const Pair &pair) { return touches_owned(pair); });
-    std::vector<RegionRecord> memory;
+    ContactMemory memory;
     for (const auto &[pair, region_memory] : held_) {
-      memory.push_back({BlockId{pair.first}, BlockId{pair.second}, region_memory});
+      const BlockId lower{pair.first};
+      const BlockId higher{pair.second};
+      memory.others.push_back({lower, higher, region_memory});
+      memory.plain.push_back({lower, higher, region_memory});
     }
     std::int64_t leaving = 0;
     for (std::size_t id = 0; id < num_mobile; ++id) {
@@ -173,9 +176,15 @@ private:
 
   // Every contact of an owned block is remembered here; copies agree. The rest is forgotten, as the
   // candidates do.
-  void take(const std::vector<RegionRecord> &memory) {
+  void take(const ContactMemory &memory) {
     held_.clear();
-    for (const RegionRecord &record : memory) {
+    ASSERT_EQ(memory.plain.size(), memory.others.size());
+    for (std::size_t k = 0; k < memory.plain.size(); ++k) {
+      EXPECT_EQ(memory.plain[k].lower, memory.others[k].lower);
+      EXPECT_EQ(memory.plain[k].higher, memory.others[k].higher);
+      EXPECT_EQ(memory.plain[k].memory.shear, memory.others[k].memory.shear);
+    }
+    for (const RegionRecord &record : memory.others) {
       const Pair pair{record.lower.value, record.higher.value};
       const auto due = all_.find(pair);
       EXPECT_TRUE(due != all_.end() && record.memory == due->second)
@@ -255,9 +264,9 @@ TEST(Migration, ANewMapMovesEverything) {
   BlockSystem mine = testing::part_of(whole, owner(0), world.rank());
   for (int shift = 1; shift <= world.size(); ++shift) {
     const auto before = static_cast<std::int64_t>(mine.num_owned);
-    std::vector<RegionRecord> memory;
+    ContactMemory memory;
     EXPECT_EQ(migrate(world, owner(shift), mine, memory), world.size() > 1 ? before : 0);
-    EXPECT_TRUE(memory.empty());
+    EXPECT_TRUE(memory.plain.empty() && memory.others.empty());
   }
   const BlockSystem due = testing::part_of(whole, owner(0), world.rank());
   EXPECT_EQ(mine.num_rows(), due.num_rows());

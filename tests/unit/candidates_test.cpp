@@ -171,12 +171,22 @@ TEST(MakeCandidates, MemoryIsMatchedByIds) {
     std::swap(memory[k - 1], memory[engine() % k]);
   }
   ASSERT_GT(known, 40U);
+  ContactMemory all;
+  for (const RegionRecord &record : memory) { // those of one pair in the same list
+    if (record.lower.value % 2 == 0) {
+      all.plain.push_back({record.lower, record.higher, record.memory});
+    } else {
+      all.others.push_back(record);
+    }
+  }
+  ASSERT_GT(all.plain.size(), known / 4);
+  ASSERT_GT(all.others.size(), known / 4);
   ContactHistory history;
   history.regions.resize(3); // leftovers of an older list must not shine through
   history.regions[1].shear = 77.0;
   history.overlaps.assign(3, PlainOverlap::other);
   history.plain.resize(3);
-  make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, memory, history, testing::infinite_skin);
+  make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, all, history, testing::infinite_skin);
   ASSERT_EQ(history.overlaps.size(), pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     ASSERT_EQ(history.of_pair(k).size(), k % 2 == 0 ? 1U : 0U);

@@ -151,12 +151,12 @@ std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &sys
                                                           std::span<const Aabb> boxes);
 
 /// The candidates of those pairs, but for pairs of convex rigid blocks that a line of one keeps apart, and
-/// the memory of each taken from `memory` (any order of pairs, duplicates allowed).
+/// the memory of each taken from `memory` (duplicates allowed).
 ///
 /// @param skin  no block moves by more than half of it before the next refresh, m
 Candidates make_candidates(const BlockSystem &system,
                            std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
-                           const ContactParameters &parameters, std::vector<RegionRecord> memory,
-                           ContactHistory &history, double skin);
+                           const ContactParameters &parameters, ContactMemory memory, ContactHistory &history,
+                           double skin);
 
 } // namespace gcpdda

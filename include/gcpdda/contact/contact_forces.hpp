@@ -345,15 +345,19 @@ struct ContactPart {
 };
 ContactPart contact_part(const RegionForce &force, bool is_lower, Vec2 centroid);
 
-/// The trial configuration that comes next, by row.
-struct ComingConfiguration {
-  std::vector<TrialIncrement> increments; ///< from the last one
-  std::vector<Vec2> centroids;            ///< in the last one
-
+/// The trial configuration that comes next, seen from the last one.
+class ComingConfiguration {
+public:
   /// @param system  has moved on to it
   explicit ComingConfiguration(const BlockSystem &system);
   /// Slide along t_r of what is the contact point with this normal in the last one.
-  [[nodiscard]] double slide(const CandidatePair &pair, Vec2 point, Vec2 normal) const;
+  /// @param system  is back in the last one
+  [[nodiscard]] double slide(const BlockSystem &system, const CandidatePair &pair, Vec2 point,
+                             Vec2 normal) const;
+
+private:
+  std::vector<RigidDof> steps_; ///< by row
+  std::vector<Mat2> turns_;     ///< by entry of BlockSystem::deformation
 };
 
 /// Material point X of a block that is now at x, in the trial configuration.

@@ -46,6 +46,17 @@ struct RegionRecord {
   BlockId higher;
   RegionMemory memory;
 };
+/// The same of a plain pair (contact/candidates.hpp).
+struct PlainRecord {
+  BlockId lower;
+  BlockId higher;
+  RegionState memory;
+};
+/// What is remembered of contacts, in any order of pairs.
+struct ContactMemory {
+  std::vector<PlainRecord> plain;
+  std::vector<RegionRecord> others; ///< may be of any pairs
+};
 
 /// Consecutive regions of one pair.
 struct RegionRange {
@@ -70,6 +81,10 @@ struct ContactHistory {
   std::vector<RegionMemory> regions;
 
   [[nodiscard]] bool has_plain(std::size_t pair) const { return overlaps[pair] != PlainOverlap::none; }
+  [[nodiscard]] std::size_t num_plain() const {
+    const auto none = std::ranges::count(overlaps, PlainOverlap::none);
+    return overlaps.size() - static_cast<std::size_t>(none);
+  }
   /// Of a pair that is not plain.
   [[nodiscard]] std::span<const RegionMemory> of_other(std::size_t pair) const {
     return ranges.empty() ? std::span<const RegionMemory>()

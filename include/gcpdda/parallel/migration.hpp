@@ -20,6 +20,6 @@ namespace gcpdda {
 /// @param memory  in: of all contacts this rank evaluated; out: plus what arrived
 /// @return number of blocks that left this rank
 std::int64_t migrate(const Communicator &communicator, const DomainMap &map, BlockSystem &system,
-                     std::vector<RegionRecord> &memory);
+                     ContactMemory &memory);
 
 } // namespace gcpdda

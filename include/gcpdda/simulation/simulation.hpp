@@ -145,15 +145,14 @@ public:
   [[nodiscard]] const ContactForces &contacts() const { return contacts_; }
   /// Of the last evaluation: to be asked for before the trial configuration or the neighbourhood changes.
   [[nodiscard]] const ContactDigest &contact_digest() const {
-    if (!is_digested_) {
+    if (!digest_) {
       digest_contacts({});
     }
-    return digest_;
+    return *digest_;
   }
   /// It is made then, while `look` is at all regions.
   void digest_contacts(const ContactDigest::Look &look) const {
-    digest_.find(blocks_, candidates_, history_, contacts_, look);
-    is_digested_ = true;
+    digest_.emplace().find(blocks_, candidates_, history_, contacts_, look);
   }
   /// visit(pair, its regions) for those of pairs [first, last) that touch, with the same restriction.
   template <class Visit> void for_regions(std::size_t first, std::size_t last, Visit &&visit) const {
@@ -195,6 +194,7 @@ public:
     const std::vector<RigidDof> trial = blocks_.trial;
     const std::vector<Deformation> deformation = blocks_.deformation;
     std::vector<RigidDof> increments;
+    increments.reserve(blocks_.motion.size());
     for (const BlockMotion &motion : blocks_.motion) {
       increments.push_back(motion.increment());
     }
@@ -269,8 +269,9 @@ private:
   void put_initial_shear();
   void accelerate_owned();
   [[nodiscard]] RegionRecord record_of(std::size_t pair, const RegionMemory &region) const;
-  [[nodiscard]] std::vector<RegionRecord> remembered_contacts() const;
-  void refresh(std::vector<RegionRecord> memory);
+  [[nodiscard]] ContactMemory remembered_contacts() const;
+  /// @param given  what is remembered of contacts, if it is not what stands in their history
+  void refresh(std::optional<ContactMemory> given = {});
   bool rebalance_if_uneven();
   void send_trials();
   void find_prescribed_rows();
@@ -317,9 +318,8 @@ private:
   Ghosts ghosts_;
   Candidates candidates_;
   ContactHistory history_;
-  mutable ContactForces contacts_; ///< details are found when somebody asks
-  mutable ContactDigest digest_;
-  mutable bool is_digested_ = false;
+  mutable ContactForces contacts_;              ///< details are found when somebody asks
+  mutable std::optional<ContactDigest> digest_; ///< once it has been asked for
   Bolts bolts_;
   BlockForces forces_;   ///< at the last evaluation
   TrialOutline outline_; ///< of a block in water
