@@ -1,4 +1,5 @@
 #include "checkpoint_layout.hpp"
+#include "frame_strips.hpp"
 #include "hdf5_collective_file.hpp"
 #include "hdf5_input.hpp"
 #include "numbered_name.hpp"
@@ -118,6 +119,17 @@ public:
     sum_.add(name, range.first * static_cast<std::int64_t>(columns), std::span<const T>(values));
     return values;
   }
+
+  /// Every row of such a dataset on some rank, for the sum alone: piece by piece, and none is kept.
+  template <class T> void pass(const char *name, std::int64_t num_rows, hsize_t columns = 1) {
+    const Strips pieces{num_rows, communicator_.size(), usual_ids_per_strip};
+    for (int number = 0; number < std::max(1, pieces.size()); ++number) {
+      const IdRange piece = pieces.of(communicator_.rank(), number);
+      rows<T>(name, {piece.first, piece.last - piece.first, num_rows}, columns);
+    }
+  }
+
+  std::int64_t num_rows(const char *name) { return input_.num_rows(name); }
 
   /// An equal share of all rows of a dataset.
   RowRange share_of(const char *name) {
@@ -378,21 +390,24 @@ void expect_readable_checkpoint(const Communicator &communicator, const fs::path
   on_root(communicator, [&] { found = look_at(path); });
   share(communicator, found);
   SummedInput input(communicator, found);
-  input.rows<std::int64_t>(checkpoint::block_ids, input.share_of(checkpoint::block_ids));
-  input.rows<std::uint8_t>(checkpoint::block_kinds, input.share_of(checkpoint::block_ids));
-  input.rows<std::int64_t>(checkpoint::deformation_ids, input.share_of(checkpoint::deformation_ids));
-  input.rows<std::int64_t>(checkpoint::region_blocks, input.share_of(checkpoint::region_blocks), 2);
-  input.rows<std::int32_t>(checkpoint::region_stretches, input.share_of(checkpoint::region_blocks), 2);
-  input.rows<std::uint8_t>(checkpoint::region_states, input.share_of(checkpoint::region_blocks));
-  input.rows<std::int32_t>(checkpoint::region_laws, input.share_of(checkpoint::region_blocks));
-  const auto fields = [&](const auto &table, const char *ids) {
+  const auto fields = [&](const auto &table, std::int64_t num_rows) {
     for (const auto &field : table) {
-      input.rows<double>(field.name, input.share_of(ids), field.columns);
+      input.pass<double>(field.name, num_rows, field.columns);
     }
   };
-  fields(checkpoint::block_fields, checkpoint::block_ids);
-  fields(checkpoint::deformation_fields, checkpoint::deformation_ids);
-  fields(checkpoint::region_fields, checkpoint::region_blocks);
+  const std::int64_t num_blocks = input.num_rows(checkpoint::block_ids);
+  input.pass<std::int64_t>(checkpoint::block_ids, num_blocks);
+  input.pass<std::uint8_t>(checkpoint::block_kinds, num_blocks);
+  fields(checkpoint::block_fields, num_blocks);
+  const std::int64_t num_deformations = input.num_rows(checkpoint::deformation_ids);
+  input.pass<std::int64_t>(checkpoint::deformation_ids, num_deformations);
+  fields(checkpoint::deformation_fields, num_deformations);
+  const std::int64_t num_regions = input.num_rows(checkpoint::region_blocks);
+  input.pass<std::int64_t>(checkpoint::region_blocks, num_regions, 2);
+  input.pass<std::int32_t>(checkpoint::region_stretches, num_regions, 2);
+  input.pass<std::uint8_t>(checkpoint::region_states, num_regions);
+  input.pass<std::int32_t>(checkpoint::region_laws, num_regions);
+  fields(checkpoint::region_fields, num_regions);
   input.expect_whole();
 }
 

@@ -1,5 +1,6 @@
 #include "checkpoint_layout.hpp"
 #include "durable_file.hpp"
+#include "frame_strips.hpp"
 #include "hdf5_collective_file.hpp"
 
 #include "gcpdda/io/result_files.hpp"
@@ -7,8 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 namespace gcpdda {
@@ -17,43 +18,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sends rows to the ranks whose slabs they are in; there they stand in BlockId order.
-class SlabRoute {
+/// Rows of one strip of each rank on their way to that rank; there they stand in the order of their keys.
+template <class Key> class StripRoute {
 public:
-  /// @param ids  of this rank's rows
-  SlabRoute(const Communicator &communicator, std::int64_t num_blocks, const std::vector<std::int64_t> &ids)
-      : communicator_(communicator) {
-    for (const std::int64_t id : ids) {
-      owner_.push_back(static_cast<std::size_t>(slab_owner(num_blocks, communicator.size(), id)));
-    }
-    const std::vector<std::int64_t> arrived = exchanged(ids, 1);
-    order_.resize(arrived.size());
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::sort(order_.begin(), order_.end(),
-              [&](std::size_t a, std::size_t b) { return arrived[a] < arrived[b]; });
-    range_ = rows_in_rank_order(communicator, std::ssize(arrived));
-    ids_ = sorted(arrived, 1);
-  }
-
-  [[nodiscard]] RowRange range() const { return range_; }
-  [[nodiscard]] const std::vector<std::int64_t> &ids() const { return ids_; }
+  struct Row {
+    Key key;
+    std::size_t index; ///< on the rank it comes from
+  };
 
   /// Collective.
-  template <class T>
-  [[nodiscard]] std::vector<T> route(const std::vector<T> &values, std::size_t columns) const {
-    return sorted(exchanged(values, columns), columns);
+  /// @param leaving  for each rank; rows of one key are on one rank and keep their order
+  StripRoute(const Communicator &communicator, std::vector<std::vector<Row>> leaving)
+      : communicator_(communicator), leaving_(std::move(leaving)) {
+    const std::vector<Key> arrived = exchanged<Key>(1, [](const Row &row, Key *to) { *to = row.key; });
+    order_.resize(arrived.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::size_t a, std::size_t b) { return arrived[a] < arrived[b]; });
+    keys_ = sorted(arrived, 1);
+  }
+
+  [[nodiscard]] const std::vector<Key> &keys() const { return keys_; }
+
+  /// Collective.
+  /// @param get  get(index, to) gives `columns` values of a row
+  template <class T, class Get> [[nodiscard]] std::vector<T> route(std::size_t columns, Get get) const {
+    return sorted(exchanged<T>(columns, [&](const Row &row, T *to) { get(row.index, to); }), columns);
   }
 
 private:
-  template <class T> std::vector<T> exchanged(const std::vector<T> &values, std::size_t columns) const {
-    std::vector<std::vector<T>> leaving(static_cast<std::size_t>(communicator_.size()));
-    for (std::size_t row = 0; row < owner_.size(); ++row) {
-      const auto first = values.begin() + static_cast<std::ptrdiff_t>(row * columns);
-      leaving[owner_[row]].insert(leaving[owner_[row]].end(), first,
-                                  first + static_cast<std::ptrdiff_t>(columns));
+  template <class T, class Get> std::vector<T> exchanged(std::size_t columns, Get get) const {
+    std::vector<std::vector<T>> messages(leaving_.size());
+    for (std::size_t rank = 0; rank < leaving_.size(); ++rank) {
+      messages[rank].resize(leaving_[rank].size() * columns);
+      T *to = messages[rank].data();
+      for (const Row &row : leaving_[rank]) {
+        get(row, to);
+        to += columns;
+      }
     }
     std::vector<T> arrived;
-    for (const std::vector<T> &message : communicator_.all_to_all(leaving)) {
+    for (const std::vector<T> &message : communicator_.all_to_all(std::move(messages))) {
       arrived.insert(arrived.end(), message.begin(), message.end());
     }
     return arrived;
@@ -69,45 +74,132 @@ private:
   }
 
   Communicator communicator_;
-  std::vector<std::size_t> owner_;
+  std::vector<std::vector<Row>> leaving_; ///< by rank
   std::vector<std::size_t> order_;
-  std::vector<std::int64_t> ids_;
-  RowRange range_;
+  std::vector<Key> keys_;
 };
 
-/// One checkpoint on its way to the disk.
+using BlockRoute = StripRoute<std::int64_t>;
+using RegionRoute = StripRoute<std::array<std::int64_t, 2>>; ///< lower, higher
+
+/// Owned rows of blocks [begin, end).
+struct OwnedRows {
+  std::size_t begin;
+  std::size_t end;
+};
+OwnedRows owned_rows(const BlockSystem &blocks, IdRange ids) {
+  const auto owned = std::span(blocks.properties).first(blocks.num_owned);
+  const auto first_from = [&](std::int64_t id) {
+    const auto found =
+        std::ranges::lower_bound(owned, id, {}, [](const BlockProperties &block) { return block.id.value; });
+    return static_cast<std::size_t>(found - owned.begin());
+  };
+  return {first_from(ids.first), first_from(ids.last)};
+}
+
+/// One checkpoint on its way to the disk. Its rows travel and are written strip by strip: nobody holds more
+/// than a strip of them.
 class Draft {
 public:
-  Draft(const Communicator &communicator, const fs::path &path)
-      : communicator_(communicator), file_(communicator, path) {}
+  Draft(const Communicator &communicator, const fs::path &path, std::int64_t num_blocks,
+        std::int64_t ids_per_strip)
+      : communicator_(communicator),
+        file_(communicator, path), strips_{num_blocks, communicator.size(), ids_per_strip} {}
 
-  void write(const RunFacts &facts, const BlockSystem &blocks, std::span<const RegionRecord> memory) {
+  void write(const RunFacts &facts, const BlockSystem &blocks, const RegionSource &regions) {
     file_.attribute("/", "format", checkpoint::format);
     file_.number("/version", checkpoint::version);
     for (const char *group : checkpoint::groups) {
       file_.group(group);
     }
     write_facts(facts);
-    write_blocks(facts, blocks);
-    write_deformations(facts.scene.num_blocks, blocks);
-    write_regions(facts.scene.num_blocks, memory);
+    write_blocks(facts.scene.num_mobile + facts.more_mobile, blocks);
+    write_deformations(blocks);
+    write_regions(regions);
     file_.number(checkpoint::checksum, static_cast<std::int64_t>(sum_.total(communicator_)));
     file_.publish();
   }
 
 private:
-  template <class T>
-  void dataset(const char *name, RowRange rows, const std::vector<T> &values, hsize_t columns = 1) {
-    sum_.add(name, rows.first * static_cast<std::int64_t>(columns), std::span<const T>(values));
-    file_.dataset(name, rows, values, columns);
-    file_.start_to_sync();
-  }
-
   /// The root's values.
   template <class T> void list(const char *name, const std::vector<T> &values) {
     const std::int64_t total = std::ssize(values);
-    const bool mine = communicator_.is_root();
-    dataset(name, {0, mine ? total : 0, total}, mine ? values : std::vector<T>());
+    const std::vector<T> mine = communicator_.is_root() ? values : std::vector<T>();
+    sum_.add(name, 0, std::span<const T>(mine));
+    file_.dataset(name, {0, std::ssize(mine), total}, mine);
+  }
+
+  /// A dataset that is written strip by strip.
+  template <class T> struct Column {
+    const char *name;
+    CollectiveFile::Table table;
+  };
+  template <class T> Column<T> column(const char *name, std::int64_t num_rows, hsize_t columns = 1) {
+    return {name, file_.table<T>(name, num_rows, columns)};
+  }
+  template <class Fields>
+  std::vector<Column<double>> columns_of(const Fields &fields, std::int64_t num_rows) {
+    std::vector<Column<double>> columns;
+    for (const auto &field : fields) {
+      columns.push_back(column<double>(field.name, num_rows, field.columns));
+    }
+    return columns;
+  }
+  template <class T>
+  void write(const Column<T> &column, std::int64_t first_row, const std::vector<T> &values) {
+    sum_.add(column.name, first_row * static_cast<std::int64_t>(column.table.columns),
+             std::span<const T>(values));
+    file_.write(column.table, first_row, std::span<const T>(values));
+  }
+  template <class T, class Route, class Get>
+  void write(const Column<T> &column, std::int64_t first_row, const Route &route, Get get) {
+    write(column, first_row, route.template route<T>(column.table.columns, get));
+  }
+  template <class Fields, class Route, class Owner>
+  void write(const std::vector<Column<double>> &columns, std::int64_t first_row, const Route &route,
+             const Fields &fields, const Owner &owner) {
+    for (std::size_t f = 0; f < columns.size(); ++f) {
+      write(columns[f], first_row, route,
+            [&](std::size_t index, double *to) { fields[f].get(owner, index, to); });
+    }
+  }
+
+  /// Rows of this rank's slab.
+  /// @param count  count(ids) of the rows that this rank has
+  template <class Count> RowRange rows_of_slab(Count count) const {
+    const int num_ranks = communicator_.size();
+    std::vector<std::vector<std::int64_t>> counts;
+    for (int rank = 0; rank < num_ranks; ++rank) {
+      counts.push_back({count(IdRange{slab_begin(strips_.num_blocks, num_ranks, rank),
+                                      slab_begin(strips_.num_blocks, num_ranks, rank + 1)})});
+    }
+    std::int64_t rows = 0;
+    for (const std::vector<std::int64_t> &theirs : communicator_.all_to_all(std::move(counts))) {
+      rows += theirs.front();
+    }
+    return rows_in_rank_order(communicator_, rows);
+  }
+
+  /// @param append  append(ids, rows) puts the rows that this rank has behind `rows`
+  /// @param write  write(route, row) of a strip whose first row is `row`
+  template <class Route, class Append, class Write>
+  void write_strips(RowRange slab, Append append, Write write) {
+    std::int64_t row = slab.first;
+    for (int number = 0; number < strips_.size(); ++number) {
+      std::vector<std::vector<typename Route::Row>> leaving(static_cast<std::size_t>(communicator_.size()));
+      for (std::size_t rank = 0; rank < leaving.size(); ++rank) {
+        append(strips_.of(static_cast<int>(rank), number), leaving[rank]);
+      }
+      const Route route(communicator_, std::move(leaving));
+      const std::int64_t next = row + std::ssize(route.keys());
+      expect_on_all_ranks(communicator_, next <= slab.first + slab.count,
+                          "no more rows in a checkpoint than were counted");
+      write(route, row);
+      file_.start_to_sync();
+      row = next;
+    }
+    expect_on_all_ranks(communicator_, row == slab.first + slab.count,
+                        "all rows in a checkpoint that were counted");
   }
 
   void write_facts(const RunFacts &facts) {
@@ -125,97 +217,103 @@ private:
     list(checkpoint::bolt_numbers, facts.bolt_numbers);
   }
 
-  template <class Table, class Owner>
-  void fields(const Table &table, const Owner &owner, std::size_t num_rows, const SlabRoute &route) {
-    for (const checkpoint::Field<Owner> &field : table) {
-      std::vector<double> values(num_rows * field.columns);
-      for (std::size_t row = 0; row < num_rows; ++row) {
-        field.get(owner, row, values.data() + row * field.columns);
-      }
-      dataset(field.name, route.range(), route.route(values, field.columns), field.columns);
-    }
-  }
-
-  void write_blocks(const RunFacts &facts, const BlockSystem &blocks) {
-    std::vector<std::int64_t> ids;
-    std::vector<std::uint8_t> kinds;
-    for (std::size_t row = 0; row < blocks.num_owned; ++row) {
-      ids.push_back(blocks.properties[row].id.value);
-      kinds.push_back(static_cast<std::uint8_t>(blocks.properties[row].kind));
-    }
-    SlabRoute route(communicator_, facts.scene.num_blocks, ids);
-    expect_on_all_ranks(communicator_, route.range().total == facts.scene.num_mobile + facts.more_mobile,
+  void write_blocks(std::int64_t num_mobile, const BlockSystem &blocks) {
+    const RowRange slab = rows_of_slab([&](IdRange ids) {
+      const OwnedRows rows = owned_rows(blocks, ids);
+      return static_cast<std::int64_t>(rows.end - rows.begin);
+    });
+    expect_on_all_ranks(communicator_, slab.total == num_mobile,
                         "each mobile block on one rank of a checkpoint");
-    dataset(checkpoint::block_ids, route.range(), route.ids());
-    dataset(checkpoint::block_kinds, route.range(), route.route(kinds, 1));
-    fields(checkpoint::block_fields, blocks, blocks.num_owned, route);
+    const auto block_ids = column<std::int64_t>(checkpoint::block_ids, slab.total);
+    const auto kinds = column<std::uint8_t>(checkpoint::block_kinds, slab.total);
+    const auto fields = columns_of(checkpoint::block_fields, slab.total);
+    const auto append = [&](IdRange ids, std::vector<BlockRoute::Row> &leaving) {
+      const OwnedRows rows = owned_rows(blocks, ids);
+      for (std::size_t row = rows.begin; row < rows.end; ++row) {
+        leaving.push_back({blocks.properties[row].id.value, row});
+      }
+    };
+    write_strips<BlockRoute>(slab, append, [&](const BlockRoute &route, std::int64_t row) {
+      write(block_ids, row, route.keys());
+      write(kinds, row, route, [&](std::size_t index, std::uint8_t *to) {
+        *to = static_cast<std::uint8_t>(blocks.properties[index].kind);
+      });
+      write(fields, row, route, checkpoint::block_fields, blocks);
+    });
   }
 
-  void write_deformations(std::int64_t num_blocks, const BlockSystem &blocks) {
-    std::vector<std::int64_t> ids;
-    for (std::size_t row = 0; row < blocks.num_owned; ++row) {
-      if (blocks.is_deformable(row)) {
-        ids.push_back(blocks.properties[row].id.value);
+  void write_deformations(const BlockSystem &blocks) {
+    const RowRange slab = rows_of_slab([&](IdRange ids) {
+      const OwnedRows rows = owned_rows(blocks, ids);
+      return std::int64_t{blocks.deformation_begin[rows.end]} - blocks.deformation_begin[rows.begin];
+    });
+    const auto block_ids = column<std::int64_t>(checkpoint::deformation_ids, slab.total);
+    const auto fields = columns_of(checkpoint::deformation_fields, slab.total);
+    const auto append = [&](IdRange ids, std::vector<BlockRoute::Row> &leaving) {
+      const OwnedRows rows = owned_rows(blocks, ids);
+      for (std::size_t row = rows.begin; row < rows.end; ++row) {
+        if (blocks.is_deformable(row)) {
+          leaving.push_back({blocks.properties[row].id.value, blocks.deformation_begin[row]});
+        }
       }
-    }
-    SlabRoute route(communicator_, num_blocks, ids);
-    dataset(checkpoint::deformation_ids, route.range(), route.ids());
-    fields(checkpoint::deformation_fields, blocks.deformation, ids.size(), route);
+    };
+    write_strips<BlockRoute>(slab, append, [&](const BlockRoute &route, std::int64_t row) {
+      write(block_ids, row, route.keys());
+      write(fields, row, route, checkpoint::deformation_fields, blocks.deformation);
+    });
   }
 
   // By (lower, higher); those of a pair come from one rank and keep their order.
-  void write_regions(std::int64_t num_blocks, std::span<const RegionRecord> memory) {
-    std::vector<std::vector<RegionRecord>> leaving(static_cast<std::size_t>(communicator_.size()));
-    for (const RegionRecord &record : memory) {
-      const int owner = slab_owner(num_blocks, communicator_.size(), record.lower.value);
-      leaving[static_cast<std::size_t>(owner)].push_back(record);
-    }
-    std::vector<RegionRecord> records;
-    for (const std::vector<RegionRecord> &message : communicator_.all_to_all(leaving)) {
-      records.insert(records.end(), message.begin(), message.end());
-    }
-    std::stable_sort(records.begin(), records.end(), [](const RegionRecord &a, const RegionRecord &b) {
-      return std::tie(a.lower, a.higher) < std::tie(b.lower, b.higher);
-    });
-    std::vector<std::int64_t> blocks;
-    std::vector<std::int32_t> stretches;
-    std::vector<std::uint8_t> states;
-    std::vector<std::int32_t> laws;
-    for (const RegionRecord &record : records) {
-      blocks.insert(blocks.end(), {record.lower.value, record.higher.value});
-      stretches.insert(stretches.end(), {record.memory.lower_stretch, record.memory.higher_stretch});
-      states.push_back(static_cast<std::uint8_t>(record.memory.state));
-      laws.push_back(record.memory.law);
-    }
-    const RowRange rows = rows_in_rank_order(communicator_, std::ssize(records));
-    dataset(checkpoint::region_blocks, rows, blocks, 2);
-    dataset(checkpoint::region_stretches, rows, stretches, 2);
-    dataset(checkpoint::region_states, rows, states);
-    dataset(checkpoint::region_laws, rows, laws);
-    for (const auto &field : checkpoint::region_fields) {
-      std::vector<double> values(records.size() * field.columns);
-      for (std::size_t row = 0; row < records.size(); ++row) {
-        field.get(records, row, values.data() + row * field.columns);
+  void write_regions(const RegionSource &source) {
+    const RowRange slab = rows_of_slab([&](IdRange ids) { return source.count(ids.first, ids.last); });
+    const auto blocks = column<std::int64_t>(checkpoint::region_blocks, slab.total, 2);
+    const auto stretches = column<std::int32_t>(checkpoint::region_stretches, slab.total, 2);
+    const auto states = column<std::uint8_t>(checkpoint::region_states, slab.total);
+    const auto laws = column<std::int32_t>(checkpoint::region_laws, slab.total);
+    const auto fields = columns_of(checkpoint::region_fields, slab.total);
+    std::vector<RegionRecord> records; // that leave this rank for one strip of each
+    const auto append = [&](IdRange ids, std::vector<RegionRoute::Row> &leaving) {
+      std::size_t index = records.size();
+      source.append(ids.first, ids.last, records);
+      for (; index < records.size(); ++index) {
+        leaving.push_back({{records[index].lower.value, records[index].higher.value}, index});
       }
-      dataset(field.name, rows, values, field.columns);
-    }
+    };
+    write_strips<RegionRoute>(slab, append, [&](const RegionRoute &route, std::int64_t row) {
+      write(blocks, row, route, [&](std::size_t index, std::int64_t *to) {
+        to[0] = records[index].lower.value;
+        to[1] = records[index].higher.value;
+      });
+      write(stretches, row, route, [&](std::size_t index, std::int32_t *to) {
+        to[0] = records[index].memory.lower_stretch;
+        to[1] = records[index].memory.higher_stretch;
+      });
+      write(states, row, route, [&](std::size_t index, std::uint8_t *to) {
+        *to = static_cast<std::uint8_t>(records[index].memory.state);
+      });
+      write(laws, row, route, [&](std::size_t index, std::int32_t *to) { *to = records[index].memory.law; });
+      write(fields, row, route, checkpoint::region_fields, records);
+      records.clear();
+    });
   }
 
   Communicator communicator_;
   CollectiveFile file_;
+  Strips strips_;
   checkpoint::ContentSum sum_;
 };
 
 } // namespace
 
-CheckpointWriter::CheckpointWriter(const Communicator &communicator, fs::path directory, fs::path last)
-    : communicator_(communicator), directory_(std::move(directory)), last_(std::move(last)) {}
+CheckpointWriter::CheckpointWriter(const Communicator &communicator, fs::path directory, fs::path last,
+                                   std::int64_t ids_per_strip)
+    : communicator_(communicator), directory_(std::move(directory)), last_(std::move(last)),
+      ids_per_strip_(ids_per_strip > 0 ? ids_per_strip : usual_ids_per_strip) {}
 
-void CheckpointWriter::write(const RunFacts &facts, const BlockSystem &blocks,
-                             std::span<const RegionRecord> memory) {
+void CheckpointWriter::write(const RunFacts &facts, const BlockSystem &blocks, const RegionSource &regions) {
   const fs::path path = checkpoint::folder(directory_) / fmt::format("checkpoint_{:09}.h5", facts.step);
   on_root(communicator_, [&] { make_directory(path.parent_path()); });
-  Draft(communicator_, path).write(facts, blocks, memory);
+  Draft(communicator_, path, facts.scene.num_blocks, ids_per_strip_).write(facts, blocks, regions);
   try {
     expect_readable_checkpoint(communicator_, path);
   } catch (const FileError &error) { // on all ranks

@@ -199,6 +199,17 @@ void SimulationContacts::append(std::int64_t first, std::int64_t last, std::vect
   simulation_.for_regions(begin, end, append_pair);
 }
 
+void SimulationContacts::append(std::int64_t first, std::int64_t last,
+                                std::vector<RegionRecord> &records) const {
+  const auto [begin, end] = pairs_from(first, last);
+  for (std::size_t pair = begin; pair < end; ++pair) {
+    if (simulation_.counts_here(simulation_.candidates().pairs[pair])) {
+      simulation_.history().for_pair(
+          pair, [&](const RegionMemory &region) { records.push_back(simulation_.record_of(pair, region)); });
+    }
+  }
+}
+
 std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
   struct Found {
     std::int64_t monitor;

@@ -302,7 +302,7 @@ private:
     RunFacts facts = simulation_.facts();
     ledger_->tell(facts);
     facts.frame_times = frames_->times();
-    checkpoints_->write(facts, simulation_.blocks(), simulation_.contacts_that_count_here());
+    checkpoints_->write(facts, simulation_.blocks(), SimulationContacts(simulation_));
     log_->line(fmt::format("checkpoint at t = {:.9g} s, written in {:.3g} s", simulation_.time(),
                            seconds_since(start)));
     output_cpu_seconds_ += cpu_seconds() - cpu_start;

@@ -85,14 +85,4 @@ ContactMemory Simulation::remembered_contacts() const {
   return memory;
 }
 
-std::vector<RegionRecord> Simulation::contacts_that_count_here() const {
-  std::vector<RegionRecord> memory;
-  for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    if (counts_here(candidates_.pairs[k])) {
-      history_.for_pair(k, [&](const RegionMemory &region) { memory.push_back(record_of(k, region)); });
-    }
-  }
-  return memory;
-}
-
 } // namespace gcpdda

@@ -140,6 +140,30 @@ template <class Take> BlockSystem numbered_squares(std::int64_t count, Take &&ta
   return blocks;
 }
 
+/// By lower block.
+class KnownRegions : public RegionSource {
+public:
+  std::vector<RegionRecord> records;
+  std::int64_t miscount = 0; ///< of block 0
+
+  [[nodiscard]] std::int64_t count(std::int64_t first, std::int64_t last) const override {
+    const auto [begin, end] = range(first, last);
+    return end - begin + (first <= 0 && 0 < last ? miscount : 0);
+  }
+  void append(std::int64_t first, std::int64_t last, std::vector<RegionRecord> &to) const override {
+    const auto [begin, end] = range(first, last);
+    to.insert(to.end(), begin, end);
+  }
+
+private:
+  using Place = std::vector<RegionRecord>::const_iterator;
+  [[nodiscard]] std::pair<Place, Place> range(std::int64_t first, std::int64_t last) const {
+    const auto lower = [](const RegionRecord &record) { return record.lower.value; };
+    return {std::ranges::lower_bound(records, first, {}, lower),
+            std::ranges::lower_bound(records, last, {}, lower)};
+  }
+};
+
 // Blocks anywhere, contacts between any two: after reading, each rank has the state of its slab and every
 // contact of a block in it, those of a pair in their order.
 TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
@@ -156,12 +180,12 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
       blocks.deformation_of(row).rate = {id, 2 * id, 3 * id, 4 * id};
     }
   }
-  std::vector<RegionRecord> records;
+  KnownRegions regions;
   const auto num_regions = [](std::int64_t a, std::int64_t b) { return (a * b) % 5 == 0 ? (a + b) % 3 : 0; };
   for (std::int64_t a = 0; a < count; ++a) {
     for (std::int64_t b = a + 1; b < count; ++b) {
       for (std::int64_t k = 0; k < num_regions(a, b) && (a + b) % world.size() == world.rank(); ++k) {
-        RegionRecord &record = records.emplace_back();
+        RegionRecord &record = regions.records.emplace_back();
         record.lower = BlockId{a};
         record.higher = BlockId{b};
         record.memory.shear = static_cast<double>(count * a + b);
@@ -176,7 +200,10 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
   facts.step = 12;
   facts.time = 0.5;
   facts.frame_times = {0.0, 0.25, 0.5};
-  CheckpointWriter(world, folder.path(""), {}).write(facts, blocks, records);
+  CheckpointWriter(world, folder.path(""), {}).write(facts, blocks, regions);
+  CheckpointWriter(world, folder.path("strips"), {}, 5).write(facts, blocks, regions);
+  const fs::path file = fs::path("checkpoints") / "checkpoint_000000012.h5";
+  EXPECT_TRUE(file_text(folder.path("") / file) == file_text(folder.path("strips") / file));
 
   const std::int64_t first = slab_begin(count, world.size(), world.rank());
   const std::int64_t last = slab_begin(count, world.size(), world.rank() + 1);
@@ -210,6 +237,26 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
   }
   EXPECT_EQ(record, restored.memory.end());
   EXPECT_GE(restored.memory.size(), world.size() > 1 ? 50U : 500U);
+}
+
+TEST(CheckpointFile, WithMoreOrFewerRegionsThanCountedIsRefusedOnEveryRank) {
+  const Communicator world = Communicator::world();
+  const testing::SharedFolder folder(world);
+  const std::int64_t count = 12;
+  const BlockSystem blocks =
+      numbered_squares(count, [&](std::int64_t id) { return id % world.size() == world.rank(); });
+  RunFacts facts;
+  facts.scene = {count, count, 1, 1};
+  KnownRegions regions;
+  if (world.is_root()) {
+    regions.records = {{BlockId{0}, BlockId{1}, {}}};
+  }
+  for (const std::int64_t miscount : {-1, 1}) {
+    regions.miscount = world.is_root() ? miscount : 0;
+    EXPECT_THROW(CheckpointWriter(world, folder.path(""), {}, 2).write(facts, blocks, regions),
+                 InternalError);
+    EXPECT_TRUE(checkpoint_files(folder.path("")).empty());
+  }
 }
 
 } // namespace

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <vector>
 
 namespace gcpdda {
@@ -52,25 +51,41 @@ struct RunFacts {
   std::vector<double> frame_times; ///< of the frames written, s
 };
 
+/// Where the memory of contacts comes from: each rank hands over what it has, strip by strip, so that nobody
+/// holds a copy of all.
+class RegionSource {
+public:
+  RegionSource() = default;
+  virtual ~RegionSource() = default;
+  RegionSource(const RegionSource &) = delete;
+  RegionSource &operator=(const RegionSource &) = delete;
+  /// This rank's regions with first <= lower < last. Not collective.
+  [[nodiscard]] virtual std::int64_t count(std::int64_t first, std::int64_t last) const = 0;
+  /// The same regions behind `records`, those of a pair in their order.
+  virtual void append(std::int64_t first, std::int64_t last, std::vector<RegionRecord> &records) const = 0;
+};
+
 /// Writes checkpoints of one run.
 class CheckpointWriter {
 public:
   /// @param last  the checkpoint the run goes on from; empty for a run from t = 0
+  /// @param ids_per_strip  that a rank writes at a time, 0 for the usual number; files do not depend on it
   CheckpointWriter(const Communicator &communicator, std::filesystem::path directory,
-                   std::filesystem::path last);
+                   std::filesystem::path last, std::int64_t ids_per_strip = 0);
 
   /// State of all mobile blocks at the end of a step, read again before an older one is removed. Afterwards
   /// this and the checkpoint before are there, no others. Collective; throws FileError on all ranks and
   /// leaves what was there.
   ///
-  /// @param blocks  each mobile block is owned by one rank
-  /// @param memory  each region on one rank, those of a pair in their order
-  void write(const RunFacts &facts, const BlockSystem &blocks, std::span<const RegionRecord> memory);
+  /// @param blocks  each mobile block is owned by one rank; owned ones ascending
+  /// @param regions  those of a pair on one rank
+  void write(const RunFacts &facts, const BlockSystem &blocks, const RegionSource &regions);
 
 private:
   Communicator communicator_;
   std::filesystem::path directory_;
   std::filesystem::path last_;
+  std::int64_t ids_per_strip_;
 };
 
 /// A state that has been read.

@@ -29,12 +29,13 @@ private:
   std::vector<Reaction> reactions_; ///< by fixed id, then by mobile id
 };
 
-/// Touching regions this rank hands over.
-class SimulationContacts : public ContactSource {
+/// Regions this rank hands over: for frames where they touch, for checkpoints what is remembered of them.
+class SimulationContacts : public ContactSource, public RegionSource {
 public:
   explicit SimulationContacts(const Simulation &simulation) : simulation_(simulation) {}
   [[nodiscard]] std::int64_t count(std::int64_t first, std::int64_t last) const override;
   void append(std::int64_t first, std::int64_t last, std::vector<ContactRow> &rows) const override;
+  void append(std::int64_t first, std::int64_t last, std::vector<RegionRecord> &records) const override;
 
 private:
   struct Pairs {

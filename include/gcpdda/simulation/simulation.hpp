@@ -185,8 +185,8 @@ public:
   [[nodiscard]] const std::optional<Restored> &restored() const { return restored_; }
   /// Everything a checkpoint holds besides the blocks and their contacts, but what the output knows.
   [[nodiscard]] RunFacts facts() const;
-  /// Memory of all contacts, each region on one rank, those of a pair in their order.
-  [[nodiscard]] std::vector<RegionRecord> contacts_that_count_here() const;
+  /// @param region  of this candidate
+  [[nodiscard]] RegionRecord record_of(std::size_t pair, const RegionMemory &region) const;
 
   /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On
   /// return the state is as before, and what contacts say as well.
@@ -268,7 +268,6 @@ private:
   void tell_of_swelling(const SwellReport &mine);
   void put_initial_shear();
   void accelerate_owned();
-  [[nodiscard]] RegionRecord record_of(std::size_t pair, const RegionMemory &region) const;
   [[nodiscard]] ContactMemory remembered_contacts() const;
   /// @param given  what is remembered of contacts, if it is not what stands in their history
   void refresh(std::optional<ContactMemory> given = {});
