@@ -28,18 +28,22 @@ std::int64_t num_occupied(const CellGrid &grid, std::span<const Vec2> points) {
 
 } // namespace
 
-std::vector<std::int64_t> work_of_blocks(const BlockSystem &system, const Candidates &candidates) {
-  std::vector<std::int64_t> work(system.num_owned, 2);
-  for (const CandidatePair &pair : candidates.pairs) {
-    if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box)) {
-      for (const BlockIndex end : {pair.lower, pair.higher}) {
-        if (end.value < system.num_owned) {
-          ++work[end.value];
-        }
-      }
+void WorkOfBlocks::add_pair(BlockIndex lower, BlockIndex higher) {
+  for (const BlockIndex end : {lower, higher}) {
+    if (end.value < work_.size()) {
+      ++work_[end.value];
     }
   }
-  return work;
+}
+
+std::vector<std::int64_t> work_of_blocks(const BlockSystem &system, const Candidates &candidates) {
+  WorkOfBlocks work(system.num_owned);
+  for (const CandidatePair &pair : candidates.pairs) {
+    if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box)) {
+      work.add_pair(pair.lower, pair.higher);
+    }
+  }
+  return work.counted();
 }
 
 CellGrid lay_grid(const Communicator &communicator, std::span<const Vec2> centroids) {

@@ -283,6 +283,7 @@ private:
     if (history_due) {
       write_history(failed);
     }
+    simulation_.forget_contact_digest();
     output_cpu_seconds_ += cpu_seconds() - cpu_start;
   }
 

@@ -7,6 +7,7 @@
 #include "gcpdda/simulation/simulation.hpp"
 
 #include "driven_paths.hpp"
+#include "gcpdda/base/free_memory.hpp"
 
 #include "gcpdda/contact/stiffness_bound.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
@@ -113,6 +114,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
     find_initial_state();
   }
   stop_on_errors(notes_);
+  give_back_free_memory();
 }
 
 // Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
@@ -138,6 +140,7 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
                          communicator_.size(), &partition_);
   identify(slab);
   take_blocks(std::exchange(slab, {}));
+  give_back_free_memory();
   if (scene_.in_situ.present) {
     press();
   }
@@ -362,22 +365,16 @@ void Simulation::take_blocks(std::vector<SceneBlock> slab) {
 
 // By cell, of the initial configuration. Faces that touch count as contacts whatever their rounding.
 std::vector<std::int64_t> Simulation::count_contact_work() {
-  const std::vector<Aabb> boxes = reach_boxes(blocks_, base_skin_);
-  ghosts_.rebuild(blocks_, boxes);
-  const std::vector<Aabb> near = reach_boxes(blocks_, 0.1 * base_skin_);
-  blocks_.motion.resize(blocks_.num_rows());
-  for (std::size_t row = 0; row < blocks_.num_rows(); ++row) {
-    blocks_.motion[row].box = near[row];
-  }
-  Candidates candidates;
-  for (const auto &[lower, higher] : find_pairs(blocks_, near)) {
-    candidates.pairs.push_back({.lower = lower, .higher = higher});
+  ghosts_.rebuild(blocks_, reach_boxes(blocks_, base_skin_));
+  WorkOfBlocks work(blocks_.num_owned);
+  for (const auto &[lower, higher] : find_pairs(blocks_, reach_boxes(blocks_, 0.1 * base_skin_))) {
+    work.add_pair(lower, higher);
   }
   std::vector<Vec2> centroids;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     centroids.push_back(blocks_.centroid(row));
   }
-  return weights_by_cell(communicator_, map_.grid, centroids, work_of_blocks(blocks_, candidates));
+  return weights_by_cell(communicator_, map_.grid, centroids, work.counted());
 }
 
 double Simulation::frequency_bound_of(std::size_t row, std::span<const PointSpring> springs) const {

@@ -26,7 +26,18 @@
 
 namespace gcpdda {
 
-/// Twice the share of each owned row in the work of a step whose trial configuration is the system's.
+/// Twice the share of each owned row in the work of a step.
+class WorkOfBlocks {
+public:
+  explicit WorkOfBlocks(std::size_t num_owned) : work_(num_owned, 2) {}
+  /// Of rows whose boxes meet.
+  void add_pair(BlockIndex lower, BlockIndex higher);
+  [[nodiscard]] const std::vector<std::int64_t> &counted() const { return work_; }
+
+private:
+  std::vector<std::int64_t> work_;
+};
+/// That of candidates at the system's trial configuration.
 std::vector<std::int64_t> work_of_blocks(const BlockSystem &system, const Candidates &candidates);
 
 /// Grid over the mobile blocks of all ranks, known by their centroids: about two cells a block, so that

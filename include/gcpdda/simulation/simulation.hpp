@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gcpdda/base/free_memory.hpp"
 #include "gcpdda/base/phase_timer.hpp"
 #include "gcpdda/contact/contact_forces.hpp"
 #include "gcpdda/contact/in_situ.hpp"
@@ -154,6 +155,8 @@ public:
   void digest_contacts(const ContactDigest::Look &look) const {
     digest_.emplace().find(blocks_, candidates_, history_, contacts_, look);
   }
+  /// Nobody asks for it for now: it takes 56 bytes a block.
+  void forget_contact_digest() const { digest_.reset(); }
   /// visit(pair, its regions) for those of pairs [first, last) that touch, with the same restriction.
   template <class Visit> void for_regions(std::size_t first, std::size_t last, Visit &&visit) const {
     contacts_.for_regions(blocks_, candidates_, history_, static_cast<std::uint32_t>(first),
@@ -191,8 +194,8 @@ public:
   /// Visit the trial configuration of the next step without taking it: what the energy ledger needs. On
   /// return the state is as before, and what contacts say as well.
   template <class Look> void look_ahead(Look &&look) {
-    const std::vector<RigidDof> trial = blocks_.trial;
-    const std::vector<Deformation> deformation = blocks_.deformation;
+    std::vector<RigidDof> trial = blocks_.trial;
+    std::vector<Deformation> deformation = blocks_.deformation;
     std::vector<RigidDof> increments;
     increments.reserve(blocks_.motion.size());
     for (const BlockMotion &motion : blocks_.motion) {
@@ -202,12 +205,14 @@ public:
     predict_rows(0, blocks_.num_owned, false);
     finish_ghosts();
     look(blocks_);
-    blocks_.trial = trial;
-    blocks_.deformation = deformation;
+    blocks_.trial = std::move(trial);
+    blocks_.deformation = std::move(deformation);
     for (std::size_t row = 0; row < increments.size(); ++row) {
       blocks_.motion[row].set_increment(increments[row]);
     }
     pose_in_lanes(blocks_, 0, blocks_.num_mobile());
+    increments = {};
+    give_back_free_memory(2 * blocks_.num_rows() * sizeof(RigidDof));
   }
 
 private:
