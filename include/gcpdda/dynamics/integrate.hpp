@@ -128,7 +128,7 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
 
-/// What acts on free rows: those without an entry of BlockSystem::applied, where there are no bolts.
+/// What acts on free rows: those without an entry of BlockSystem::applied; deformable ones without bolts too.
 struct FreeRows {
   BodyForces body; ///< now
   double local_damping = 0.0;
@@ -147,6 +147,7 @@ struct HalfWorks {
   double gravity = 0.0;
 };
 HalfWorks half_works(const BlockSystem &system, std::size_t row, const AppliedForces &applied);
+/// Onto the works of a row so far.
 void add_to_ledger(BlockSystem &system, std::size_t row, const HalfWorks &half);
 
 /// The same for fixed points and viscous sides, whose force is known only after the step it acts in.
