@@ -244,8 +244,8 @@ private:
         turns[i] = &rigid_turn[i].xx;
       }
     }
-    rate = LaneMat(load_by_lane([&](std::size_t i) { return rates[i]; }));
-    turn = LaneMat(load_by_lane([&](std::size_t i) { return turns[i]; }));
+    rate = LaneMat{load_by_lane([&](std::size_t i) { return rates[i]; })};
+    turn = LaneMat{load_by_lane([&](std::size_t i) { return turns[i]; })};
     step = LaneVec::of([&](std::size_t i) { return &blocks.motion[i]->step; });
   }
 };
