@@ -13,9 +13,8 @@ namespace gcpdda {
 namespace {
 
 RigidDof dofs_of(const BlockSystem &system, std::size_t row, Configuration configuration) {
-  return configuration == Configuration::trial || system.is_fixed(row)
-             ? system.trial[row]
-             : system.trial[row] - system.motion[row].increment();
+  return configuration == Configuration::trial ? system.trial[row]
+                                               : system.trial[row] - system.motion[row].increment();
 }
 
 /// Displacement of a block's material points: u + (F - I) X.

@@ -51,7 +51,7 @@ ContactForces::~ContactForces() = default;
 ContactForces::ContactForces(ContactForces &&) noexcept = default;
 ContactForces &ContactForces::operator=(ContactForces &&) noexcept = default;
 
-void ContactForces::find_motions(BlockSystem &system, std::size_t first, std::size_t last) {
+void ContactForces::begin_rows(BlockSystem &system, std::size_t first, std::size_t last) {
   velocity_gradients_.resize(system.deformation.size());
   sums_.clear(system, first, std::min(last, system.num_owned));
   const std::size_t width = batch_->width();
@@ -371,7 +371,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
 
 void ContactForces::evaluate_interior(BlockSystem &system, const Candidates &candidates,
                                       ContactHistory &history, const Front &front) {
-  find_motions(system, system.first_fixed(), system.num_rows());
+  begin_rows(system, system.first_fixed(), system.num_rows());
   num_forces_ = 0;
   dilation_works_.clear();
   next_.overlaps.assign(candidates.pairs.size(), PlainOverlap::none);
@@ -393,7 +393,7 @@ void ContactForces::evaluate_interior(BlockSystem &system, const Candidates &can
 
 ForceReport ContactForces::evaluate_border(BlockSystem &system, const Candidates &candidates,
                                            ContactHistory &history) {
-  find_motions(system, system.num_owned, system.first_fixed());
+  begin_rows(system, system.num_owned, system.first_fixed());
   evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).subspan(candidates.num_interior_general));
@@ -420,7 +420,7 @@ void ContactForces::note_depth(const BlockSystem &system, const CandidatePair &p
 ComingConfiguration::ComingConfiguration(const BlockSystem &system) {
   steps_.reserve(system.num_rows());
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
-    steps_.push_back(system.is_fixed(row) ? RigidDof{} : system.motion[row].increment());
+    steps_.push_back(system.motion[row].increment());
   }
   for (std::size_t entry = 0; entry < system.deformation.size(); ++entry) {
     turns_.push_back(turn_of_deformable(system, entry));

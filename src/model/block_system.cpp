@@ -181,21 +181,10 @@ void list_applied(BlockSystem &system, bool all) {
   list_rows(system, needs, system.applied_begin, system.applied);
 }
 
-namespace {
-
-void keep_offsets(std::vector<std::uint32_t> &begin, std::size_t num_rows) {
-  begin.resize(num_rows + 1);
-}
-void keep_offsets(RowOffsets &begin, std::size_t num_rows) {
-  begin.resize(num_rows);
-}
-
-} // namespace
-
 void keep_rows(BlockSystem &system, std::size_t count) {
   std::apply([&](auto... field) { ((system.*field).resize(count), ...); }, BlockSystem::row_fields());
   const auto keep_list = [&](auto begins, auto... fields) {
-    keep_offsets(system.*begins, count);
+    (system.*begins).resize(count + 1);
     ((system.*fields).resize((system.*begins).back()), ...);
   };
   std::apply([&](auto... list) { (std::apply(keep_list, list), ...); }, BlockSystem::lists());

@@ -64,7 +64,7 @@ void Simulation::find_prescribed_rows() {
 
 void Simulation::predict_rows(std::size_t first, std::size_t last, bool for_contacts) {
   const auto scope = phases_.measure(Phase::predict);
-  const auto find_motions = [&](std::size_t from, std::size_t to) {
+  const auto begin_rows = [&](std::size_t from, std::size_t to) {
     for (const auto &[row, motion, increment] : prescribed_rows_) {
       if (from <= row && row < to) {
         blocks_.trial[row] = motion;
@@ -74,10 +74,10 @@ void Simulation::predict_rows(std::size_t first, std::size_t last, bool for_cont
     }
     if (for_contacts) {
       add_half_works(blocks_, from, to);
-      contacts_.find_motions(blocks_, from, to);
+      contacts_.begin_rows(blocks_, from, to);
     }
   };
-  predict(blocks_, scheme_, plan_.time_step, {first, last}, find_motions);
+  predict(blocks_, scheme_, plan_.time_step, {first, last}, begin_rows);
 }
 
 // The acceleration is the mean one of the coming step: what is asked how far the block may go in it.

@@ -41,7 +41,7 @@ Front front_of(BlockSystem &system, ContactForces &forces, Progress &progress) {
   return {[&](std::size_t end) {
             EXPECT_LE(end, system.num_owned);
             if (end > progress.predicted) {
-              forces.find_motions(system, progress.predicted, end);
+              forces.begin_rows(system, progress.predicted, end);
               progress.predicted = end;
             }
           },

@@ -8,7 +8,7 @@ namespace gcpdda::row_offsets_test {
 namespace {
 
 void expect_offsets(const RowOffsets &offsets, const std::vector<std::uint32_t> &wanted) {
-  ASSERT_EQ(offsets.num_rows() + 1, wanted.size());
+  ASSERT_EQ(offsets.size(), wanted.size());
   for (std::size_t row = 0; row < wanted.size(); ++row) {
     EXPECT_EQ(offsets[row], wanted[row]) << row;
   }
@@ -26,9 +26,9 @@ TEST(RowOffsets, TakeNoMemoryWhileTheListIsEmpty) {
   EXPECT_EQ(offsets.capacity(), 0U);
   offsets.push_back(2);
   expect_offsets(offsets, {0, 0, 0, 0, 2});
-  EXPECT_GE(offsets.capacity(), 1001U) << "room that was asked for before";
+  EXPECT_GE(offsets.capacity(), 1000U) << "room that was asked for before";
   offsets.push_back(2);
-  offsets.resize(4);
+  offsets.resize(5);
   expect_offsets(offsets, {0, 0, 0, 0, 2});
   offsets.clear();
   expect_offsets(offsets, {0});

@@ -67,16 +67,16 @@ struct PlainPair {
 /// Most edges of one block of a plain pair.
 constexpr std::size_t most_plain_edges = 8;
 
+constexpr std::size_t least_vertices = 3;
 /// Where vertex `first` of a block with so many vertices stands in `rings`.
 constexpr std::size_t place_in_rings(std::size_t num_vertices, std::size_t first) {
-  constexpr std::size_t least = 3;
-  return num_vertices * (num_vertices - 1) - least * (least - 1) + first;
+  return num_vertices * (num_vertices - 1) - least_vertices * (least_vertices - 1) + first;
 }
 /// Numbers of vertices twice around blocks with three vertices, with four and so on: a chain of edges that
 /// starts anywhere goes on in one piece.
 inline constexpr auto rings = [] {
   std::array<std::uint8_t, place_in_rings(most_plain_edges + 1, 0)> numbers{};
-  for (std::size_t n = 3; n <= most_plain_edges; ++n) {
+  for (std::size_t n = least_vertices; n <= most_plain_edges; ++n) {
     for (std::size_t k = 0; k < 2 * n; ++k) {
       numbers[place_in_rings(n, k)] = static_cast<std::uint8_t>(k % n);
     }

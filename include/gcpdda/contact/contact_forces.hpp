@@ -80,8 +80,8 @@ struct ForceReport {
 
 /// Who moves the blocks, while pairs are evaluated in the order of their blocks and both are in the cache.
 struct Front {
-  /// Owned rows below this one are about to be read: their trial configurations are posed and their motions
-  /// found on return.
+  /// Owned rows below this one are about to be read: their trial configurations are posed and they have begun
+  /// (ContactForces::begin_rows()) on return.
   std::function<void(std::size_t end)> before;
   /// Contacts of those below this one are added, but of rows that wait (Candidates::is_added), and are not
   /// read again: their velocities may change.
@@ -109,14 +109,14 @@ public:
   /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory,
   /// which moves on to this configuration.
   ForceReport evaluate(BlockSystem &system, const Candidates &candidates, ContactHistory &history) {
-    find_motions(system, 0, system.num_owned);
+    begin_rows(system, 0, system.num_owned);
     evaluate_interior(system, candidates, history);
     return evaluate_border(system, candidates, history);
   }
-  /// How rows [first, last) move, from the increments of their trial configurations and velocities, and owned
-  /// rows have no contacts yet: of all owned rows before what follows, or once their trial configurations are
-  /// known there.
-  void find_motions(BlockSystem &system, std::size_t first, std::size_t last);
+  /// Rows [first, last) begin an evaluation: how they move is found, from velocities and the increments of
+  /// their trial configurations, and owned ones have no contacts yet. All owned rows do so before what
+  /// follows, or once their trial configurations are known there.
+  void begin_rows(BlockSystem &system, std::size_t first, std::size_t last);
   /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
   void evaluate_interior(BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                          const Front &front = {});

@@ -147,11 +147,10 @@ struct HalfWorks {
   double gravity = 0.0;
 };
 HalfWorks half_works(const BlockSystem &system, std::size_t row, const AppliedForces &applied);
-/// Onto the works of a row so far.
-void add_to_ledger(BlockSystem &system, std::size_t row, const HalfWorks &half);
-
 /// The same for fixed points and viscous sides, whose force is known only after the step it acts in.
 double anchor_half_work(const BlockSystem &system, std::size_t row);
+/// Onto the works of a row so far.
+void add_to_ledger(BlockSystem &system, std::size_t row, const HalfWorks &half);
 
 /// What the forces of the last evaluation do over the increment behind it, onto the works of owned rows
 /// [first, last), which have been predicted since.
