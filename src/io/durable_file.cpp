@@ -4,6 +4,7 @@
 #include "gcpdda/io/passing_files.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -74,7 +75,13 @@ std::filesystem::path unfinished_name(const std::filesystem::path &path) {
   return path.string() + ".tmp";
 }
 
+// Keeping the size, the call does not look at the limit for files.
 void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t end) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+      static_cast<std::uint64_t>(std::max<std::int64_t>(0, end)) > limit.rlim_cur) {
+    fail("find space for", unfinished_name(path), std::strerror(EFBIG));
+  }
   if (begin < end) {
     call_on(unfinished_name(path), O_WRONLY, "find space on the disk for", {EOPNOTSUPP, ENOSYS, EINVAL},
             [&](int descriptor) { return ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, begin, end - begin); });

@@ -13,6 +13,9 @@ namespace gcpdda {
 
 namespace {
 
+/// Behind the last dataset, for what HDF5 has to say of it and of the next one.
+constexpr std::int64_t room_for_metadata = 16384;
+
 bool close_failed = false;
 
 bool close(hdf5::File &file) {
@@ -128,29 +131,34 @@ void CollectiveFile::group(const std::string &name) {
 }
 
 // Open MPI's collective write returns success when the disk is full (4.1, fcoll/vulcan): the file would be
-// published with holes. So the place of every byte is taken before it is written.
-void CollectiveFile::reserve_space(const hdf5::Dataset &dataset) {
-  const haddr_t begin = H5Dget_offset(dataset.get());
-  if (begin == HADDR_UNDEF || !communicator_.is_root()) {
-    return; // without rows, without place
+// published with holes. And where HDF5 cannot write its own data on one rank, the others wait for it, in
+// closing the file too. So the place of every byte is taken before anything asks for it.
+void CollectiveFile::reserve_space(std::int64_t size) {
+  if (communicator_.is_root()) {
+    reserve(path_, taken_, taken_ + size + room_for_metadata);
   }
-  constexpr std::int64_t room_for_metadata = 16384;
-  const auto size = static_cast<std::int64_t>(H5Dget_storage_size(dataset.get()));
-  const std::int64_t end = static_cast<std::int64_t>(begin) + size + room_for_metadata;
-  reserve(path_, reserved_, end);
-  reserved_ = std::max(reserved_, end);
+}
+
+void CollectiveFile::note_taken(const hdf5::Dataset &dataset) {
+  const haddr_t begin = H5Dget_offset(dataset.get());
+  if (begin != HADDR_UNDEF) { // without rows, without place
+    const auto end = static_cast<std::int64_t>(begin + H5Dget_storage_size(dataset.get()));
+    taken_ = std::max(taken_, end + room_for_metadata);
+  }
 }
 
 CollectiveFile::Table CollectiveFile::make_table(const std::string &name, std::int64_t rows, hsize_t columns,
                                                  hid_t file_type, hid_t memory_type) {
   Table table{{}, memory_type, columns, rows};
+  on_all_ranks(communicator_,
+               [&] { reserve_space(rows * static_cast<std::int64_t>(columns * H5Tget_size(file_type))); });
   on_all_ranks(communicator_, [&] {
     const hdf5::Dataspace space = simple_space(static_cast<hsize_t>(rows), columns);
     const hdf5::Properties creation = plain_dataset();
     table.dataset = hdf5::Dataset(hdf5::checked(H5Dcreate2(file_.get(), name.c_str(), file_type, space.get(),
                                                            H5P_DEFAULT, creation.get(), H5P_DEFAULT),
                                                 "write " + file_name(path_, name)));
-    reserve_space(table.dataset);
+    note_taken(table.dataset);
   });
   return table;
 }

@@ -98,15 +98,17 @@ private:
                    hid_t memory_type);
   void write_rows(const Table &table, std::int64_t first, hsize_t count, const void *values);
   void agree_on_writes();
-  void reserve_space(const hdf5::Dataset &dataset);
+  /// For one more dataset.
+  void reserve_space(std::int64_t size);
+  void note_taken(const hdf5::Dataset &dataset);
   void write_attribute(const std::string &object, const std::string &name, hid_t space, Values value);
 
   const hdf5::QuietErrors quiet_;
   const Communicator communicator_;
   const std::filesystem::path path_;
   hdf5::File file_;
-  std::int64_t reserved_ = 0; ///< bytes of the file that have their place on the disk
-  std::string failed_write_;  ///< the first one of this rank
+  std::int64_t taken_ = 0;   ///< no byte of the file stands behind these
+  std::string failed_write_; ///< the first one of this rank
   bool is_complete_ = false;
   bool all_writes_collective_ = true;
 };
