@@ -89,7 +89,9 @@ void BlockSums::start(BlockSystem &system, const Candidates &candidates) {
   is_again_ = false;
   is_added_ = candidates.is_added;
   sums_ = std::span(system.contact).first(system.num_owned);
-  clear_gradients(system);
+  deformations_ = system.deformation;
+  count_ = {};
+  largest_squared_ = 0.0;
   group_.resize(PlainPair::pairs_in_group);
   group_dyads_.resize(has_dyads_ ? PlainPair::pairs_in_group : 0);
   waiting_ = candidates.waiting;
@@ -99,22 +101,23 @@ void BlockSums::start(BlockSystem &system, const Candidates &candidates) {
   kept_dyads_.clear();
 }
 
-void BlockSums::start_again(const BlockSystem &system) {
+void BlockSums::start_again() {
   is_again_ = true;
   std::fill(sums_.begin(), sums_.end(), BlockContactSum{});
-  clear_gradients(system);
+  for (Deformation &d : deformations_) {
+    d.contact = {};
+  }
+  count_ = {};
+  largest_squared_ = 0.0;
 }
 
 void BlockSums::clear(BlockSystem &system, std::size_t first, std::size_t last) {
   if (first < last) {
     std::fill_n(system.contact.begin() + static_cast<std::ptrdiff_t>(first), last - first, BlockContactSum{});
+    for (std::size_t k = system.deformation_begin[first]; k < system.deformation_begin[last]; ++k) {
+      system.deformation[k].contact = {};
+    }
   }
-}
-
-void BlockSums::clear_gradients(const BlockSystem &system) {
-  gradients_.assign(system.deformation.size(), {});
-  count_ = {};
-  largest_squared_ = 0.0;
 }
 
 inline void BlockSums::add_dyads(const BlockSystem &system, const CandidatePair &pair, std::size_t k,
@@ -122,7 +125,7 @@ inline void BlockSums::add_dyads(const BlockSystem &system, const CandidatePair 
   const std::uint32_t row = (k == 0 ? pair.lower : pair.higher).value;
   if (system.is_deformable(row)) {
     const auto add = [&](const BlockGradientSum &part) {
-      BlockGradientSum &sum = gradients_[system.deformation_begin[row]];
+      BlockGradientSum &sum = deformations_[system.deformation_begin[row]].contact;
       sum.force += part.force;
       sum.shear += part.shear;
       sum.damping += part.damping;

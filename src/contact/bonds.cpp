@@ -27,8 +27,8 @@ struct Displacement {
     const RigidDof dof = dofs_of(system, row, configuration);
     u = dof.u;
     if (system.is_deformable(row)) {
-      const Deformation &d = system.deformation_of(row);
-      stretch = (now ? d.trial : d.trial_previous) - Mat2::identity();
+      const Mat2 &trial = system.deformation_of(row).trial;
+      stretch = (now ? trial : trial - system.stretched(row)) - Mat2::identity();
     } else {
       const double half = std::sin(0.5 * dof.r);
       const double sine = std::sin(dof.r);

@@ -37,12 +37,6 @@ Mat2 turn_of_rigid(double rotated) {
   return {turn.versine, -turn.sine, turn.sine, turn.versine};
 }
 
-/// By entry of BlockSystem::deformation.
-Mat2 turn_of_deformable(const BlockSystem &system, std::size_t entry) {
-  const Deformation &d = system.deformation[entry];
-  return (d.trial - d.trial_previous) * system.trial_inverse[entry];
-}
-
 } // namespace
 
 ContactForces::ContactForces(ContactParameters parameters, Instructions instructions)
@@ -72,14 +66,13 @@ void ContactForces::begin_rows(BlockSystem &system, std::size_t first, std::size
     const RigidDof &velocity = system.velocity[row];
     BlockMotion &motion = system.motion[row];
     motion.velocity = velocity.u;
-    motion.spin = velocity.r;
-    const std::size_t k = system.deformation_begin[row];
-    const bool is_deformable = system.is_deformable(row);
-    const Mat2 turn = is_deformable ? turn_of_deformable(system, k) : turn_of_rigid(motion.rotated);
-    motion.turn[0] = {turn.xx, turn.xy};
-    if (is_deformable) {
-      motion.turn[1] = {turn.yx, turn.yy};
+    if (system.is_deformable(row)) {
+      const std::size_t k = system.deformation_begin[row];
       velocity_gradients_[k] = system.deformation[k].rate * system.trial_inverse[k];
+    } else {
+      motion.spin = velocity.r;
+      const Mat2 turn = turn_of_rigid(motion.rotated);
+      motion.turn[0] = {turn.xx, turn.xy};
     }
   }
 }
@@ -422,8 +415,11 @@ ComingConfiguration::ComingConfiguration(const BlockSystem &system) {
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     steps_.push_back(system.motion[row].increment());
   }
-  for (std::size_t entry = 0; entry < system.deformation.size(); ++entry) {
-    turns_.push_back(turn_of_deformable(system, entry));
+  turns_.resize(system.deformation.size());
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    if (system.is_deformable(row)) {
+      turns_[system.deformation_begin[row]] = system.increment_of(row).turn;
+    }
   }
 }
 

@@ -277,14 +277,9 @@ inline void find_deforming_motions(BlockSystem &system, std::size_t first,
                                    std::span<Mat2> velocity_gradients) {
   const std::size_t entry = system.deformation_begin[first];
   const Deformation *deformation = &system.deformation[entry];
-  const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
-    return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
-  };
   const ThreeLanes velocity = load_triples(&system.velocity[first].u.x);
-  const Lanes rotated = Lanes::of([&](std::size_t i) { return system.motion[first + i].rotated; });
-  const LaneMat to_reference = LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
-  const LaneMat turn = (load(&Deformation::trial) - load(&Deformation::trial_previous)) * to_reference;
-  const LaneMat rate = load(&Deformation::rate) * to_reference;
+  const LaneMat rate = LaneMat::of([&](std::size_t i) { return &deformation[i].rate; }) *
+                       LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
   std::array<std::byte *, num_lanes> to;
   std::array<std::byte *, num_lanes> to_gradients;
   for (std::size_t i = 0; i < num_lanes; ++i) {
@@ -292,8 +287,6 @@ inline void find_deforming_motions(BlockSystem &system, std::size_t first,
     to_gradients[i] = reinterpret_cast<std::byte *>(&velocity_gradients[entry + i]);
   }
   store_pairs(to, offsetof(BlockMotion, velocity), velocity[0], velocity[1]);
-  store_pairs(to, offsetof(BlockMotion, rotated), rotated, velocity[2]);
-  store_by_lane(to, offsetof(BlockMotion, turn), turn.xx(), turn.xy(), turn.yx(), turn.yy());
   store_by_lane(to_gradients, 0, rate.xx(), rate.xy(), rate.yx(), rate.yy());
 }
 

@@ -3,7 +3,7 @@
 // What block_lanes.hpp promises, with one block in each lane.
 
 #include "lane_deformable.hpp"
-#include "lane_gather.hpp"
+#include "lane_free_deformable.hpp"
 #include "lane_pose.hpp"
 #include "lane_predict.hpp"
 #include "lane_rigid.hpp"
@@ -15,7 +15,7 @@ constexpr BlockLanes blocks{num_lanes,
                             pose_deformable_quads,
                             step_deformables,
                             step_free_rows,
-                            gather_deformables,
+                            step_free_deformables,
                             predict_rigids,
                             predict_deformables,
                             add_half_works_of_rigids,

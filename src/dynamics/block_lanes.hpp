@@ -43,30 +43,32 @@ struct OwnStep {
 struct DeformableLanes {
   std::size_t count = 0;
   std::array<std::size_t, most_lanes> row;
-  // At the trial configuration, but for the elasticity that is taken from the rows.
-  std::array<Vec2, most_lanes> force;          ///< N/m
-  std::array<Mat2, most_lanes> gradient_force; ///< on F, N
-  std::array<Mat2, most_lanes> viscous;        ///< out: what beta K adds to the elastic force, N
-  std::array<double, most_lanes> most_motion;  ///< out: of the new state, m
+  bool are_held = false;                      ///< by matrices of their own
+  std::array<AnchorForce, most_lanes> held;   ///< what fixed points and viscous sides do, so far known
+  std::array<Mat2, most_lanes> viscous;       ///< out: what beta K adds to the elastic force, N
+  std::array<double, most_lanes> turned;      ///< out: rad
+  std::array<double, most_lanes> most_motion; ///< out: of the new state, m
 };
 
-/// Advances the rows and notes their elastic force. A row whose new state is not finite or turned inside out
-/// keeps its old one.
+/// Advances the rows under their gathered forces and notes their elastic force. A row whose new state is not
+/// finite or turned inside out keeps its old one.
 /// @return bit i is set where row i is such a one
 using StepDeformables = unsigned (*)(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step);
 
 /// Of row first + i in bit i.
 struct FreeStep {
-  unsigned broken = 0;   ///< not finite afterwards, and kept as it was
-  unsigned restless = 0; ///< its most_motion() is above FreeRows::calm
+  unsigned broken = 0;       ///< not finite afterwards, and kept as it was
+  unsigned restless = 0;     ///< its most_motion() is above FreeRows::calm
+  double largest_turn = 0.0; ///< of a deformable one, rad
 };
 
 /// Does to rows [first, first + width) what advance_free_rows() says.
 using StepFreeRows = FreeStep (*)(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                   const Scheme &scheme, double time_step);
 
-/// Does to rows [first, first + width) what gather_free_deformables() says.
-using GatherDeformables = void (*)(BlockSystem &system, std::size_t first, const FreeRows &rows);
+/// The same of deformable ones.
+using StepFreeDeformables = FreeStep (*)(BlockSystem &system, std::size_t first, const FreeRows &rows,
+                                         const OwnStep &step);
 
 /// Rows, no more than there are lanes.
 using RowsAtOnce = std::span<const std::size_t>;
@@ -87,7 +89,7 @@ struct BlockLanes {
   PoseQuads pose_deformable_quads;
   StepDeformables step_deformables;
   StepFreeRows step_free_rows;
-  GatherDeformables gather_deformables;
+  StepFreeDeformables step_free_deformables;
   PredictRows predict_rigids;
   PredictRows predict_deformables;
   AddHalfWorks add_half_works_of_rigids;

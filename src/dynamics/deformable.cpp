@@ -39,6 +39,14 @@ double spin_of(const Mat2 &gradient, const Mat2 &rate) {
   return motion_dof(rate * inverse(gradient)).r;
 }
 
+double spin_of(const BlockSystem &system, std::size_t row) {
+  if (!system.is_deformable(row)) {
+    return system.velocity[row].r;
+  }
+  const Deformation &d = system.deformation_of(row);
+  return spin_of(d.gradient, d.rate);
+}
+
 double spin_rate_of(const Mat2 &gradient, const Mat2 &rate, const Mat2 &acceleration) {
   const Mat2 back = inverse(gradient);
   const Mat2 velocity_gradient = rate * back;

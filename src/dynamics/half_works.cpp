@@ -9,10 +9,12 @@ HalfWorks half_works(const BlockSystem &system, std::size_t row, const AppliedFo
                  work(applied.load, half_increment), dot(applied.gravity, half_increment.u)};
   if (system.is_deformable(row)) {
     const Deformation &d = system.deformation_of(row);
-    const Mat2 stretch = d.trial - d.trial_previous;
-    half.shear += 0.5 * contract(d.shear_force, stretch);
-    half.damping += 0.5 * contract(d.damping_force, stretch);
-    half.load += 0.5 * contract(d.load_force, stretch);
+    const Mat2 stretched = system.stretched(row);
+    half.shear += 0.5 * contract(d.contact.shear, stretched);
+    half.damping += 0.5 * contract(d.contact.damping, stretched);
+    if (system.applied_to(row) != nullptr) {
+      half.load += 0.5 * contract(d.load_force, stretched);
+    }
   }
   return half;
 }
@@ -23,8 +25,7 @@ double anchor_half_work(const BlockSystem &system, std::size_t row) {
   }
   double half = 0.5 * work(system.anchor_force(row), system.motion[row].increment());
   if (system.is_deformable(row)) {
-    const Deformation &d = system.deformation_of(row);
-    half += 0.5 * contract(d.anchor_force, d.trial - d.trial_previous);
+    half += 0.5 * contract(system.deformation_of(row).anchor_force, system.stretched(row));
   }
   return half;
 }

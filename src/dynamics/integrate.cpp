@@ -1,7 +1,6 @@
 #include "gcpdda/dynamics/integrate.hpp"
 
 #include "block_lanes.hpp"
-#include "gcpdda/base/check.hpp"
 #include "gcpdda/base/prefetch.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "own_springs.hpp"
@@ -168,14 +167,7 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpa
       if (i == last) {
         break;
       }
-      const TrialConfiguration trial = next_trial(system, next, i);
-      system.motion[i].set_increment(trial.motion - system.trial[i]);
-      system.trial[i] = trial.motion;
-      if (system.is_deformable(i)) {
-        Deformation &d = system.deformation_of(i);
-        d.trial_previous = d.trial;
-        d.trial = trial.gradient;
-      }
+      set_trial(system, i, next_trial(system, next, i));
     }
     pose_in_lanes(system, first, last);
     if (then) {
@@ -184,7 +176,7 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpa
   }
 }
 
-void accelerate(BlockSystem &system, const BlockForces &forces) {
+void accelerate(BlockSystem &system) {
   for (std::size_t i = 0; i < system.num_owned; ++i) {
     const bool held = system.has_matrix(i) && !system.anchors_of(i).empty();
     if (!system.is_deformable(i)) {
@@ -194,32 +186,29 @@ void accelerate(BlockSystem &system, const BlockForces &forces) {
     }
     Deformation &d = system.deformation_of(i);
     d.internal = elastic_force(d, d.trial);
-    const Mat2 force = forces.gradient[system.deformation_begin[i]] - d.internal;
+    const Mat2 force = d.contact.force - d.internal;
     const HeldAcceleration a =
         held ? accelerate_held(system, i, system.contact[i].force, force)
              : HeldAcceleration{accelerate(system.properties[i], system.contact[i].force),
                                 force * inverse(d.second_moment)};
     d.acceleration = a.gradient;
-    system.acceleration[i] = {a.rigid.u, spin_rate_of(d.gradient, d.rate, d.acceleration)};
+    system.acceleration[i] = {a.rigid.u, 0.0};
   }
 }
 
-std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
-                                            const Scheme &scheme, double time_step, Elasticity elasticity,
-                                            std::size_t first, std::size_t last, double calm,
-                                            std::vector<RowSpan> *restless) {
-  std::optional<std::size_t> broken =
-      step_by_own_matrices(system, forces, scheme, time_step, elasticity, first, last, calm, restless);
+void solve_and_update(BlockSystem &system, const OwnForces &own, const Scheme &scheme, double time_step,
+                      Elasticity elasticity, std::size_t first, std::size_t last, double calm,
+                      AdvanceReport &report) {
+  const OwnStep step = own_step(own, scheme, time_step, elasticity);
+  step_by_own_matrices(system, step, first, last, calm, report);
   for (std::size_t i = first; i < last; ++i) {
-    const bool is_looked_at = system.has_matrix(i) && system.is_deformable(i); // in the lanes that stepped it
-    if (restless != nullptr && !is_looked_at) {
-      restless->push_back({i, i + 1});
+    if (deforms_freely(system, i)) {
+      continue; // and was looked at in the lanes that stepped it
     }
+    report.restless.push_back({i, i + 1});
     if (system.has_matrix(i)) {
       continue;
     }
-    expect(!system.is_deformable(i) || system.properties[i].keeps_its_velocity(),
-           "every deformable block that is free to move has its matrix");
     const RigidDof a = system.acceleration[i];
     const RigidDof a_new = (1.0 / (1.0 - scheme.alpha_m)) *
                            (accelerate(system.properties[i], system.contact[i].force) - scheme.alpha_m * a);
@@ -228,14 +217,13 @@ std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForc
                                   time_step * time_step * ((0.5 - scheme.beta) * a + scheme.beta * a_new));
     const RigidDof v_new = system.velocity[i] + time_step * ((1.0 - scheme.gamma) * a + scheme.gamma * a_new);
     if (!is_finite(a_new) || !is_finite(v_new) || !is_finite(d_new)) {
-      broken = std::min(i, broken.value_or(i));
+      report.note_broken(i);
       continue;
     }
     system.acceleration[i] = a_new;
     system.displacement[i] = d_new;
     system.velocity[i] = v_new;
   }
-  return broken;
 }
 
 } // namespace gcpdda

@@ -3,16 +3,16 @@
 // The step of deformable blocks, one in each lane; the derivation is in deformable.hpp.
 
 #include "block_lanes.hpp"
+#include "lane_ledger.hpp"
+#include "lane_matrix.hpp"
 #include "lane_newmark.hpp"
 
 #include "gcpdda/base/lanes.hpp"
-#include "gcpdda/dynamics/block_matrix.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/geometry/lane_mat.hpp"
 
 #include <array>
 #include <cstddef>
-#include <cstring>
 #include <vector>
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
@@ -25,48 +25,13 @@ template <class Q>
 template <class Q> [[gnu::always_inline]] inline Q base_rate_of(const OwnStep &step, const Q &v, const Q &a) {
   return v + Lanes(step.spring.rate_acceleration) * a;
 }
-using LaneDofs = std::array<Lanes, 6>; ///< (u, v, r, ex, ey, gxy) in turning axes
+/// A motion of F in turning axes, or a force that works on it: (r, ex, ey, gxy).
+using LaneGradientDofs = std::array<Lanes, 4>;
 
-/// The constant matrix of each block.
-struct LaneFactors {
-  std::array<Lanes, 21> factor;
-  LaneDofs by_torque;
-
-  template <class Get> [[gnu::always_inline]] static LaneFactors of(Get &&get) {
-    static_assert(offsetof(BlockMatrix, by_torque) == 21 * sizeof(double));
-    const auto load = [&](std::size_t first) __attribute__((always_inline)) {
-      return load_by_lane([&](std::size_t i) { return get(i)->factor.data() + first; });
-    };
-    LaneFactors f;
-    for (std::size_t k = 0; k < 20; k += 4) {
-      const FourLanes four = load(k);
-      for (std::size_t j = 0; j < 4; ++j) {
-        f.factor[k + j] = four[j];
-      }
-    }
-    const FourLanes middle = load(20);
-    const FourLanes last = load(23);
-    f.factor[20] = middle[0];
-    f.by_torque = {middle[1], middle[2], middle[3], last[1], last[2], last[3]};
-    return f;
-  }
-
-  /// As gcpdda::solve.
-  [[gnu::always_inline]] void solve(LaneDofs &x) const {
-    for (std::size_t i = 1; i < 6; ++i) {
-      for (std::size_t k = 0; k < i; ++k) {
-        x[i] = x[i] - factor[packed(i, k)] * x[k];
-      }
-    }
-    for (std::size_t i = 0; i < 6; ++i) {
-      x[i] = x[i] * factor[packed(i, i)];
-    }
-    for (std::size_t i = 5; i-- > 0;) {
-      for (std::size_t k = i + 1; k < 6; ++k) {
-        x[i] = x[i] - factor[packed(k, i)] * x[k];
-      }
-    }
-  }
+/// What accelerations in turning axes follow from: of the centroid and of F.
+struct LaneDofs {
+  LaneVec u;
+  LaneGradientDofs gradient;
 };
 
 [[gnu::always_inline]] inline LaneMat lane_rotation_of(const LaneMat &gradient) {
@@ -76,8 +41,8 @@ struct LaneFactors {
   return {{unit * c, -unit * s, unit * s, unit * c}};
 }
 
-[[gnu::always_inline]] inline LaneMat lane_gradient_of(const LaneDofs &x) {
-  return {{x[3], Lanes(0.5) * x[5] - x[2], Lanes(0.5) * x[5] + x[2], x[4]}};
+[[gnu::always_inline]] inline LaneMat lane_gradient_of(const LaneGradientDofs &x) {
+  return {{x[1], Lanes(0.5) * x[3] - x[0], Lanes(0.5) * x[3] + x[0], x[2]}};
 }
 
 /// tr(J stress stretch): minus the torque of a force on F in turning axes.
@@ -134,41 +99,237 @@ inline Lanes lane_angle_between(const LaneMat &from, const LaneMat &to) {
   });
 }
 
-/// A motion of the centroid and of F, or its rate.
-struct LaneMoving {
+/// Deformable blocks before their step.
+struct LaneDeformable {
   LaneVec u;
+  Lanes r;
+  LaneVec v;
+  LaneVec a;
   LaneMat gradient;
+  LaneMat rate;
+  LaneMat acceleration;
+  LaneMat trial;
+  LaneMat second_moment;
+  LaneMat initial_strain;
+  LaneElasticity elasticity;
 
-  /// No less than how far any point goes.
-  [[nodiscard, gnu::always_inline]] Lanes most(const Lanes &radius) const {
-    const LaneMat &f = gradient;
-    return abs(u.x) + abs(u.y) + radius * (abs(f.xx()) + abs(f.xy()) + abs(f.yx()) + abs(f.yy()));
+  /// All but what stands in lists of RigidDof: of *get(i).
+  template <class Get> [[gnu::always_inline]] void load(Get &&get) {
+    const auto take = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
+      return LaneMat::of([&](std::size_t i) { return &(get(i)->*field); });
+    };
+    gradient = take(&Deformation::gradient);
+    rate = take(&Deformation::rate);
+    acceleration = take(&Deformation::acceleration);
+    trial = take(&Deformation::trial);
+    second_moment = take(&Deformation::second_moment);
+    initial_strain = take(&Deformation::initial_strain);
+    const FourLanes stiffness = load_by_lane([&](std::size_t i) { return &get(i)->stiffness_direct; });
+    elasticity = {stiffness[0], stiffness[1], stiffness[2]};
   }
 };
 
-/// As most_motion().
-[[gnu::always_inline]] inline Lanes lane_most_motion(const LaneMoving &moved, const LaneMoving &velocity,
-                                                     const LaneMoving &acceleration, const Lanes &radius,
-                                                     double dt) {
-  return Lanes(rounding_of_most_motion) *
-         (moved.most(radius) + Lanes(dt) * (velocity.most(radius) + Lanes(dt) * acceleration.most(radius)));
+/// The matrix of blocks that nothing holds: F apart from the centroid, from what the step knows anyway. To
+/// read six times as many numbers would take longer than to find these.
+class FreeMatrix {
+public:
+  [[gnu::always_inline]] FreeMatrix(const LaneDeformable &block, const LaneMasses &of, const OwnStep &step)
+      : by_mass_(Lanes(1.0) / (Lanes(1.0 - step.scheme.alpha_m) * of.mass)) {
+    const Lanes share = 1.0 - step.scheme.alpha_m;
+    const Lanes springs =
+        (step.is_implicit ? step.spring.coming : 0.0) + step.stiffness_damping * step.spring.rate_coming;
+    const LaneMat s = share * block.second_moment;
+    const LaneElasticity &k = block.elasticity;
+    const Lanes quarter = Lanes(0.25) * (s.xx() + s.yy());
+    const Lanes half = Lanes(0.5) * s.xy();
+    factor_ = {share * of.inertia,
+               -s.xy(),
+               s.xx() + springs * k.direct,
+               s.xy(),
+               springs * k.cross,
+               s.yy() + springs * k.direct,
+               Lanes(0.5) * (s.xx() - s.yy()),
+               half,
+               half,
+               quarter + springs * k.shear};
+    factorise<4>(factor_);
+  }
+  [[gnu::always_inline]] void solve(LaneDofs &x) const {
+    x.u = by_mass_ * x.u;
+    gcpdda::GCPDDA_INSTRUCTIONS::solve(factor_, x.gradient);
+  }
+  /// The solution under a unit torque.
+  [[nodiscard, gnu::always_inline]] LaneDofs by_torque() const {
+    LaneDofs x{{0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}};
+    gcpdda::GCPDDA_INSTRUCTIONS::solve(factor_, x.gradient);
+    return x;
+  }
+
+private:
+  Lanes by_mass_;
+  std::array<Lanes, 10> factor_;
+};
+
+/// That of blocks on springs of their own, as it stands in the system.
+class HeldMatrix {
+public:
+  template <class Get> [[gnu::always_inline]] explicit HeldMatrix(Get &&get) {
+    static_assert(offsetof(BlockMatrix, by_torque) == 21 * sizeof(double));
+    const auto load = [&](std::size_t first) __attribute__((always_inline)) {
+      return load_by_lane([&](std::size_t i) { return get(i)->factor.data() + first; });
+    };
+    for (std::size_t k = 0; k < 20; k += 4) {
+      const FourLanes four = load(k);
+      for (std::size_t j = 0; j < 4; ++j) {
+        factor_[k + j] = four[j];
+      }
+    }
+    const FourLanes middle = load(20);
+    const FourLanes last = load(23);
+    factor_[20] = middle[0];
+    by_torque_ = {{middle[1], middle[2]}, {middle[3], last[1], last[2], last[3]}};
+  }
+  [[gnu::always_inline]] void solve(LaneDofs &x) const {
+    std::array<Lanes, 6> all{x.u.x, x.u.y, x.gradient[0], x.gradient[1], x.gradient[2], x.gradient[3]};
+    gcpdda::GCPDDA_INSTRUCTIONS::solve(factor_, all);
+    x = {{all[0], all[1]}, {all[2], all[3], all[4], all[5]}};
+  }
+  [[nodiscard, gnu::always_inline]] const LaneDofs &by_torque() const { return by_torque_; }
+
+private:
+  std::array<Lanes, 21> factor_;
+  LaneDofs by_torque_;
+};
+
+/// And after it.
+struct LaneStepped {
+  LaneVec u;
+  LaneVec v;
+  LaneVec a;
+  Lanes turned; ///< rad
+  LaneMat gradient;
+  LaneMat rate;
+  LaneMat acceleration;
+  LaneMat internal;
+  LaneMat viscous; ///< what beta K adds to the elastic force, N
+
+  /// Finite, and not inside out.
+  [[nodiscard, gnu::always_inline]] Mask are_sound() const {
+    // Accelerations that are not finite leave their trace in velocities.
+    Lanes nothing = Lanes(0.0) * u.x + Lanes(0.0) * u.y + Lanes(0.0) * v.x + Lanes(0.0) * v.y;
+    for (std::size_t k = 0; k < 4; ++k) {
+      nothing += Lanes(0.0) * gradient.entry[k] + Lanes(0.0) * rate.entry[k];
+    }
+    return (nothing == 0.0) & (determinant(gradient) > 0.0);
+  }
+  /// Others stay what they were.
+  void keep_where(const Mask &sound, const LaneDeformable &before, const LaneMat &internal_before) {
+    u = select(sound, u, before.u);
+    v = select(sound, v, before.v);
+    a = select(sound, a, before.a);
+    turned = select(sound, turned, 0.0);
+    const auto keep = [&](LaneMat &now, const LaneMat &old) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        now.entry[k] = select(sound, now.entry[k], old.entry[k]);
+      }
+    };
+    keep(gradient, before.gradient);
+    keep(rate, before.rate);
+    keep(acceleration, before.acceleration);
+    keep(internal, internal_before);
+    keep(viscous, {{0.0, 0.0, 0.0, 0.0}});
+  }
+  [[gnu::always_inline]] void store(const std::array<std::byte *, num_lanes> &deformation) const {
+    const auto put = [&](std::size_t offset, const LaneMat &m) __attribute__((always_inline)) {
+      store_by_lane(deformation, offset, m.xx(), m.xy(), m.yx(), m.yy());
+    };
+    put(offsetof(Deformation, gradient), gradient);
+    put(offsetof(Deformation, rate), rate);
+    put(offsetof(Deformation, acceleration), acceleration);
+    put(offsetof(Deformation, internal), internal);
+  }
+  /// As most_motion().
+  [[nodiscard, gnu::always_inline]] Lanes most_motion(const LaneVec &u_refreshed,
+                                                      const LaneMat &gradient_refreshed, const Lanes &radius,
+                                                      double dt) const {
+    const auto most = [&](const LaneVec &p, const LaneMat &f) __attribute__((always_inline)) {
+      return abs(p.x) + abs(p.y) + radius * (abs(f.xx()) + abs(f.xy()) + abs(f.yx()) + abs(f.yy()));
+    };
+    return Lanes(rounding_of_most_motion) * (most(u - u_refreshed, gradient - gradient_refreshed) +
+                                             Lanes(dt) * (most(v, rate) + Lanes(dt) * most(a, acceleration)));
+  }
+};
+
+/// @param force, gradient_force  all that acts at the trial configuration, without the elasticity
+template <class Matrix>
+[[gnu::always_inline]] inline LaneStepped step_of(const LaneDeformable &block, const Matrix &matrix,
+                                                  const Lanes &mass, const LaneVec &force,
+                                                  const LaneMat &gradient_force, const OwnStep &step) {
+  const LaneMat turn = lane_rotation_of(block.trial);
+  const LaneMat back = transposed(turn);
+  const LaneMat stretch = back * block.trial;
+  const LaneElasticity &elasticity = block.elasticity;
+  // In turning axes, at the spring's time so far known.
+  LaneMat stress = elasticity.force(stretch, block.initial_strain);
+  if (step.is_implicit) {
+    const LaneMat f_base = base_of(step, block.gradient, block.rate, block.acceleration);
+    stress = stress + elasticity.stress(back * (f_base - block.trial));
+  }
+  const bool is_viscous = step.stiffness_damping > 0.0;
+  LaneMat viscous{{0.0, 0.0, 0.0, 0.0}};
+  LaneMat resisting = stress;
+  if (is_viscous) {
+    viscous = Lanes(step.stiffness_damping) *
+              elasticity.stress(back * base_rate_of(step, block.rate, block.acceleration));
+    resisting = resisting + viscous;
+  }
+
+  const double am = step.scheme.alpha_m;
+  const LaneMat h =
+      back * (gradient_force - Lanes(am) * (block.acceleration * block.second_moment)) - resisting;
+  LaneDofs x{back(force - am * mass * block.a),
+             {h.yx() - h.xy(), h.xx(), h.yy(), Lanes(0.5) * (h.xy() + h.yx())}};
+  matrix.solve(x);
+  if (step.is_implicit) {
+    // a J added to the elastic force so that all of it, K e included, has no torque. One linear equation: it
+    // works on r alone, as the force -2 a against it.
+    const Lanes coming = step.spring.coming + step.stiffness_damping * step.spring.rate_coming;
+    const LaneDofs by_torque = matrix.by_torque();
+    const LaneMat whole = resisting + coming * elasticity.stress(lane_gradient_of(x.gradient));
+    const Lanes no_torque =
+        lane_moment(whole, stretch) /
+        (stretch.xx() + stretch.yy() +
+         Lanes(2.0) * coming * lane_moment(elasticity.stress(lane_gradient_of(by_torque.gradient)), stretch));
+    x.u = x.u - Lanes(2.0) * no_torque * by_torque.u;
+    for (std::size_t k = 0; k < 4; ++k) {
+      x.gradient[k] = x.gradient[k] - Lanes(2.0) * no_torque * by_torque.gradient[k];
+    }
+    stress = stress + (Lanes(step.spring.coming) * elasticity.stress(lane_gradient_of(x.gradient)) +
+                       LaneMat{{0.0, -no_torque, no_torque, 0.0}});
+  }
+
+  LaneStepped now;
+  now.a = turn(x.u);
+  now.acceleration = turn * lane_gradient_of(x.gradient);
+  now.internal = turn * stress;
+  now.viscous = viscous;
+  if (is_viscous) {
+    now.viscous = turn * (viscous + Lanes(step.stiffness_damping * step.spring.rate_coming) *
+                                        elasticity.stress(lane_gradient_of(x.gradient)));
+  }
+  const double dt = step.time_step;
+  now.u = position_of(step.scheme, dt, block.u, block.v, block.a, now.a);
+  now.v = velocity_of(step.scheme, dt, block.v, block.a, now.a);
+  now.gradient =
+      position_of(step.scheme, dt, block.gradient, block.rate, block.acceleration, now.acceleration);
+  now.rate = velocity_of(step.scheme, dt, block.rate, block.acceleration, now.acceleration);
+  now.turned = lane_angle_between(block.gradient, now.gradient);
+  return now;
 }
 
-/// One RigidDof for each lane.
-[[gnu::always_inline]] inline void store_dofs(const std::array<RigidDof *, num_lanes> &to, const LaneVec &u,
-                                              const Lanes &r) {
-  std::array<std::array<double, 4>, num_lanes> row;
-  std::array<std::byte *, num_lanes> places;
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    places[i] = reinterpret_cast<std::byte *>(&row[i]);
-  }
-  store_by_lane(places, 0, u.x, u.y, r, r);
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    *to[i] = {{row[i][0], row[i][1]}, row[i][2]};
-  }
-}
-
-inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step) {
+template <class MatrixOf>
+inline unsigned step_scattered(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step,
+                               MatrixOf &&matrix_of) {
   std::array<std::size_t, num_lanes> row;
   std::array<std::size_t, num_lanes> given;
   std::array<Deformation *, num_lanes> of;
@@ -183,115 +344,59 @@ inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, co
   const auto load_u = [&](const std::vector<RigidDof> &field) __attribute__((always_inline)) {
     return LaneVec::of([&](std::size_t i) { return &field[row[i]].u; });
   };
-  const LaneMat trial = load(&Deformation::trial);
-  const LaneMat gradient = load(&Deformation::gradient);
-  const LaneMat rate = load(&Deformation::rate);
-  const LaneMat acceleration = load(&Deformation::acceleration);
-  const LaneVec a = load_u(system.acceleration);
-  const FourLanes stiffness = load_by_lane([&](std::size_t i) { return &of[i]->stiffness_direct; });
-  const LaneElasticity elasticity{stiffness[0], stiffness[1], stiffness[2]};
-  const LaneFactors factors =
-      LaneFactors::of([&](std::size_t i) { return &system.matrix[system.matrix_begin[row[i]]]; });
-
-  const LaneMat turn = lane_rotation_of(trial);
-  const LaneMat back = transposed(turn);
-  const LaneMat stretch = back * trial;
-  // In turning axes, at the spring's time so far known.
-  LaneMat stress = elasticity.force(stretch, load(&Deformation::initial_strain));
-  if (step.is_implicit) {
-    const LaneMat f_base = base_of(step, gradient, rate, acceleration);
-    stress = stress + elasticity.stress(back * (f_base - trial));
+  LaneDeformable block;
+  block.u = load_u(system.displacement);
+  block.v = load_u(system.velocity);
+  block.a = load_u(system.acceleration);
+  block.load([&](std::size_t i) { return of[i]; });
+  const LaneMasses masses = LaneMasses::of([&](std::size_t i) { return &system.properties[row[i]]; });
+  LaneVec force = LaneVec::of([&](std::size_t i) { return &system.contact[row[i]].force.u; });
+  LaneMat gradient_force = LaneMat::of([&](std::size_t i) { return &of[i]->contact.force; });
+  if (lanes.are_held) {
+    force = force + LaneVec::of([&](std::size_t i) { return &lanes.held[given[i]].u; });
+    gradient_force =
+        gradient_force + LaneMat::of([&](std::size_t i) { return &lanes.held[given[i]].gradient; });
   }
-  LaneMat viscous =
-      Lanes(step.stiffness_damping) * elasticity.stress(back * base_rate_of(step, rate, acceleration));
-
-  const double am = step.scheme.alpha_m;
-  const double dt = step.time_step;
-  const LaneVec force = LaneVec::of([&](std::size_t i) { return &lanes.force[given[i]]; });
-  const LaneMat gradient_force = LaneMat::of([&](std::size_t i) { return &lanes.gradient_force[given[i]]; });
-  static_assert(offsetof(BlockProperties, radius) == offsetof(BlockProperties, mass) + 3 * sizeof(double));
-  const FourLanes masses = load_by_lane([&](std::size_t i) { return &system.properties[row[i]].mass; });
-  const Lanes &mass = masses[0];
-  const Lanes &radius = masses[3];
-  const LaneVec h_u = back(force - am * mass * a);
-  const LaneMat h = back * (gradient_force - Lanes(am) * (acceleration * load(&Deformation::second_moment))) -
-                    stress - viscous;
-  LaneDofs x{h_u.x, h_u.y, h.yx() - h.xy(), h.xx(), h.yy(), Lanes(0.5) * (h.xy() + h.yx())};
-  factors.solve(x);
-  if (step.is_implicit) {
-    // a J added to the elastic force so that all of it, K e included, has no torque. One linear equation: it
-    // works on r alone, as the force -2 a against it.
-    const Lanes coming = step.spring.coming + step.stiffness_damping * step.spring.rate_coming;
-    const LaneMat whole = stress + viscous + coming * elasticity.stress(lane_gradient_of(x));
-    const Lanes no_torque =
-        lane_moment(whole, stretch) /
-        (stretch.xx() + stretch.yy() +
-         Lanes(2.0) * coming * lane_moment(elasticity.stress(lane_gradient_of(factors.by_torque)), stretch));
-    for (std::size_t k = 0; k < 6; ++k) {
-      x[k] = x[k] - Lanes(2.0) * no_torque * factors.by_torque[k];
-    }
-    stress = stress + (Lanes(step.spring.coming) * elasticity.stress(lane_gradient_of(x)) +
-                       LaneMat{{0.0, -no_torque, no_torque, 0.0}});
-  }
-
-  const LaneVec a_new = turn(LaneVec{x[0], x[1]});
-  const LaneMat acceleration_new = turn * lane_gradient_of(x);
-  const LaneMat internal = turn * stress;
-  viscous = turn * (viscous + Lanes(step.stiffness_damping * step.spring.rate_coming) *
-                                  elasticity.stress(lane_gradient_of(x)));
-  const LaneVec v = load_u(system.velocity);
-  const LaneVec u_new = position_of(step.scheme, dt, load_u(system.displacement), v, a, a_new);
-  const LaneVec v_new = velocity_of(step.scheme, dt, v, a, a_new);
-  const LaneMat f_new = position_of(step.scheme, dt, gradient, rate, acceleration, acceleration_new);
-  const LaneMat rate_new = velocity_of(step.scheme, dt, rate, acceleration, acceleration_new);
-
-  // Accelerations that are not finite leave their trace in velocities.
-  Lanes nothing = Lanes(0.0) * u_new.x + Lanes(0.0) * u_new.y + Lanes(0.0) * v_new.x + Lanes(0.0) * v_new.y;
-  for (std::size_t k = 0; k < 4; ++k) {
-    nothing += Lanes(0.0) * f_new.entry[k] + Lanes(0.0) * rate_new.entry[k];
-  }
-  const Mask sound = (nothing == 0.0) & (determinant(f_new) > 0.0);
+  LaneStepped now = step_of(block, matrix_of(block, masses, row), masses.mass, force, gradient_force, step);
+  const Mask sound = now.are_sound();
   const unsigned broken = (!sound).by_lane() & ((1U << lanes.count) - 1U);
-
-  const Lanes r_new = Lanes::of([&](std::size_t i) { return system.displacement[row[i]].r; }) +
-                      lane_angle_between(gradient, f_new);
-  const LaneMat inverse_new = inverse(f_new);
-  const LaneMat velocity_gradient = rate_new * inverse_new;
-  const Lanes spin = lane_spin(velocity_gradient);
-  const Lanes spin_rate = lane_spin(acceleration_new * inverse_new - velocity_gradient * velocity_gradient);
-
-  Deformation unwanted;
-  RigidDof unwanted_dof;
-  std::array<RigidDof *, num_lanes> displacement;
-  std::array<RigidDof *, num_lanes> velocity;
-  std::array<RigidDof *, num_lanes> acceleration_dof;
-  std::array<std::byte *, num_lanes> state;
-  std::array<std::byte *, num_lanes> viscous_force;
-  for (std::size_t i = 0; i < num_lanes; ++i) {
-    const bool keep = (broken >> given[i] & 1U) != 0;
-    displacement[i] = keep ? &unwanted_dof : &system.displacement[row[i]];
-    velocity[i] = keep ? &unwanted_dof : &system.velocity[row[i]];
-    acceleration_dof[i] = keep ? &unwanted_dof : &system.acceleration[row[i]];
-    state[i] = reinterpret_cast<std::byte *>(keep ? &unwanted : of[i]);
-    viscous_force[i] = reinterpret_cast<std::byte *>(&lanes.viscous[given[i]]);
+  if (broken != 0) {
+    now.keep_where(sound, block, load(&Deformation::internal));
   }
-  const auto store = [&](std::size_t offset, const LaneMat &m) __attribute__((always_inline)) {
-    store_by_lane(state, offset, m.xx(), m.xy(), m.yx(), m.yy());
-  };
-  store(offsetof(Deformation, gradient), f_new);
-  store(offsetof(Deformation, rate), rate_new);
-  store(offsetof(Deformation, acceleration), acceleration_new);
-  store(offsetof(Deformation, internal), internal);
-  store_dofs(displacement, u_new, r_new);
-  store_dofs(velocity, v_new, spin);
-  store_dofs(acceleration_dof, a_new, spin_rate);
-  store_by_lane(viscous_force, 0, viscous.xx(), viscous.xy(), viscous.yx(), viscous.yy());
-  const LaneMoving moved{u_new - load_u(system.refreshed), f_new - load(&Deformation::refreshed)};
-  const Lanes most_motion = lane_most_motion(moved, {v_new, rate_new}, {a_new, acceleration_new}, radius, dt);
+  const Lanes most_motion =
+      now.most_motion(load_u(system.refreshed), load(&Deformation::refreshed), masses.radius, step.time_step);
+  std::array<std::byte *, num_lanes> state;
+  std::array<std::byte *, num_lanes> viscous;
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    state[i] = reinterpret_cast<std::byte *>(of[i]);
+    viscous[i] = reinterpret_cast<std::byte *>(&lanes.viscous[given[i]]);
+  }
+  now.store(state);
+  store_by_lane(viscous, 0, now.viscous.xx(), now.viscous.xy(), now.viscous.yx(), now.viscous.yy());
   for (std::size_t i = 0; i < lanes.count; ++i) {
+    system.displacement[row[i]].u = {now.u.x[i], now.u.y[i]};
+    system.displacement[row[i]].r += now.turned[i];
+    system.velocity[row[i]].u = {now.v.x[i], now.v.y[i]};
+    system.acceleration[row[i]].u = {now.a.x[i], now.a.y[i]};
+    lanes.turned[i] = now.turned[i];
     lanes.most_motion[i] = most_motion[i];
   }
   return broken;
+}
+
+inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step) {
+  using Rows = std::array<std::size_t, num_lanes>;
+  if (lanes.are_held) {
+    return step_scattered(
+        system, lanes, step,
+        [&](const LaneDeformable &, const LaneMasses &, const Rows &row) __attribute__((always_inline)) {
+          return HeldMatrix([&](std::size_t i) { return &system.matrix[system.matrix_begin[row[i]]]; });
+        });
+  }
+  return step_scattered(
+      system, lanes, step,
+      [&](const LaneDeformable &block, const LaneMasses &masses, const Rows &)
+          __attribute__((always_inline)) { return FreeMatrix(block, masses, step); });
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

@@ -93,19 +93,21 @@ private:
                 offsetof(BlockContactSum, damping) == 6 * sizeof(double));
 };
 
-/// Masses and the like of rows [first, first + num_lanes).
+/// Masses and the like of rows.
 struct LaneMasses {
   Lanes mass;
   Lanes inertia;
   Lanes scaling;
   Lanes radius;
 
-  [[gnu::always_inline]] explicit LaneMasses(const BlockProperties *first) {
-    const FourLanes four = load_four(first, offsetof(BlockProperties, mass));
-    mass = four[0];
-    inertia = four[1];
-    scaling = four[2];
-    radius = four[3];
+  /// Lane i holds those of *get(i).
+  template <class Get> [[gnu::always_inline]] static LaneMasses of(Get &&get) {
+    const FourLanes four = load_by_lane([&](std::size_t i) { return &get(i)->mass; });
+    return {four[0], four[1], four[2], four[3]};
+  }
+  /// Those of rows from `first` on.
+  [[gnu::always_inline]] static LaneMasses of_rows(const BlockProperties *first) {
+    return of([first](std::size_t i) { return first + i; });
   }
 
 private:
@@ -139,16 +141,17 @@ lane_half_works(const LaneContacts &contacts, const LaneApplied &applied, const 
           dot(applied.load, half_increment.u), dot(applied.gravity, half_increment.u)};
 }
 
-/// What forces on F add to them.
+/// BlockSystem::stretched() of rows [first, first + num_lanes).
+[[gnu::always_inline]] inline LaneMat stretched(const BlockSystem &system, std::size_t first,
+                                                const LaneMat &trial) {
+  return LaneMat{load_four(&system.motion[first], offsetof(BlockMotion, turn))} * trial;
+}
+
+/// What contacts do on F adds to them.
 [[gnu::always_inline]] inline void add_on_gradient(const LaneMat &shear, const LaneMat &damping,
-                                                   const LaneMat &load, const LaneMat &stretch,
-                                                   FourLanes &works) {
-  const auto half_work = [&](const LaneMat &f) __attribute__((always_inline)) {
-    return Lanes(0.5) * contract(f, stretch);
-  };
-  works[0] += half_work(shear);
-  works[1] += half_work(damping);
-  works[2] += half_work(load);
+                                                   const LaneMat &stretched, FourLanes &works) {
+  works[0] += Lanes(0.5) * contract(shear, stretched);
+  works[1] += Lanes(0.5) * contract(damping, stretched);
 }
 
 [[gnu::always_inline]] inline void add_to_ledger(const FourLanes &works, BlockLedger *first) {
@@ -160,7 +163,7 @@ lane_half_works(const LaneContacts &contacts, const LaneApplied &applied, const 
 
 /// What add_half_works() says of free rows [first, first + num_lanes), rigid or deformable ones.
 inline void add_half_works_of_rigids(BlockSystem &system, std::size_t first) {
-  const LaneApplied applied(system.body, LaneMasses(&system.properties[first]));
+  const LaneApplied applied(system.body, LaneMasses::of_rows(&system.properties[first]));
   add_to_ledger(lane_half_works(LaneContacts::load_parts(&system.contact[first]), applied,
                                 half_increments(system, first)),
                 &system.ledger[first]);
@@ -168,15 +171,15 @@ inline void add_half_works_of_rigids(BlockSystem &system, std::size_t first) {
 
 inline void add_half_works_of_deformables(BlockSystem &system, std::size_t first) {
   const Deformation *deformation = &system.deformation[system.deformation_begin[first]];
-  const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
-    return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
+  const auto load = [&](Mat2 BlockGradientSum::*field) __attribute__((always_inline)) {
+    return LaneMat::of([&](std::size_t i) { return &(deformation[i].contact.*field); });
   };
-  const LaneApplied applied(system.body, LaneMasses(&system.properties[first]));
+  const LaneMat trial = LaneMat::of([&](std::size_t i) { return &deformation[i].trial; });
+  const LaneApplied applied(system.body, LaneMasses::of_rows(&system.properties[first]));
   FourLanes works = lane_half_works(LaneContacts::load_parts(&system.contact[first]), applied,
                                     half_increments(system, first));
-  add_on_gradient(load(&Deformation::shear_force), load(&Deformation::damping_force),
-                  load(&Deformation::load_force),
-                  load(&Deformation::trial) - load(&Deformation::trial_previous), works);
+  add_on_gradient(load(&BlockGradientSum::shear), load(&BlockGradientSum::damping),
+                  stretched(system, first, trial), works);
   add_to_ledger(works, &system.ledger[first]);
 }
 

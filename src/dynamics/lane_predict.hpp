@@ -36,16 +36,15 @@ inline void predict_deformables(BlockSystem &system, std::size_t first, double b
     return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
   };
   const auto to = places_of(deformation);
-  const auto store = [&](std::size_t offset, const LaneMat &m) __attribute__((always_inline)) {
-    store_by_lane(to, offset, m.xx(), m.xy(), m.yx(), m.yy());
-  };
   const auto moved = [&](const auto &q, const auto &v, const auto &a) __attribute__((always_inline)) {
     return q + (Lanes(by_velocity) * v + Lanes(by_acceleration) * a);
   };
-  store(offsetof(Deformation, trial_previous), load(&Deformation::trial));
   const LaneMat gradient = load(&Deformation::gradient);
   const LaneMat trial = moved(gradient, load(&Deformation::rate), load(&Deformation::acceleration));
-  store(offsetof(Deformation, trial), trial);
+  const LaneMat turn = (trial - load(&Deformation::trial)) * inverse(trial);
+  store_by_lane(to, offsetof(Deformation, trial), trial.xx(), trial.xy(), trial.yx(), trial.yy());
+  store_by_lane(places_of(&system.motion[first]), offsetof(BlockMotion, turn), turn.xx(), turn.xy(),
+                turn.yx(), turn.yy());
   const LaneRigid displacement = LaneRigid::load(system.displacement[first]);
   LaneRigid dofs = moved(displacement, LaneRigid::load(system.velocity[first]),
                          LaneRigid::load(system.acceleration[first]));

@@ -21,7 +21,7 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
 inline FreeStep step_free_rows(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                const Scheme &scheme, double dt) {
-  const LaneMasses of(&system.properties[first]);
+  const LaneMasses of = LaneMasses::of_rows(&system.properties[first]);
   const LaneApplied applied(rows.body, of);
   LaneContacts sum = LaneContacts::load(&system.contact[first]);
   LaneRigid &force = sum.force;

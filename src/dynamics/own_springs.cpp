@@ -139,7 +139,7 @@ void make_block_matrices(BlockSystem &system, const Scheme &scheme, double time_
   system.matrix.clear();
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (!system.properties[row].keeps_its_velocity() &&
-        (system.is_deformable(row) || !system.anchors_of(row).empty() || system.dashpot_of(row) != nullptr)) {
+        (!system.anchors_of(row).empty() || system.dashpot_of(row) != nullptr)) {
       system.matrix.push_back(
           own_matrix(system, row, scheme, time_step, elasticity, normal_stiffness, stiffness_damping));
     }

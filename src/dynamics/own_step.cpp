@@ -1,14 +1,13 @@
 #include "own_step.hpp"
 
-#include "block_lanes.hpp"
 #include "gcpdda/dynamics/block_matrix.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/viscous_sides.hpp"
 #include "own_springs.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace gcpdda {
 
@@ -129,108 +128,103 @@ void note_springs(BlockSystem &system, std::size_t row, const OwnSprings &spring
   Deformation &d = system.deformation_of(row);
   const AnchorForce force = springs.force(system.acceleration[row].u, d.acceleration);
   note_anchors(system, row, {force.u, 0.0});
-  system.ledger[row].load += 0.5 * contract(force.gradient, d.trial - d.trial_previous);
+  system.ledger[row].load += 0.5 * contract(force.gradient, system.stretched(row));
   d.anchor_force = force.gradient;
 }
 
 /// The other half goes with the dashpots of contacts.
 void note_viscous(BlockSystem &system, std::size_t row, const Mat2 &viscous) {
   Deformation &d = system.deformation_of(row);
-  d.damping_force += -1.0 * viscous;
-  system.ledger[row].damping -= 0.5 * contract(viscous, d.trial - d.trial_previous);
+  d.contact.damping += -1.0 * viscous;
+  system.ledger[row].damping -= 0.5 * contract(viscous, system.stretched(row));
 }
 
-/// Deformable rows on their way to the lanes.
+/// Deformable rows on their way to the lanes, those on springs of their own apart from others.
 class DeformableSteps {
 public:
-  DeformableSteps(BlockSystem &system, const OwnStep &step, double calm, std::vector<RowSpan> *restless,
+  DeformableSteps(BlockSystem &system, const OwnStep &step, double calm, AdvanceReport &report,
                   Instructions instructions)
-      : system_(system), step_(step), calm_(calm), restless_(restless),
-        block_lanes_(block_lanes(instructions)) {}
+      : system_(system), step_(step), calm_(calm), report_(report), block_lanes_(block_lanes(instructions)) {
+    held_.are_held = true;
+  }
 
-  void add(std::size_t row, Vec2 force, const Mat2 &gradient_force) {
-    const std::size_t i = lanes_.count++;
-    lanes_.row[i] = row;
-    lanes_.force[i] = force;
-    lanes_.gradient_force[i] = gradient_force;
-    springs_[i].reset();
-    if (!system_.anchors_of(row).empty() || system_.dashpot_of(row) != nullptr) {
-      const AnchorForce held = springs_[i].emplace(system_, row, step_).force();
-      lanes_.force[i] += held.u;
-      lanes_.gradient_force[i] += held.gradient;
+  void add(std::size_t row) {
+    DeformableLanes &lanes = system_.has_matrix(row) ? held_ : free_;
+    const std::size_t i = lanes.count++;
+    lanes.row[i] = row;
+    if (lanes.are_held) {
+      lanes.held[i] = springs_[i].emplace(system_, row, step_).force();
     }
-    if (lanes_.count == block_lanes_.width) {
-      flush();
+    if (lanes.count == block_lanes_.width) {
+      flush(lanes);
     }
   }
   void flush() {
-    if (lanes_.count == 0) {
+    flush(free_);
+    flush(held_);
+  }
+
+private:
+  void flush(DeformableLanes &lanes) {
+    if (lanes.count == 0) {
       return;
     }
-    const unsigned broken = block_lanes_.step_deformables(system_, lanes_, step_);
-    for (std::size_t i = 0; i < lanes_.count; ++i) {
-      const std::size_t row = lanes_.row[i];
-      if (restless_ != nullptr && !(lanes_.most_motion[i] <= calm_)) {
-        restless_->push_back({row, row + 1});
+    const unsigned broken = block_lanes_.step_deformables(system_, lanes, step_);
+    for (std::size_t i = 0; i < lanes.count; ++i) {
+      const std::size_t row = lanes.row[i];
+      if (!(lanes.most_motion[i] <= calm_)) {
+        report_.restless.push_back({row, row + 1});
       }
       if ((broken >> i & 1U) != 0) {
-        broken_ = std::min(row, broken_.value_or(row));
+        report_.note_broken(row);
         continue;
       }
-      if (springs_[i]) {
+      report_.note_turn(std::abs(lanes.turned[i]));
+      if (lanes.are_held) {
         note_springs(system_, row, *springs_[i]);
       }
       if (step_.stiffness_damping > 0.0) {
-        note_viscous(system_, row, lanes_.viscous[i]);
+        note_viscous(system_, row, lanes.viscous[i]);
       }
     }
-    lanes_.count = 0;
+    lanes.count = 0;
   }
-  [[nodiscard]] std::optional<std::size_t> broken() const { return broken_; }
 
-private:
   BlockSystem &system_;
   const OwnStep &step_;
   double calm_;
-  std::vector<RowSpan> *restless_; ///< if anybody asks
+  AdvanceReport &report_;
   const BlockLanes block_lanes_;
-  DeformableLanes lanes_;
-  std::array<std::optional<OwnSprings>, most_lanes> springs_;
-  std::optional<std::size_t> broken_; ///< the first one
+  DeformableLanes free_;
+  DeformableLanes held_;
+  std::array<std::optional<OwnSprings>, most_lanes> springs_; ///< of held_
 };
 
 } // namespace
 
-std::optional<std::size_t> step_by_own_matrices(BlockSystem &system, const BlockForces &forces,
-                                                const Scheme &scheme, double time_step, Elasticity elasticity,
-                                                std::size_t first, std::size_t last, double calm,
-                                                std::vector<RowSpan> *restless, Instructions instructions) {
-  if (system.matrix.empty()) {
-    return std::nullopt;
+OwnStep own_step(const OwnForces &forces, const Scheme &scheme, double time_step, Elasticity elasticity) {
+  return {scheme,
+          time_step,
+          spring_time(scheme, time_step),
+          forces.wave,
+          forces.stiffness_damping,
+          elasticity_of(scheme, elasticity) == Elasticity::implicit};
+}
+
+void step_by_own_matrices(BlockSystem &system, const OwnStep &step, std::size_t first, std::size_t last,
+                          double calm, AdvanceReport &report, Instructions instructions) {
+  if (system.matrix.empty() && system.deformation.empty()) {
+    return;
   }
-  const OwnStep step{scheme,
-                     time_step,
-                     spring_time(scheme, time_step),
-                     forces.wave,
-                     forces.stiffness_damping,
-                     elasticity_of(scheme, elasticity) == Elasticity::implicit};
-  DeformableSteps deformables(system, step, calm, restless, instructions);
-  std::optional<std::size_t> broken;
+  DeformableSteps deformables(system, step, calm, report, instructions);
   for (std::size_t row = first; row < last; ++row) {
-    if (!system.has_matrix(row)) {
-      continue;
-    }
-    if (system.is_deformable(row)) {
-      deformables.add(row, system.contact[row].force.u, forces.gradient[system.deformation_begin[row]]);
-    } else if (!step_rigid(system, row, system.contact[row].force, step)) {
-      broken = broken.value_or(row);
+    if (deforms_freely(system, row)) {
+      deformables.add(row);
+    } else if (system.has_matrix(row) && !step_rigid(system, row, system.contact[row].force, step)) {
+      report.note_broken(row);
     }
   }
   deformables.flush();
-  if (const auto other = deformables.broken()) {
-    broken = std::min(*other, broken.value_or(*other));
-  }
-  return broken;
 }
 
 } // namespace gcpdda

@@ -18,7 +18,7 @@ namespace gcpdda::checkpoint {
 
 inline constexpr const char *format = "gcpdda checkpoint";
 inline constexpr std::int64_t version =
-    5; ///< since 5 there are body forces, and no trial_previous of rigid blocks
+    6; ///< since 5 there are body forces, and no trial_previous of rigid blocks, since 6 of none
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -158,6 +158,12 @@ template <auto Member> constexpr Field<std::vector<Deformation>> of_deformation(
   }
   > (name);
 }
+template <auto Member> constexpr Field<std::vector<Deformation>> of_gradient_sum(const char *name) {
+  return field < std::vector<Deformation>, [](auto &deformations, std::size_t row) -> auto & {
+    return deformations[row].contact.*Member;
+  }
+  > (name);
+}
 template <auto Member> constexpr Field<std::vector<RegionRecord>> of_region(const char *name) {
   return field < std::vector<RegionRecord>, [](auto &records, std::size_t row) -> auto & {
     return records[row].memory.*Member;
@@ -191,10 +197,9 @@ inline constexpr std::array deformation_fields{
     detail::of_deformation<&Deformation::rate>("/deformation/rate"),
     detail::of_deformation<&Deformation::acceleration>("/deformation/acceleration"),
     detail::of_deformation<&Deformation::trial>("/deformation/trial"),
-    detail::of_deformation<&Deformation::trial_previous>("/deformation/trial_previous"),
     detail::of_deformation<&Deformation::internal>("/deformation/internal"),
-    detail::of_deformation<&Deformation::shear_force>("/deformation/shear_force"),
-    detail::of_deformation<&Deformation::damping_force>("/deformation/damping_force"),
+    detail::of_gradient_sum<&BlockGradientSum::shear>("/deformation/shear_force"),
+    detail::of_gradient_sum<&BlockGradientSum::damping>("/deformation/damping_force"),
     detail::of_deformation<&Deformation::load_force>("/deformation/load_force"),
     detail::of_deformation<&Deformation::anchor_force>("/deformation/anchor_force")};
 inline constexpr std::array region_fields{detail::of_region<&RegionMemory::shear>("/region/shear"),
@@ -214,7 +219,7 @@ static_assert(sizeof(BlockMark) == 6 * sizeof(double));
 static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
-static_assert(sizeof(Deformation) == (13 * 4 + 3) * sizeof(double));
+static_assert(sizeof(Deformation) == 7 * 64);
 static_assert(sizeof(RegionMemory) == 9 * sizeof(double));
 
 inline constexpr std::array<const char *, 8> groups{"/clock", "/run",   "/stage",       "/bolt",

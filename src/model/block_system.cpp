@@ -35,11 +35,11 @@ void append_shape(BlockSystem &system, std::span<const Vec2> vertices, Vec2 cent
   }
 }
 
-void append_deformation(BlockSystem &system, const Moments &moments, const Material &material,
-                        const RigidDof &velocity, bool plane_strain) {
+void append_deformation(BlockSystem &system, const Moments &moments, const Material &material, double spin,
+                        bool plane_strain) {
   Deformation d;
   d.second_moment = material.density * Mat2{moments.xx, moments.xy, moments.xy, moments.yy};
-  d.rate = {0.0, -velocity.r, velocity.r, 0.0};
+  d.rate = {0.0, -spin, spin, 0.0};
   set_elasticity(d, moments.area, material, plane_strain);
   system.deformation.push_back(d);
 }
@@ -106,7 +106,8 @@ void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, cons
     append_attachments(system, block, moments.centroid);
   }
   if (kind == BlockKind::deformable) {
-    append_deformation(system, moments, material, system.velocity.back(), plane_strain);
+    append_deformation(system, moments, material, system.velocity.back().r, plane_strain);
+    system.velocity.back().r = 0.0;
   }
   append_shape(system, block.vertices, moments.centroid);
   p.has_edge_joints = std::any_of(block.edge_joint.begin(), block.edge_joint.end(),
@@ -179,6 +180,33 @@ void list_applied(BlockSystem &system, bool all) {
            has_any(system.dashpot_begin, row) || system.properties[row].keeps_its_velocity();
   };
   list_rows(system, needs, system.applied_begin, system.applied);
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (system.is_deformable(row) && system.applied_to(row) == nullptr) {
+      system.deformation_of(row).load_force = {};
+      system.deformation_of(row).anchor_force = {};
+    }
+  }
+}
+
+void set_trial(BlockSystem &system, std::size_t row, const TrialConfiguration &trial) {
+  BlockMotion &motion = system.motion[row];
+  motion.set_increment(trial.motion - system.trial[row]);
+  system.trial[row] = trial.motion;
+  if (system.is_deformable(row)) {
+    Deformation &d = system.deformation_of(row);
+    const Mat2 turn = (trial.gradient - d.trial) * inverse(trial.gradient);
+    d.trial = trial.gradient;
+    motion.turn = {Vec2{turn.xx, turn.xy}, Vec2{turn.yx, turn.yy}};
+  }
+}
+
+void forget_increments(BlockSystem &system) {
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    system.motion[row].set_increment({});
+    if (system.is_deformable(row)) {
+      system.motion[row].turn = {};
+    }
+  }
 }
 
 void keep_rows(BlockSystem &system, std::size_t count) {

@@ -344,17 +344,13 @@ void Ghosts::finish(BlockSystem &system) {
     for (const std::uint32_t row : n.receive_rows) {
       GhostMotion motion;
       from = take(from, motion);
-      system.motion[row].set_increment(motion.trial - system.trial[row]);
-      system.trial[row] = motion.trial;
       system.velocity[row] = motion.velocity;
+      GhostDeformation deformation;
       if (system.is_deformable(row)) {
-        Deformation &d = system.deformation_of(row);
-        GhostDeformation deformation;
         from = take(from, deformation);
-        d.trial_previous = d.trial;
-        d.trial = deformation.trial;
-        d.rate = deformation.rate;
+        system.deformation_of(row).rate = deformation.rate;
       }
+      set_trial(system, row, {motion.trial, deformation.trial});
     }
   }
   pose(system, system.num_owned, system.first_fixed());

@@ -237,21 +237,19 @@ enum class Moment { now, middle };
 /// at the first one and half its work on the way: with implicit elasticity the energy at F* itself says
 /// nothing.
 void add_strain(const BlockSystem &blocks, Moment moment, ExactSum &sum) {
-  for (std::size_t i = 0; i < blocks.deformation_begin[blocks.num_owned]; ++i) {
-    const Deformation &d = blocks.deformation[i];
-    sum.add(moment == Moment::now
-                ? strain_energy(d, d.trial)
-                : applied_strain_energy(d) + 0.5 * contract(d.internal, d.trial - d.trial_previous));
+  for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+    if (blocks.is_deformable(row)) {
+      const Deformation &d = blocks.deformation_of(row);
+      sum.add(moment == Moment::now
+                  ? strain_energy(d, d.trial)
+                  : applied_strain_energy(d) + 0.5 * contract(d.internal, blocks.stretched(row)));
+    }
   }
 }
 
 /// Mean rate of F between the last two trial configurations; zero for a rigid row.
 Mat2 stretch_rate(const BlockSystem &blocks, std::size_t row, double time_step) {
-  if (!blocks.is_deformable(row)) {
-    return {};
-  }
-  const Deformation &d = blocks.deformation_of(row);
-  return (1.0 / time_step) * (d.trial - d.trial_previous);
+  return blocks.is_deformable(row) ? (1.0 / time_step) * blocks.stretched(row) : Mat2{};
 }
 
 Terms initial_terms(const Simulation &simulation) {

@@ -111,7 +111,7 @@ void Simulation::accelerate_owned() {
   sum_contacts_of_blocks();
   blocks_.body = {gravity(), ground_acceleration()};
   gather_forces(0, blocks_.num_owned, blocks_.body);
-  accelerate(blocks_, forces_);
+  accelerate(blocks_);
   prescribe_motion();
 }
 
@@ -130,7 +130,7 @@ void Simulation::find_initial_state() {
     }
     accelerate_owned();
   }
-  restless_ = {{0, blocks_.num_owned}};
+  moving_.report.restless = {{0, blocks_.num_owned}};
   report();
   counters_.evaluations = 0; // these are of steps
   counters_.block_steps = 0;

@@ -93,9 +93,8 @@ void Simulation::prescribe_motion() {
 }
 
 void Simulation::prepare_forces() {
-  forces_.gradient.resize(blocks_.deformation.size());
-  forces_.wave = incoming_wave();
-  forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
+  own_forces_.wave = incoming_wave();
+  own_forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
 }
 
 void Simulation::begin_moving() {
@@ -103,9 +102,10 @@ void Simulation::begin_moving() {
   moving_.body = {gravity(), ground_acceleration()};
   moving_.predicted = 0;
   moving_.moved = 0;
-  moving_.broken.reset();
   moving_.waiting.clear();
-  restless_.clear();
+  moving_.report.broken.reset();
+  moving_.report.restless.clear();
+  moving_.report.largest_turn = 0.0;
 }
 
 void Simulation::predict_to(std::size_t end) {
@@ -145,9 +145,8 @@ void Simulation::move_blocks() {
   }
   move_rows(moving_.moved, blocks_.num_owned);
   blocks_.body = moving_.body;
-  if (moving_.broken) {
-    keep_first(local_fault_,
-               {Fault::Cause::not_finite, blocks_.properties[*moving_.broken].id, {}, 0.0, 0.0});
+  if (const auto row = moving_.report.broken) {
+    keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0});
   }
 }
 
@@ -158,43 +157,27 @@ void Simulation::move_rows(std::size_t first, std::size_t end) {
     gather_forces(first, last, moving_.body);
     {
       const auto scope = phases_.measure(Phase::update);
-      if (const auto row = solve_and_update(blocks_, forces_, scheme_, plan_.time_step, scene_.run.elasticity,
-                                            first, last, calm_motion(), &restless_)) {
-        moving_.broken = std::min(*row, moving_.broken.value_or(*row));
-      }
+      solve_and_update(blocks_, own_forces_, scheme_, plan_.time_step, scene_.run.elasticity, first, last,
+                       calm_motion(), moving_.report);
     }
     first = move_free_rows(last, end);
   }
 }
 
-// Most blocks of most scenes are rigid, and only others act on them: with all that follows in one go.
+// On most blocks of most scenes only others act: with all that follows in one go.
 std::size_t Simulation::move_free_rows(std::size_t first, std::size_t end) {
-  if (!has_free_rows()) {
+  if (scene_.run.rayleigh.mass_damping != 0.0) {
     return first;
   }
   const auto scope = phases_.measure(Phase::update);
-  return advance_free_rows(blocks_, free_rows(moving_.body), scheme_, plan_.time_step, first, end,
-                           moving_.broken, restless_);
-}
-
-bool Simulation::has_free_rows() const {
-  return scene_.run.rayleigh.mass_damping == 0.0;
-}
-
-FreeRows Simulation::free_rows(const BodyForces &body) {
-  return {body, local_damping_, calm_motion(), contacts_.sums().of_gradients(), forces_.gradient};
+  return advance_free_rows(blocks_, {moving_.body, local_damping_, calm_motion(), bolts_.empty()},
+                           own_forces_, scheme_, plan_.time_step, scene_.run.elasticity, first, end,
+                           moving_.report);
 }
 
 void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
   const auto scope = phases_.measure(Phase::forces);
-  const bool are_gathered_together = has_free_rows() && bolts_.empty();
   for (std::size_t row = first; row < last; ++row) {
-    if (are_gathered_together) {
-      row = gather_free_deformables(blocks_, free_rows(body), row, last);
-      if (row == last) {
-        break;
-      }
-    }
     const WaterLoad water = scene_.water.empty()
                                 ? WaterLoad{}
                                 : water_load(blocks_, row, scene_.water, -body.gravity.y, outline_);
@@ -202,8 +185,8 @@ void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyFo
     if (blocks_.is_deformable(row)) {
       gather_gradient(row, water);
     }
-    apply_mass_damping(blocks_, row, forces_, scene_.run.rayleigh.mass_damping);
-    apply_local_damping(blocks_, row, forces_, local_damping_);
+    apply_mass_damping(blocks_, row, scene_.run.rayleigh.mass_damping);
+    apply_local_damping(blocks_, row, local_damping_);
     add_to_ledger(blocks_, row, half_works(blocks_, row, applied));
   }
 }
@@ -240,17 +223,16 @@ AppliedForces Simulation::gather_block(std::size_t row, const BodyForces &body, 
 void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   Deformation &d = blocks_.deformation_of(row);
   const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];
-  const BlockGradientSum sum =
-      in_reference_axes(contacts_.sums().of_gradients()[blocks_.deformation_begin[row]], to_reference);
-  d.shear_force = sum.shear;
-  d.damping_force = sum.damping;
-  d.load_force = unloading_of(blocks_.properties[row].id).gradient + water.dyad * transposed(to_reference);
-  for (const MaterialLoad &load : blocks_.loads_of(row)) {
-    d.load_force += outer(load.force, load.point);
+  d.contact = in_reference_axes(d.contact, to_reference);
+  if (blocks_.applied_to(row) != nullptr) {
+    d.load_force = unloading_of(blocks_.properties[row].id).gradient + water.dyad * transposed(to_reference);
+    for (const MaterialLoad &load : blocks_.loads_of(row)) {
+      d.load_force += outer(load.force, load.point);
+    }
+    d.contact.force += d.load_force;
   }
-  forces_.gradient[blocks_.deformation_begin[row]] = sum.force + d.load_force;
   if (!bolts_.empty()) {
-    forces_.gradient[blocks_.deformation_begin[row]] += bolts_.gradient_force(blocks_.deformation_begin[row]);
+    d.contact.force += bolts_.gradient_force(blocks_.deformation_begin[row]);
   }
   blocks_.contact[row].shear.r = 0.0;
   blocks_.contact[row].damping.r = 0.0;

@@ -19,7 +19,7 @@ FrameRow row_of(const BlockSystem &blocks, std::size_t row) {
   out.centroid = blocks.centroid(row);
   out.displacement = blocks.displacement[row].u;
   out.rotation = blocks.displacement[row].r;
-  out.velocity = {blocks.velocity[row].u.x, blocks.velocity[row].u.y, blocks.velocity[row].r};
+  out.velocity = {blocks.velocity[row].u.x, blocks.velocity[row].u.y, spin_of(blocks, row)};
   return out;
 }
 

@@ -214,7 +214,7 @@ double Simulation::calm_motion() const {
 
 double Simulation::own_status() {
   double status = 0.0;
-  for (const RowSpan &rows : restless_) {
+  for (const RowSpan &rows : moving_.report.restless) {
     for (std::size_t row = rows.first; row < rows.last; ++row) {
       if (most_motion(blocks_, row, plan_.time_step) <= calm_motion()) { // as of nearly all, without a root
         continue;
@@ -243,14 +243,7 @@ void Simulation::count() {
   counters_.contact_steps += contact_count_.touching;
   counters_.cross_rank_contacts = std::max(counters_.cross_rank_contacts, contact_count_.crossing);
   counters_.cross_rank_contacts_formed += contact_count_.crossing_formed;
-  if (!blocks_.deformation.empty()) {
-    for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
-      if (blocks_.is_deformable(row)) {
-        counters_.fastest_turn =
-            std::max(counters_.fastest_turn, plan_.time_step * std::abs(blocks_.velocity[row].r));
-      }
-    }
-  }
+  counters_.fastest_turn = std::max(counters_.fastest_turn, moving_.report.largest_turn);
 }
 
 // The fault with the smallest block id, so that its report does not depend on the ranks.

@@ -108,11 +108,9 @@ void Simulation::look_at_stage() {
     const RigidDof force = blocks_.contact[row].force + applied.anchor;
     const double along_x = undamped(force.u.x, v.u.x, local_damping_);
     const double along_y = undamped(force.u.y, v.u.y, local_damping_);
-    const double turning =
-        blocks_.is_deformable(row)
-            ? norm(forces_.gradient[blocks_.deformation_begin[row]] - blocks_.deformation_of(row).internal +
-                   blocks_.deformation_of(row).anchor_force)
-            : std::abs(undamped(force.r, v.r, local_damping_));
+    const double turning = blocks_.is_deformable(row)
+                               ? norm(unbalanced_on_gradient(blocks_.deformation_of(row)))
+                               : std::abs(undamped(force.r, v.r, local_damping_));
     unbalanced = std::max({unbalanced, norm(Vec2{along_x, along_y}), turning / block.radius});
     acting = std::max({acting, block.heavy_mass() * norm(scene_.run.gravity), norm(applied.load.u)});
     BlockMark &mark = marks[row];
@@ -185,9 +183,7 @@ void Simulation::book_stop() {
       const Mat2 gradient_behind = d.gradient - d.trial;
       force.r = 0.0;
       stretch = (1.0 / dt) * (gradient_behind + gradient_ahead);
-      work_on_gradient =
-          contract(forces_.gradient[blocks_.deformation_begin[row]] - d.internal + d.anchor_force,
-                   gradient_ahead - gradient_behind);
+      work_on_gradient = contract(unbalanced_on_gradient(d), gradient_ahead - gradient_behind);
     }
     blocks_.ledger[row].damping += 0.5 * (work(force, ahead - behind) + work_on_gradient) -
                                    kinetic_energy_of(blocks_, row, (1.0 / dt) * (behind + ahead), stretch);
@@ -241,12 +237,7 @@ void Simulation::set_to_rest() {
 
 // The contact forces of the present trial configuration once more: nothing has moved since.
 void Simulation::evaluate_still() {
-  for (BlockMotion &motion : blocks_.motion) {
-    motion.set_increment({});
-  }
-  for (Deformation &d : blocks_.deformation) {
-    d.trial_previous = d.trial;
-  }
+  forget_increments(blocks_);
   take(contacts_.evaluate(blocks_, candidates_, history_));
   evaluate_bolts();
 }

@@ -201,14 +201,10 @@ TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
   for (int round = 0; round < 20; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
     for (std::size_t id = 0; id < num_mobile; ++id) { // every rank moves the whole
-      c.whole.motion[id].set_increment(moved(id, round) - c.whole.trial[id]);
-      c.whole.trial[id] = moved(id, round);
+      set_trial(c.whole, id, {moved(id, round), stretched(id, round)});
       c.whole.velocity[id] = testing::any_bits(random);
       if (c.whole.is_deformable(id)) {
-        Deformation &d = c.whole.deformation_of(id);
-        d.trial_previous = d.trial;
-        d.trial = stretched(id, round);
-        d.rate = 1e3 * stretched(id, round + 1000);
+        c.whole.deformation_of(id).rate = 1e3 * stretched(id, round + 1000);
       }
     }
     pose(c.whole, 0, c.whole.num_rows());
@@ -225,6 +221,9 @@ TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
     for (std::size_t row = c.mine.num_owned; row < c.mine.first_fixed(); ++row) {
       const std::size_t id = c.id_of(row);
       EXPECT_EQ(c.mine.motion[row].increment(), c.whole.motion[id].increment());
+      if (c.mine.is_deformable(row)) {
+        EXPECT_EQ(c.mine.stretched(row), c.whole.stretched(id));
+      }
       EXPECT_EQ(c.mine.motion[row].centroid, c.whole.motion[id].centroid);
       EXPECT_EQ(c.mine.motion[row].box.low, c.whole.motion[id].box.low);
       EXPECT_EQ(c.mine.motion[row].box.high, c.whole.motion[id].box.high);

@@ -78,7 +78,9 @@ struct ContactBench {
   ContactForces forces;
   ContactHistory history;
   Candidates candidates;
-  std::vector<RigidDof> moved_on; ///< trial configurations of owned rows at the last evaluation
+  // Trial configurations at the last evaluation, of owned rows and by entry of BlockSystem::deformation.
+  std::vector<RigidDof> moved_on;
+  std::vector<Mat2> stretched_on;
 
   ContactBench(BlockSystem blocks, JointLaws joints, double damping_ratio = 0.0,
                Instructions instructions = Instructions::widest)
@@ -94,6 +96,9 @@ struct ContactBench {
     }
     candidates = make_candidates(system, pairs, forces.parameters(), {}, history, infinite_skin);
     moved_on.resize(system.num_owned);
+    for (const Deformation &d : system.deformation) {
+      stretched_on.push_back(d.trial);
+    }
   }
 
   /// What evaluate() saw of the first region.
@@ -105,14 +110,20 @@ struct ContactBench {
   const Seen &evaluate() {
     pose(system, 0, system.num_rows());
     for (std::size_t row = 0; row < system.num_owned; ++row) {
-      system.motion[row].set_increment(system.trial[row] - moved_on[row]);
+      const RigidDof trial = std::exchange(system.trial[row], moved_on[row]);
+      Mat2 gradient;
+      if (system.is_deformable(row)) {
+        gradient =
+            std::exchange(system.deformation_of(row).trial, stretched_on[system.deformation_begin[row]]);
+      }
+      set_trial(system, row, {trial, gradient});
     }
     report = forces.evaluate(system, candidates, history);
     regions = Regions(system, candidates, history, forces);
     for (std::size_t row = 0; row < system.num_owned; ++row) {
       moved_on[row] = system.trial[row];
       if (system.is_deformable(row)) {
-        system.deformation_of(row).trial_previous = system.deformation_of(row).trial;
+        stretched_on[system.deformation_begin[row]] = system.deformation_of(row).trial;
       }
     }
     seen = {};

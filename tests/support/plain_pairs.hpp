@@ -89,7 +89,7 @@ inline double expect_same(const RegionForce &a, const RegionForce &b, double sti
 
 /// Of the only contact of a deformable row.
 inline const BlockGradientSum &dyads_on(const ContactBench &bench, std::size_t row) {
-  return bench.forces.sums().of_gradients()[bench.system.deformation_begin[row]];
+  return bench.system.deformation_of(row).contact;
 }
 
 inline void evaluate_and_finish(ContactBench &first, ContactBench &second) {

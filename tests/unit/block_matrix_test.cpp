@@ -148,7 +148,7 @@ TEST(BlockMatrix, HoldsMassElasticityAndAnchors) {
 }
 
 // Who needs none has none.
-TEST(BlockMatrix, IsForBlocksThatDeformOrAreHeld) {
+TEST(BlockMatrix, IsForBlocksThatAreHeld) {
   BlockSystem system;
   SceneBlock block;
   block.vertices = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
@@ -160,12 +160,13 @@ TEST(BlockMatrix, IsForBlocksThatDeformOrAreHeld) {
   block.driven = true;
   append_block(system, BlockId{3}, block, rock, BlockKind::rigid);
   block.driven = false;
+  append_block(system, BlockId{4}, block, rock, BlockKind::deformable);
   block.fixed = true;
-  append_block(system, BlockId{4}, block, rock, BlockKind::fixed);
+  append_block(system, BlockId{5}, block, rock, BlockKind::fixed);
   const Scheme scheme = make_scheme(SchemeKind::generalized_alpha, 0.8, ContactTime::leapfrog);
   for (int again = 0; again < 2; ++again) {
     make_block_matrices(system, scheme, 1e-3, Elasticity::implicit, 1e9);
-    const std::vector<std::uint32_t> begin{0, 0, 1, 2, 2, 2};
+    const std::vector<std::uint32_t> begin{0, 0, 0, 1, 1, 2, 2};
     for (std::size_t row = 0; row < begin.size(); ++row) {
       EXPECT_EQ(system.matrix_begin[row], begin[row]);
     }

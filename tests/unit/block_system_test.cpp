@@ -210,8 +210,8 @@ BlockSystem filled_system() {
   }
   Deformation &d = system.deformation[0];
   for (Mat2 *field :
-       {&d.gradient, &d.rate, &d.acceleration, &d.trial, &d.trial_previous, &d.refreshed, &d.second_moment,
-        &d.internal, &d.shear_force, &d.damping_force, &d.load_force, &d.anchor_force}) {
+       {&d.gradient, &d.rate, &d.acceleration, &d.trial, &d.refreshed, &d.second_moment, &d.internal,
+        &d.contact.force, &d.contact.shear, &d.contact.damping, &d.load_force, &d.anchor_force}) {
     *field = matrix();
   }
   system.matrix_begin = {0, 1, 2, 2};

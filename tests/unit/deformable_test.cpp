@@ -49,13 +49,9 @@ BlockSystem one_block(BlockKind kind = BlockKind::deformable, bool plane_strain 
   return system;
 }
 
-BlockForces no_forces(const BlockSystem &system) {
-  return {std::vector<Mat2>(system.deformation.size())};
-}
-
 void put(BlockSystem &system, const Mat2 &gradient) {
   Deformation &d = system.deformation[0];
-  d.gradient = d.trial = d.trial_previous = gradient;
+  d.gradient = d.trial = gradient;
   pose(system, 0, 1);
 }
 
@@ -119,7 +115,7 @@ TEST(Energies, OfKnownStates) {
               1e3 * epsilon / stretch * stored);
   std::mt19937 engine(5);
   put(system, random_gradient(engine, 0.01));
-  accelerate(system, no_forces(system)); // applies P*
+  accelerate(system); // applies P*
   const double trial = strain_energy(d, d.trial);
   EXPECT_NEAR(applied_strain_energy(d), trial, 1e-11 * trial);
 }
@@ -143,13 +139,12 @@ TEST(Accelerate, DeformableRows) {
   std::mt19937 engine(4);
   BlockSystem system = one_block();
   put(system, random_gradient(engine, 0.01));
-  BlockForces forces = no_forces(system);
+  Deformation &d = system.deformation[0];
   system.contact[0].force.u = {3e3, -1e3};
-  forces.gradient[0] = 1e4 * random_gradient(engine, 0.5);
-  accelerate(system, forces);
-  const Deformation &d = system.deformation[0];
+  d.contact.force = 1e4 * random_gradient(engine, 0.5);
+  accelerate(system);
   EXPECT_EQ(d.internal, elastic_force(d, d.trial));
-  EXPECT_LE(norm(d.acceleration * d.second_moment + d.internal - forces.gradient[0]),
+  EXPECT_LE(norm(d.acceleration * d.second_moment + d.internal - d.contact.force),
             32.0 * epsilon * norm(d.internal));
   EXPECT_NEAR(system.acceleration[0].u.x, 3e3 / system.properties[0].mass, 1e-15);
 }
@@ -158,14 +153,13 @@ TEST(Accelerate, DeformableRows) {
 TEST(Accelerate, AgreesWithTheFirstStep) {
   for (const Elasticity elasticity : {Elasticity::implicit, Elasticity::explicit_}) {
     BlockSystem system = one_block();
-    BlockForces forces = no_forces(system);
-    forces.gradient[0] = {2e4, 5e3, -1e4, 3e3};
-    accelerate(system, forces);
+    system.deformation[0].contact.force = {2e4, 5e3, -1e4, 3e3};
+    accelerate(system);
     const Mat2 start = system.deformation[0].acceleration;
     constexpr double time_step = 1e-9; // so short that elasticity does not answer yet
     make_block_matrices(system, usual_scheme(), time_step, elasticity, 1e9);
     predict(system, usual_scheme(), time_step);
-    ASSERT_FALSE(solve_and_update(system, forces, usual_scheme(), time_step, elasticity));
+    ASSERT_FALSE(solve_and_update(system, {}, usual_scheme(), time_step, elasticity));
     EXPECT_LE(norm(system.deformation[0].acceleration - start), 1e-9 * norm(start));
   }
 }
@@ -183,7 +177,7 @@ TEST(Predict, KeepsTheUnwrappedAngle) {
   const double turned = std::atan(100.0 * usual_scheme().trial_velocity * time_step);
   EXPECT_NEAR(system.trial[0].r, angle + turned, 32.0 * epsilon * angle);
   make_block_matrices(system, usual_scheme(), time_step, Elasticity::explicit_, 1e9);
-  ASSERT_FALSE(solve_and_update(system, no_forces(system), usual_scheme(), time_step, Elasticity::explicit_));
+  ASSERT_FALSE(solve_and_update(system, {}, usual_scheme(), time_step, Elasticity::explicit_));
   EXPECT_NEAR(system.displacement[0].r, angle + 0.1, 1e-3);
 }
 
@@ -194,19 +188,14 @@ TEST(SolveAndUpdate, KeepsABrokenDeformableBlock) {
         std::pair(0.0, Mat2{-1e13, 0.0, 0.0, 0.0})}) { // the last one turns it inside out
     BlockSystem system = one_block();
     system.contact[0].force.u.x = force;
-    const BlockForces forces{{on_gradient}};
+    system.deformation[0].contact.force = on_gradient;
     make_block_matrices(system, usual_scheme(), 1e-3, Elasticity::implicit, 1e9);
     predict(system, usual_scheme(), 1e-3);
-    EXPECT_EQ(solve_and_update(system, forces, usual_scheme(), 1e-3, Elasticity::implicit),
+    EXPECT_EQ(solve_and_update(system, {}, usual_scheme(), 1e-3, Elasticity::implicit),
               std::optional<std::size_t>(0));
     EXPECT_EQ(system.deformation[0].gradient, Mat2::identity());
     EXPECT_EQ(system.velocity[0], RigidDof{});
   }
-}
-
-TEST(SolveAndUpdate, WantsTheMatrices) {
-  BlockSystem system = one_block();
-  EXPECT_ANY_THROW(solve_and_update(system, no_forces(system), usual_scheme(), 1e-3, Elasticity::implicit));
 }
 
 // No vertex leaves the bounds, whatever F does.
@@ -228,8 +217,7 @@ TEST(MotionBound, HoldsForADeformableBlock) {
     for (std::size_t k = 0; k < before.size(); ++k) {
       EXPECT_LE(norm(system.vertex[k] - before[k]), bound);
     }
-    ASSERT_FALSE(
-        solve_and_update(system, no_forces(system), usual_scheme(), time_step, Elasticity::implicit));
+    ASSERT_FALSE(solve_and_update(system, {}, usual_scheme(), time_step, Elasticity::implicit));
     const std::vector<Vec2> after = current_vertices(system, 0);
     double farthest = 0.0;
     for (std::size_t k = 0; k < before.size(); ++k) {
@@ -254,10 +242,10 @@ TEST(StaticStretch, IsHookes) {
       make_block_matrices(system, usual_scheme(), time_step, elasticity, 1e9);
       for (int k = 0; k < 100000; ++k) {
         predict(system, usual_scheme(), time_step);
-        BlockForces forces = no_forces(system);
-        forces.gradient[0] = area * Mat2{sx, sxy, sxy, sy};
-        apply_local_damping(system, 0, forces, 0.5);
-        ASSERT_FALSE(solve_and_update(system, forces, usual_scheme(), time_step, elasticity));
+        system.contact[0] = {};
+        system.deformation[0].contact = {area * Mat2{sx, sxy, sxy, sy}, {}, {}};
+        apply_local_damping(system, 0, 0.5);
+        ASSERT_FALSE(solve_and_update(system, {}, usual_scheme(), time_step, elasticity));
       }
       const double e = plane_strain ? modulus / (1.0 - ratio * ratio) : modulus;
       const double nu = plane_strain ? ratio / (1.0 - ratio) : ratio;
@@ -280,14 +268,13 @@ TEST(LocalDamping, ShareOfZeroChangesNoBit) {
   BlockSystem system = one_block();
   system.velocity[0] = {{1.0, -2.0}, 3.0};
   system.deformation[0].rate = random_gradient(engine, 1.0);
-  BlockForces forces = no_forces(system);
   const RigidDof force{{1.0, 2.0}, 3.0};
+  const Mat2 on_gradient = random_gradient(engine, 1.0);
   system.contact[0].force = force;
-  forces.gradient[0] = random_gradient(engine, 1.0);
-  const BlockForces before = forces;
-  apply_local_damping(system, 0, forces, 0.0);
+  system.deformation[0].contact.force = on_gradient;
+  apply_local_damping(system, 0, 0.0);
   EXPECT_EQ(system.contact[0].force, force);
-  EXPECT_EQ(forces.gradient, before.gradient);
+  EXPECT_EQ(system.deformation[0].contact.force, on_gradient);
   EXPECT_EQ(system.contact[0].damping, RigidDof{});
 }
 
@@ -301,27 +288,26 @@ TEST(LocalDamping, TakesAShareOfEachComponent) {
     d.rate = random_gradient(engine, 1.0);
     d.internal = 1e8 * random_gradient(engine, 1.0);
     system.velocity[0].u = {next(engine), 0.0};
-    BlockForces forces = no_forces(system);
     const double fx = next(engine);
     system.contact[0].force.u = {fx, 2.0};
-    forces.gradient[0] = 1e8 * random_gradient(engine, 1.0);
-    const BlockForces before = forces;
+    const Mat2 before = 1e8 * random_gradient(engine, 1.0);
+    d.contact.force = before;
     constexpr double share = 0.7;
-    apply_local_damping(system, 0, forces, share);
+    apply_local_damping(system, 0, share);
     EXPECT_DOUBLE_EQ(system.contact[0].force.u.x,
                      fx - share * std::abs(fx) * std::copysign(1.0, system.velocity[0].u.x));
     EXPECT_EQ(system.contact[0].force.u.y, 2.0) << "nothing moves that way";
     const Mat2 back = transposed(rotation_of(d.trial));
-    const GradientDof f = force_dof(back * (before.gradient[0] - d.internal));
-    const GradientDof taken = force_dof(back * d.damping_force);
+    const GradientDof f = force_dof(back * (before - d.internal));
+    const GradientDof taken = force_dof(back * d.contact.damping);
     const GradientDof v = motion_dof(back * d.rate);
-    const double rounding = 1e-13 * norm(forces.gradient[0]);
+    const double rounding = 1e-13 * norm(d.contact.force);
     EXPECT_NEAR(taken.r, -share * std::abs(f.r) * std::copysign(1.0, v.r), rounding);
     EXPECT_NEAR(taken.ex, -share * std::abs(f.ex) * std::copysign(1.0, v.ex), rounding);
     EXPECT_NEAR(taken.ey, -share * std::abs(f.ey) * std::copysign(1.0, v.ey), rounding);
     EXPECT_NEAR(taken.gxy, -share * std::abs(f.gxy) * std::copysign(1.0, v.gxy), rounding);
-    EXPECT_LE(norm(forces.gradient[0] - before.gradient[0] - d.damping_force), rounding);
-    EXPECT_LT(contract(d.damping_force, d.rate), 0.0);
+    EXPECT_LE(norm(d.contact.force - before - d.contact.damping), rounding);
+    EXPECT_LT(contract(d.contact.damping, d.rate), 0.0);
   }
 }
 

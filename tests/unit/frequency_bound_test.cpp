@@ -234,9 +234,8 @@ double largest_stretch(double share_of_limit, double modulus, Elasticity elastic
   double largest = 0.0;
   for (int k = 0; k < 2000; ++k) {
     predict(system, scheme, time_step);
-    BlockForces forces{{{}}};
-    forces.gradient[0].xx = -normal_stiffness * (d.trial.xx - 1.0);
-    if (solve_and_update(system, forces, scheme, time_step, elasticity)) {
+    d.contact.force.xx = -normal_stiffness * (d.trial.xx - 1.0);
+    if (solve_and_update(system, {}, scheme, time_step, elasticity)) {
       return std::numeric_limits<double>::infinity();
     }
     largest = std::max(largest, std::abs(d.gradient.xx - 1.0) / start);

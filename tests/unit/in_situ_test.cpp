@@ -66,8 +66,7 @@ Balance balance_of(const Simulation &simulation) {
     balance.unbalanced =
         std::max(balance.unbalanced, norm(simulation.blocks().contact[row].force.u) / largest);
     if (blocks.is_deformable(row)) {
-      const Mat2 net =
-          simulation.forces().gradient[blocks.deformation_begin[row]] - blocks.deformation_of(row).internal;
+      const Mat2 net = blocks.deformation_of(row).contact.force - blocks.deformation_of(row).internal;
       balance.stretching = std::max(balance.stretching, norm(net) / (largest * size));
     }
     balance.moved = std::max(balance.moved, norm(blocks.displacement[row].u));

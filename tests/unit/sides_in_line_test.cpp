@@ -76,7 +76,7 @@ void move_together(std::mt19937 &engine, std::initializer_list<ContactBench *> b
         if (bench->system.is_deformable(of)) {
           Deformation &d = bench->system.deformation_of(of);
           d.trial = gradient;
-          d.trial_previous = gradient - 1e-3 * rate;
+          bench->stretched_on[bench->system.deformation_begin[of]] = gradient - 1e-3 * rate;
           d.rate = rate;
         }
       }

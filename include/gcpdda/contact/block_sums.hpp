@@ -33,11 +33,12 @@ bool counts_here(const BlockSystem &system, BlockIndex lower);
 
 class BlockSums {
 public:
-  /// Onto BlockSystem::contact of owned rows, which are cleared before their first contact.
+  /// Onto BlockSystem::contact and Deformation::contact of owned rows, which are cleared before their first
+  /// contact.
   void start(BlockSystem &system, const Candidates &candidates);
   static void clear(BlockSystem &system, std::size_t first, std::size_t last);
   /// The same regions are added once more, because they have changed: kept ones stay where they are.
-  void start_again(const BlockSystem &system);
+  void start_again();
 
   /// Place for what the only region of a plain pair of the group at hand does.
   RegionSums &open(std::uint32_t pair, bool born) {
@@ -61,10 +62,9 @@ public:
     return has_dyads_ ? &kept_dyads_[range_of(pair).begin + number] : nullptr;
   }
 
-  // By row of the owned blocks, and by entry of BlockSystem::deformation.
+  /// By row of the owned blocks.
   [[nodiscard]] std::span<BlockContactSum> of_blocks() { return sums_; }
   [[nodiscard]] std::span<const BlockContactSum> of_blocks() const { return sums_; }
-  [[nodiscard]] std::span<const BlockGradientSum> of_gradients() const { return gradients_; }
   /// Of all regions, N/m; once finished.
   [[nodiscard]] double largest_force() const;
 
@@ -94,7 +94,6 @@ private:
   /// To the lower (k = 0) or the higher block of a pair, if it deforms.
   void add_dyads(const BlockSystem &system, const CandidatePair &pair, std::size_t k,
                  const RegionDyads &dyads, const RegionSums &region);
-  void clear_gradients(const BlockSystem &system);
   /// Of a pair that waits: mostly one that follows the last one asked for.
   RegionRange &range_of(std::uint32_t pair);
 
@@ -102,10 +101,10 @@ private:
   bool is_again_ = false;
   std::span<const std::uint8_t> is_added_; ///< Candidates::is_added
   std::span<BlockContactSum> sums_;        ///< BlockSystem::contact
-  std::vector<BlockGradientSum> gradients_;
-  ContactCount count_;                   ///< of pairs that are not kept
-  double largest_squared_ = 0.0;         ///< of them
-  double largest_waiting_squared_ = 0.0; ///< of the others
+  std::span<Deformation> deformations_;    ///< BlockSystem::deformation
+  ContactCount count_;                     ///< of pairs that are not kept
+  double largest_squared_ = 0.0;           ///< of them
+  double largest_waiting_squared_ = 0.0;   ///< of the others
   // Of the group at hand, by pair.
   std::vector<RegionSums> group_;
   std::vector<RegionDyads> group_dyads_; ///< if some block deforms

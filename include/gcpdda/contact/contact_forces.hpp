@@ -173,7 +173,7 @@ public:
   void change_shear(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                     Change &&change) {
     const auto all = static_cast<std::uint32_t>(candidates.pairs.size());
-    sums_.start_again(system);
+    sums_.start_again();
     is_changing_ = true;
     for (std::uint32_t begin = 0, end = 0; begin < all; begin = end) {
       end = std::min(all, begin + PlainPair::pairs_in_group);

@@ -23,7 +23,9 @@
 // Components. In the turning axes R* = R(F*) of the trial configuration a motion g = R*^T F'' is written
 // (r, ex, ey, gxy) = ((g21 - g12)/2, g11, g22, g12 + g21), the unknowns of DDA, and a force H = R*^T G that
 // works on it (H21 - H12, H11, H22, (H12 + H21)/2). S becomes the mass matrix of DDA's simplex integrals,
-// constant for a block, and so is K: one factorisation serves the whole run.
+// constant for a block, and so is K. Where nothing holds the block, (u, v) and (r, ex, ey, gxy) are apart,
+// and the factors of the latter's four rows are found in every step from S and K, which it reads anyway; else
+// one factorisation of all six serves the whole run.
 //
 // Time. All forces but K are taken at F*, so that F obeys the leapfrog of scheme.hpp. K may be taken
 // implicitly at F_{n+1-af} = F_n + (1 - af)[dt F' + dt^2 ((1/2 - b) F'' + b F''_{n+1})]:
@@ -67,9 +69,9 @@ constexpr Mat2 force_matrix(const GradientDof &h) {
   return {h.ex, h.gxy - 0.5 * h.r, h.gxy + 0.5 * h.r, h.ey};
 }
 
-/// Factorised matrices and spring stiffnesses of rows [0, num_rows) that deform or have anchors or dashpots;
-/// to be made before the first step and whenever the time step changes. A driven block gets none: it heeds no
-/// force.
+/// Factorised matrices and spring stiffnesses of rows [0, num_rows) with anchors or dashpots; to be made
+/// before the first step and whenever the time step changes. A driven block gets none: it heeds no force.
+/// Those of other deformable blocks are found in every step.
 ///
 /// @param normal_stiffness  largest k_n of the scene (Pa/m): anchors are a hundred times as stiff as the
 ///                          block's joints or its own elasticity, whatever is more
@@ -92,6 +94,9 @@ double angle_between(const Mat2 &from, const Mat2 &to);
 /// Mean spin of the block (1/s), the antisymmetric part of rate gradient^-1.
 double spin_of(const Mat2 &gradient, const Mat2 &rate);
 
+/// Of a row, whether it deforms or not, at t_n.
+double spin_of(const BlockSystem &system, std::size_t row);
+
 /// Rate of that spin (1/s2).
 double spin_rate_of(const Mat2 &gradient, const Mat2 &rate, const Mat2 &acceleration);
 
@@ -103,6 +108,11 @@ Mat2 strain_under(const Deformation &deformation, const Mat2 &force);
 
 /// Elastic force P* (N) on F = R U at the given gradient, without torque.
 Mat2 elastic_force(const Deformation &deformation, const Mat2 &gradient);
+
+/// What works on F once the forces of a step are gathered, less the springs of the step before (N).
+inline Mat2 unbalanced_on_gradient(const Deformation &d) {
+  return d.contact.force - d.internal + d.anchor_force;
+}
 
 /// Strain energy (J/m) at the given gradient.
 double strain_energy(const Deformation &deformation, const Mat2 &gradient);

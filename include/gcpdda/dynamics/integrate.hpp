@@ -4,6 +4,7 @@
 #include "gcpdda/dynamics/scheme.hpp"
 #include "gcpdda/model/block_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -14,10 +15,8 @@
 
 namespace gcpdda {
 
-/// Besides BlockContactSum::force, what acts on owned blocks at the trial configuration.
-struct BlockForces {
-  /// int t X^T of deformable rows (N), by entry of BlockSystem::deformation; entries of other rows unused.
-  std::vector<Mat2> gradient;
+/// What acts on blocks through their own springs.
+struct OwnForces {
   Vec2 wave{};                    ///< velocity of the wave that comes in through viscous sides, m/s
   double stiffness_damping = 0.0; ///< beta of Rayleigh damping, of the blocks' own elasticity, s
 };
@@ -73,7 +72,7 @@ inline RigidDof accelerate(const BlockProperties &block, const RigidDof &force) 
 
 /// a_n = M^-1 f of all owned rows, elastic forces of deformable rows (at their trial configuration) included:
 /// the consistent start. Anchored points do not accelerate.
-void accelerate(BlockSystem &system, const BlockForces &forces);
+void accelerate(BlockSystem &system);
 
 /// Largest distance (m) a point of the block may move before the next trial configuration has been left
 /// behind.
@@ -128,14 +127,13 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
 
-/// What acts on free rows: those without an entry of BlockSystem::applied; deformable ones without bolts too.
+/// What acts on free rows: those without an entry of BlockSystem::applied, deformable ones in a scene without
+/// bolts.
 struct FreeRows {
   BodyForces body; ///< now
   double local_damping = 0.0;
   double calm = std::numeric_limits<double>::infinity(); ///< most_motion() that needs no closer look, m
-  // Of deformable rows, by entry of BlockSystem::deformation.
-  std::span<const BlockGradientSum> gradients{}; ///< about their trial centroids
-  std::span<Mat2> gradient_forces{};             ///< out: on F
+  bool have_deformable = true;                           ///< or only rigid ones are free
 };
 
 /// Half the work of the forces of a block's last evaluation, over the last increment of its trial
@@ -157,58 +155,58 @@ void add_to_ledger(BlockSystem &system, std::size_t row, const HalfWorks &half);
 void add_half_works(BlockSystem &system, std::size_t first, std::size_t last,
                     Instructions instructions = Instructions::widest);
 
-/// Gathers the forces on free deformable rows from `first` on, several at a time, as far as they come one
-/// behind the other, with local damping and the works of the ledger, to the bits that one after the other
-/// would have.
-///
-/// @return the first row that is left
-std::size_t gather_free_deformables(BlockSystem &system, const FreeRows &rows, std::size_t first,
-                                    std::size_t last, Instructions instructions = Instructions::widest);
+/// What is to be known of rows that have been advanced.
+struct AdvanceReport {
+  /// The first one whose new state is not finite, or was turned inside out (det F <= 0); it keeps its old
+  /// one.
+  std::optional<std::size_t> broken;
+  std::vector<RowSpan> restless; ///< of the others most_motion() is no more than what was asked for
+  double largest_turn = 0.0;     ///< of a deformable one, rad
 
-/// Advances free rigid rows from `first` on, several at a time, as far as they come one behind the other: the
-/// forces on them, local damping, the half of the works of the ledger that goes with these forces, and the
-/// step, to the bits that one after the other would have.
+  void note_broken(std::size_t row) { broken = std::min(row, broken.value_or(row)); }
+  void note_turn(double turn) { largest_turn = std::max(largest_turn, turn); }
+};
+
+/// Advances free rows from `first` on, several at a time, as far as rigid or deformable ones come one behind
+/// the other: the forces on them, local damping, the half of the works of the ledger that goes with these
+/// forces, and the step, to the bits that one after the other would have.
 ///
-/// @param broken  the first row whose new state is not finite, which keeps its old one, if it comes before
-///                what stands here
-/// @param restless  those of more than FreeRows::calm are appended
 /// @return the first row that is left
-std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
-                              double time_step, std::size_t first, std::size_t last,
-                              std::optional<std::size_t> &broken, std::vector<RowSpan> &restless,
+std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const OwnForces &own,
+                              const Scheme &scheme, double time_step, Elasticity elasticity,
+                              std::size_t first, std::size_t last, AdvanceReport &report,
                               Instructions instructions = Instructions::widest);
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its
 /// size against the velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force
 /// and that of anchors of the last step count in f. What is taken is added to the damping forces.
 /// Driven blocks are left alone.
-void apply_local_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double share);
+void apply_local_damping(BlockSystem &system, std::size_t row, double share);
 
 /// Mass-proportional damping of one owned row, f - alpha M v_n; what is taken is added to the damping forces.
 /// Driven blocks are left alone.
 /// @param mass_damping  alpha, 1/s
-void apply_mass_damping(BlockSystem &system, std::size_t row, BlockForces &forces, double mass_damping);
+void apply_mass_damping(BlockSystem &system, std::size_t row, double mass_damping);
 
 /// Advance owned rows [first, last) from t_n to t_{n+1} under their total forces: one system each, diagonal
-/// for a rigid block without fixed points, else by its own factorised matrix. A block whose new state is not
-/// finite keeps its old one; so does one that has been turned inside out (det F <= 0). Needs
-/// make_block_matrices().
+/// for a rigid block without fixed points, else by its own factorised matrix. Needs make_block_matrices().
 ///
-/// Of deformable rows velocity.r and acceleration.r become the mean spin and its rate, for output. The
-/// elastic and anchor forces that were applied are noted; of the anchors' work the half over the increment of
-/// x* that ends here, the other half is the caller's after the next predict().
+/// The elastic and anchor forces that were applied are noted; of the anchors' work the half over the
+/// increment of x* that ends here, the other half is the caller's after the next predict().
 ///
-/// @param restless  if given, rows are appended; of the others most_motion() is no more than `calm`
-/// @return first row whose new state is broken
-std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
-                                            const Scheme &scheme, double time_step, Elasticity elasticity,
-                                            std::size_t first, std::size_t last, double calm = 0.0,
-                                            std::vector<RowSpan> *restless = nullptr);
+/// @param calm  most_motion() that needs no closer look, m
+void solve_and_update(BlockSystem &system, const OwnForces &own, const Scheme &scheme, double time_step,
+                      Elasticity elasticity, std::size_t first, std::size_t last, double calm,
+                      AdvanceReport &report);
 /// All owned rows.
-inline std::optional<std::size_t> solve_and_update(BlockSystem &system, const BlockForces &forces,
+/// @return first row whose new state is broken
+inline std::optional<std::size_t> solve_and_update(BlockSystem &system, const OwnForces &own,
                                                    const Scheme &scheme, double time_step,
                                                    Elasticity elasticity) {
-  return solve_and_update(system, forces, scheme, time_step, elasticity, 0, system.num_owned);
+  AdvanceReport report;
+  solve_and_update(system, own, scheme, time_step, elasticity, 0, system.num_owned,
+                   std::numeric_limits<double>::infinity(), report);
+  return report.broken;
 }
 
 } // namespace gcpdda

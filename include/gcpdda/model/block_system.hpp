@@ -64,15 +64,25 @@ struct BlockProperties {
   [[nodiscard]] double heavy_mass() const { return mass / mass_scaling; }
 };
 
+/// What contacts do to F of a deformable block, or of a row before its reference axes are known: int (x -
+/// x_c) df^T or int t X^T, N.
+struct BlockGradientSum {
+  Mat2 force;
+  Mat2 shear;
+  Mat2 damping;
+};
+
 /// Everything a deformable block has beyond a rigid one. Its points are x = x_c + F X, X in its reference
 /// axes; F = R (I + E). With S = rho int X X^T dA its kinetic energy is m v^2/2 + tr(F' S F'^T)/2: a constant
 /// mass, without centrifugal terms.
-struct Deformation {
-  Mat2 gradient = Mat2::identity(); ///< F_n
-  Mat2 rate;                        ///< F'_n, 1/s
-  Mat2 acceleration;                ///< F''_n, 1/s2
-  Mat2 trial = Mat2::identity();    ///< F*_n, where contact forces are taken
-  Mat2 trial_previous = Mat2::identity();
+///
+/// What a step of a free block reads and writes fills whole lines of a cache; what only others have stands
+/// behind.
+struct alignas(64) Deformation {
+  Mat2 gradient = Mat2::identity();  ///< F_n
+  Mat2 rate;                         ///< F'_n, 1/s
+  Mat2 acceleration;                 ///< F''_n, 1/s2
+  Mat2 trial = Mat2::identity();     ///< F*_n, where contact forces are taken
   Mat2 refreshed = Mat2::identity(); ///< F at the last refresh of the neighbourhood
   Mat2 second_moment;                ///< S, kg m2 per metre
   Mat2 initial_strain;               ///< E_0 of a block that is born under stress: sigma is D (E + E_0)
@@ -80,12 +90,11 @@ struct Deformation {
   double stiffness_direct = 0.0; ///< a
   double stiffness_cross = 0.0;  ///< b
   double stiffness_shear = 0.0;  ///< c
-  // Of the last evaluation, for output and ledger: forces that work on F (N), sum of t X^T.
-  Mat2 internal;      ///< P: the elastic force applied, K (E_{n+1-af} - E*) included
-  Mat2 shear_force;   ///< elastic part of friction
-  Mat2 damping_force; ///< dashpots
-  Mat2 load_force;    ///< point loads
-  Mat2 anchor_force;  ///< fixed points
+  Mat2 internal; ///< of the last evaluation: the elastic force applied, K (E_{n+1-af} - E*) included, N
+  BlockGradientSum contact; ///< of the last evaluation; gathered as BlockSystem::contact
+  // Of the last evaluation, zero of blocks that are free: forces that work on F (N), sum of t X^T.
+  alignas(64) Mat2 load_force; ///< point loads, water, unloading
+  Mat2 anchor_force;           ///< fixed points and viscous sides
 };
 
 /// An edge at the trial configuration, of a system where some block deforms. Four numbers: the lanes read
@@ -133,14 +142,6 @@ struct BlockContactSum {
   RigidDof force;
   RigidDof shear;   ///< elastic friction in it
   RigidDof damping; ///< dashpots in it
-};
-
-/// What contacts do to F of a deformable block, or of a row before its reference axes are known: int (x -
-/// x_c) df^T or int t X^T, N.
-struct BlockGradientSum {
-  Mat2 force;
-  Mat2 shear;
-  Mat2 damping;
 };
 
 /// What the energy ledger carries for one block: works so far of forces in BlockContactSum and of
@@ -219,7 +220,8 @@ struct BlockSystem {
 
   // State, one entry a row. What stands here migrates, makes a ghost, and is all that a restart needs.
   std::vector<BlockProperties> properties;
-  std::vector<RigidDof> displacement;   ///< x_n - x_0
+  std::vector<RigidDof> displacement; ///< x_n - x_0
+  // Of a deformable row r of velocity and acceleration is 0: F' and F'' turn it.
   std::vector<RigidDof> velocity;       ///< v_n
   std::vector<RigidDof> acceleration;   ///< a_n
   std::vector<RigidDof> trial;          ///< x*_n - x_0, where the contact forces are taken
@@ -239,7 +241,7 @@ struct BlockSystem {
   // What only some blocks have, flat in the same way: row i owns [begin[i], begin[i + 1]).
   RowOffsets deformation_begin; ///< one entry for a deformable block, none for others
   std::vector<Deformation> deformation;
-  RowOffsets matrix_begin; ///< one entry for deformable blocks and those with anchors or dashpots
+  RowOffsets matrix_begin; ///< one entry for blocks with anchors or dashpots
   std::vector<BlockMatrix> matrix;
   RowOffsets load_begin;
   std::vector<MaterialLoad> load;
@@ -255,7 +257,8 @@ struct BlockSystem {
 
   // Derived from the trial configuration, see pose(). Outlines of rigid blocks stand nowhere: to turn them
   // takes no longer than to read them (TrialOutline).
-  std::vector<BlockMotion> motion; ///< pose() finds centroid, box and rotation of it, predict() the increment
+  std::vector<BlockMotion>
+      motion; ///< pose() finds centroid, box and rotation of it, set_trial() the increment
   std::vector<Mat2> trial_inverse; ///< F*^-1, by entry of `deformation`
   // Empty where no block deforms.
   std::vector<Vec2> vertex;
@@ -277,6 +280,10 @@ struct BlockSystem {
     const auto &[first, second] = motion[row].turn;
     return {motion[row].step, is_deformable(row) ? Mat2{first.x, first.y, second.x, second.y}
                                                  : Mat2{first.x, first.y, -first.y, first.x}};
+  }
+  /// F*_n - F*_{n-1} of a deformable row.
+  [[nodiscard]] Mat2 stretched(std::size_t row) const {
+    return increment_of(row).turn * deformation_of(row).trial;
   }
   [[nodiscard]] bool has_matrix(std::size_t row) const { return matrix_begin[row + 1] > matrix_begin[row]; }
   /// Of a deformable row.
@@ -388,6 +395,11 @@ inline AppliedForces applied_forces(const BlockSystem &system, std::size_t row) 
 /// Rows that need an entry of BlockSystem::applied get one, others lose theirs.
 /// @param all  more acts on all blocks
 void list_applied(BlockSystem &system, bool all);
+
+/// Where contact forces are taken next, with the way there; not posed yet.
+void set_trial(BlockSystem &system, std::size_t row, const TrialConfiguration &trial);
+/// There has been no way to the present trial configurations.
+void forget_increments(BlockSystem &system);
 
 /// Drop all rows from `count` on. The ranges' counts are the caller's.
 void keep_rows(BlockSystem &system, std::size_t count);

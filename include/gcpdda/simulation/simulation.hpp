@@ -162,7 +162,6 @@ public:
     contacts_.for_regions(blocks_, candidates_, history_, static_cast<std::uint32_t>(first),
                           static_cast<std::uint32_t>(last), visit);
   }
-  [[nodiscard]] const BlockForces &forces() const { return forces_; }
   [[nodiscard]] const Bolts &bolts() const { return bolts_; }
   [[nodiscard]] const DomainMap &domain_map() const { return map_; }
   [[nodiscard]] const PartitionReport &partition() const { return partition_; }
@@ -299,8 +298,6 @@ private:
   void sum_contacts_of_blocks();
   void move_blocks();
   /// May there be any?
-  [[nodiscard]] bool has_free_rows() const;
-  [[nodiscard]] FreeRows free_rows(const BodyForces &body);
   void gather_forces(std::size_t first, std::size_t last, const BodyForces &body);
   AppliedForces gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);
@@ -325,15 +322,15 @@ private:
   mutable ContactForces contacts_;              ///< details are found when somebody asks
   mutable std::optional<ContactDigest> digest_; ///< once it has been asked for
   Bolts bolts_;
-  BlockForces forces_;   ///< at the last evaluation
+  OwnForces own_forces_; ///< at the last evaluation
   TrialOutline outline_; ///< of a block in water
   /// How far a step has come with the owned rows.
   struct Moving {
     BodyForces body;
-    std::size_t predicted = 0; ///< rows below have their trial configurations
-    std::size_t moved = 0;     ///< those below are at the end of the step, but for ...
-    std::optional<std::size_t> broken;
+    std::size_t predicted = 0;    ///< rows below have their trial configurations
+    std::size_t moved = 0;        ///< those below are at the end of the step, but for ...
     std::vector<RowSpan> waiting; ///< ... these
+    AdvanceReport report;         ///< of the last step
   };
   Moving moving_;
   struct PrescribedRow {
@@ -342,7 +339,6 @@ private:
     RigidDof increment;
   };
   std::vector<PrescribedRow> prescribed_rows_;
-  std::vector<RowSpan> restless_; ///< owned rows whose motion in the last step has to be looked at
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
   GroundMotion ground_;
