@@ -1,57 +1,24 @@
 #include "gcpdda/contact/block_sums.hpp"
 
+#include "plain_batch.hpp"
+
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
-#include <cstring>
-#include <type_traits>
 
 namespace gcpdda {
 
 namespace {
 
-using Two = double __attribute__((vector_size(2 * sizeof(double))));
-
-/// Straight from where the lanes left them: a copy made piece by piece would have to wait for all of it.
-Two load(const double &first) {
-  Two two;
-  std::memcpy(&two, &first, sizeof(two));
-  return two;
-}
-
-/// A BlockContactSum in registers.
-struct SumAtHand {
-  std::array<Two, 3> whole;
-  std::array<double, 3> turning;
-
-  explicit SumAtHand(const BlockContactSum &sum)
-      : whole{load(sum.force.u.x), load(sum.shear.u.x), load(sum.damping.u.x)}, turning{sum.force.r,
-                                                                                        sum.shear.r,
-                                                                                        sum.damping.r} {}
-  /// What the lower (k = 0) or the higher block of a region gets of it.
-  void add(const RegionSums &f, std::size_t k) {
-    const std::array<Two, 3> part{load(f.force.x), load(f.shear_force.x), load(f.damping_force.x)};
-    const std::array<double, 3> torque{f.torque[k], f.shear_torque[k], f.damping_torque[k]};
-    for (std::size_t i = 0; i < 3; ++i) {
-      whole[i] = k == 0 ? whole[i] + part[i] : whole[i] - part[i];
-      turning[i] += torque[i];
-    }
-  }
-  void store(BlockContactSum &sum) const {
-    const auto put = [&](std::size_t i, RigidDof &to) {
-      std::memcpy(&to.u.x, &whole[i], sizeof(Two));
-      to.r = turning[i];
-    };
-    put(0, sum.force);
-    put(1, sum.shear);
-    put(2, sum.damping);
-  }
-};
-
-[[gnu::always_inline]] inline void add_region(const RegionSums &f, std::size_t k, BlockContactSum &sum) {
-  SumAtHand at_hand(sum);
-  at_hand.add(f, k);
-  at_hand.store(sum);
+/// What the lower (k = 0) or the higher block of a region gets of it.
+void add_region(const RegionSums &f, std::size_t k, BlockContactSum &sum) {
+  const auto add = [&](RigidDof &to, const Vec2 &force, const PairTorques &torque) {
+    to.u = k == 0 ? to.u + force : to.u - force;
+    to.r += torque[k];
+  };
+  add(sum.force, f.force, f.torque);
+  add(sum.shear, f.shear_force, f.shear_torque);
+  add(sum.damping, f.damping_force, f.damping_torque);
 }
 
 ContactCount counted(const BlockSystem &system, const CandidatePair &pair, bool born) {
@@ -60,11 +27,6 @@ ContactCount counted(const BlockSystem &system, const CandidatePair &pair, bool 
   }
   const bool crosses = pair.higher.value >= system.num_owned && !system.is_fixed(pair.higher.value);
   return {1, crosses ? 1 : 0, crosses && born ? 1 : 0};
-}
-
-template <class Visit> void each_side(Visit &&visit) {
-  visit(std::integral_constant<std::size_t, 0>{});
-  visit(std::integral_constant<std::size_t, 1>{});
 }
 
 double squared(Vec2 a) {
@@ -138,72 +100,58 @@ inline void BlockSums::add_dyads(const BlockSystem &system, const CandidatePair 
   }
 }
 
-template <class Visit> void BlockSums::for_touched(std::uint32_t group, Visit &&visit) const {
-  using Eight = std::uint64_t;
-  static_assert(std::endian::native == std::endian::little);
-  for (std::size_t first = 0; first < seen_.size(); first += sizeof(Eight)) {
-    Eight seen = 0;
-    std::memcpy(&seen, &seen_[first], sizeof(seen));
-    for (seen &= 0x0101010101010101U * touches; seen != 0; seen &= seen - 1) {
-      const std::size_t slot = first + static_cast<std::size_t>(std::countr_zero(seen)) / 8;
-      visit(group * PlainPair::pairs_in_group + static_cast<std::uint32_t>(slot), group_[slot],
-            (seen_[slot] & is_born) != 0);
+void BlockSums::add_all(const BlockSystem &system, const CandidatePair *pairs, const PlainBatch &batch) {
+  static_assert(touches == GroupToAdd::touches);
+  GroupToAdd group{pairs,
+                   seen_,
+                   group_.data(),
+                   has_dyads_ ? group_dyads_.data() : nullptr,
+                   sums_,
+                   deformations_,
+                   system.deformation_begin,
+                   system.motion.data(),
+                   largest_squared_};
+  batch.add_group(group);
+  largest_squared_ = group.largest_squared;
+  count_.touching += group.num_touching; // without ghosts, they count here and do not cross
+}
+
+void BlockSums::add_those_that_can(const BlockSystem &system, const Candidates &candidates,
+                                   std::uint32_t group) {
+  for (std::uint32_t slot = 0; slot < PlainPair::pairs_in_group; ++slot) {
+    if ((seen_[slot] & touches) == 0) {
+      continue;
+    }
+    const std::uint32_t number = group * PlainPair::pairs_in_group + slot;
+    const CandidatePair &pair = candidates.pairs[number];
+    const RegionSums &region = group_[slot];
+    bool waits = false;
+    for (const std::size_t k : {0U, 1U}) {
+      const BlockIndex row = k == 0 ? pair.lower : pair.higher;
+      const When time = when(row);
+      waits = waits || time == When::later;
+      if (time == When::at_once) {
+        add_region(region, k, sums_[row.value]);
+        if (has_dyads_) {
+          add_dyads(system, pair, k, group_dyads_[slot], region);
+        }
+      }
+    }
+    if (waits) {
+      keep_plain(number, region, (seen_[slot] & is_born) != 0);
+    } else {
+      largest_squared_ = std::max(largest_squared_, squared(region.force));
+      ++count_.touching;
     }
   }
 }
 
-// Pairs of one lower block follow one another, and its sum stays in registers meanwhile: what it gets as the
-// higher block of others has been added before.
-template <bool some_wait>
-void BlockSums::add_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
-  const CandidatePair *pairs = candidates.pairs.data();
-  BlockContactSum *const sums = sums_.data(); // by themselves, or each store might have changed them
-  const std::size_t num_owned = sums_.size();
-  const auto time_of = [&](BlockIndex row) {
-    return some_wait ? when(row) : row.value < num_owned ? When::at_once : When::never;
-  };
-  BlockContactSum none;
-  BlockContactSum *lower = &none;
-  SumAtHand at_lower(none);
-  double largest_squared = largest_squared_;
-  for_touched(group, [&](std::uint32_t number, const RegionSums &region, bool born) {
-    const CandidatePair &pair = pairs[number];
-    const When lower_time = time_of(pair.lower);
-    const When higher_time = time_of(pair.higher);
-    BlockContactSum *next = lower_time == When::at_once ? &sums[pair.lower.value] : &none;
-    if (next != lower) {
-      at_lower.store(*lower);
-      at_lower = SumAtHand(*next);
-      lower = next;
-    }
-    at_lower.add(region, 0);
-    if (higher_time == When::at_once) {
-      add_region(region, 1, sums[pair.higher.value]);
-    }
-    if (has_dyads_) {
-      const RegionDyads &dyads = group_dyads_[number % PlainPair::pairs_in_group];
-      each_side([&](auto k) {
-        if ((k == 0 ? lower_time : higher_time) == When::at_once) {
-          add_dyads(system, pair, k, dyads, region);
-        }
-      });
-    }
-    if (some_wait && (lower_time == When::later || higher_time == When::later)) {
-      keep_plain(number, region, born);
-    } else { // without a ghost, it counts here and does not cross
-      largest_squared = std::max(largest_squared, squared(region.force));
-      ++count_.touching;
-    }
-  });
-  at_lower.store(*lower);
-  largest_squared_ = largest_squared;
-}
-
-void BlockSums::close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group) {
+void BlockSums::close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group,
+                            const PlainBatch &batch) {
   if (candidates.are_added[group] != 0) {
-    add_group<false>(system, candidates, group);
+    add_all(system, candidates.pairs.data() + group * PlainPair::pairs_in_group, batch);
   } else {
-    add_group<true>(system, candidates, group);
+    add_those_that_can(system, candidates, group);
   }
   seen_.fill(0);
 }

@@ -283,6 +283,11 @@ void ContactForces::find_meeting(const BlockSystem &system, const Candidates &ca
   }
 }
 
+void ContactForces::close_group(const BlockSystem &system, const Candidates &candidates,
+                                std::uint32_t group) {
+  sums_.close_group(system, candidates, group, *batch_);
+}
+
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                                          ContactHistory &history, std::size_t first, std::size_t last,
                                          const Front &front) {
@@ -312,7 +317,7 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
       evaluate_any_pair(system, candidates, number, {});
     }
     births_.clear();
-    sums_.close_group(system, candidates, group);
+    close_group(system, candidates, group);
     if (front.after) {
       front.after(candidates.group_rows[group].done);
     }

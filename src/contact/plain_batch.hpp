@@ -48,6 +48,24 @@ struct PlainResults {
   std::array<RegionDyads *, most_lanes> dyads;
 };
 
+/// A group of plain pairs that have all been evaluated, where no block waits for another pair.
+struct GroupToAdd {
+  static constexpr std::uint8_t touches = 1; ///< bit of `seen`
+
+  const CandidatePair *pairs; ///< its first one
+  std::span<const std::uint8_t, PlainPair::pairs_in_group> seen;
+  // Of those that touch.
+  const RegionSums *regions;
+  const RegionDyads *dyads; ///< null where no block deforms
+  // Of blocks: of the owned rows, by entry of BlockSystem::deformation, of all rows.
+  std::span<BlockContactSum> sums;
+  std::span<Deformation> deformations;
+  const RowOffsets &deformation_begin;
+  const BlockMotion *motions;
+  double largest_squared = 0.0; ///< of the forces of regions, (N/m)^2
+  std::int64_t num_touching = 0;
+};
+
 /// Evaluates as many pairs at once as the registers of its instructions hold. All instructions give the same
 /// bits: each operation is rounded by itself.
 class PlainBatch {
@@ -105,6 +123,8 @@ public:
     double max_overlap_share = 0.0;
   };
   virtual Extremes take_extremes() = 0;
+  /// On each block in the order of the pairs.
+  virtual void add_group(GroupToAdd &group) const = 0;
 };
 
 /// Visit the numbers of the bits that are set, the least first.

@@ -9,6 +9,7 @@
 #include "lane_region.hpp"
 #include "lane_sides.hpp"
 #include "lane_stretch.hpp"
+#include "lane_sums.hpp"
 #include "plain_batch.hpp"
 
 #include <algorithm>
@@ -41,6 +42,13 @@ public:
   unsigned store(const PlainResults &results) override { return regions_.store(results); }
   [[nodiscard]] double overlap(std::size_t lane) const override { return regions_.overlap(lane); }
   Extremes take_extremes() override { return regions_.take_extremes(); }
+  void add_group(GroupToAdd &group) const override {
+    if (group.dyads == nullptr) {
+      add_pairs<false>(group);
+    } else {
+      add_pairs<true>(group);
+    }
+  }
 
 private:
   struct Pairs;

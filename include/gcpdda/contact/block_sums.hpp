@@ -19,6 +19,8 @@
 
 namespace gcpdda {
 
+class PlainBatch;
+
 /// Pairs that touch and count on this rank.
 struct ContactCount {
   std::int64_t touching = 0;
@@ -48,7 +50,8 @@ public:
   }
   RegionDyads &dyads(std::uint32_t pair) { return group_dyads_[pair % PlainPair::pairs_in_group]; }
   /// All pairs of a group have been evaluated.
-  void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
+  void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group,
+                   const PlainBatch &batch);
   /// All regions of some other pair.
   /// @param dyads  theirs, or none
   void keep(std::uint32_t pair, std::span<const RegionForce> regions, std::span<const RegionDyads> dyads);
@@ -84,11 +87,10 @@ private:
     }
     return is_added_[row.value] == 0 ? When::later : When::at_once;
   }
-  /// visit(number, its region, was it born) for the pairs of the group at hand that touch.
-  template <class Visit> void for_touched(std::uint32_t group, Visit &&visit) const;
-  /// @tparam some_wait  blocks of the group may wait (Candidates::are_added)
-  template <bool some_wait>
-  void add_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
+  /// Of the group at hand, none of whose blocks waits.
+  void add_all(const BlockSystem &system, const CandidatePair *pairs, const PlainBatch &batch);
+  /// Some of its blocks may wait.
+  void add_those_that_can(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
   /// The only region of a pair of the group at hand.
   void keep_plain(std::uint32_t pair, const RegionSums &region, bool born);
   /// To the lower (k = 0) or the higher block of a pair, if it deforms.

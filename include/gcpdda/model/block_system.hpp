@@ -86,12 +86,12 @@ struct alignas(64) Deformation {
   Mat2 refreshed = Mat2::identity(); ///< F at the last refresh of the neighbourhood
   Mat2 second_moment;                ///< S, kg m2 per metre
   Mat2 initial_strain;               ///< E_0 of a block that is born under stress: sigma is D (E + E_0)
+  Mat2 internal; ///< of the last evaluation: the elastic force applied, K (E_{n+1-af} - E*) included, N
+  BlockGradientSum contact; ///< of the last evaluation; gathered as BlockSystem::contact
   /// Stiffness area * D of (eps_x, eps_y, gamma_xy) is [a b 0; b a 0; 0 0 c], N.
   double stiffness_direct = 0.0; ///< a
   double stiffness_cross = 0.0;  ///< b
   double stiffness_shear = 0.0;  ///< c
-  Mat2 internal; ///< of the last evaluation: the elastic force applied, K (E_{n+1-af} - E*) included, N
-  BlockGradientSum contact; ///< of the last evaluation; gathered as BlockSystem::contact
   // Of the last evaluation, zero of blocks that are free: forces that work on F (N), sum of t X^T.
   alignas(64) Mat2 load_force; ///< point loads, water, unloading
   Mat2 anchor_force;           ///< fixed points and viscous sides
