@@ -100,9 +100,11 @@ inline void BlockSums::add_dyads(const BlockSystem &system, const CandidatePair 
   }
 }
 
-void BlockSums::add_all(const BlockSystem &system, const CandidatePair *pairs, const PlainBatch &batch) {
+void BlockSums::close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t number,
+                            const PlainBatch &batch) {
   static_assert(touches == GroupToAdd::touches);
-  GroupToAdd group{pairs,
+  const std::uint32_t first = number * PlainPair::pairs_in_group;
+  GroupToAdd group{candidates.pairs.data() + first,
                    seen_,
                    group_.data(),
                    has_dyads_ ? group_dyads_.data() : nullptr,
@@ -110,48 +112,14 @@ void BlockSums::add_all(const BlockSystem &system, const CandidatePair *pairs, c
                    deformations_,
                    system.deformation_begin,
                    system.motion.data(),
-                   largest_squared_};
+                   candidates.are_added[number] != 0 ? std::span<const std::uint8_t>() : is_added_};
+  group.largest_squared = largest_squared_;
   batch.add_group(group);
   largest_squared_ = group.largest_squared;
   count_.touching += group.num_touching; // without ghosts, they count here and do not cross
-}
-
-void BlockSums::add_those_that_can(const BlockSystem &system, const Candidates &candidates,
-                                   std::uint32_t group) {
-  for (std::uint32_t slot = 0; slot < PlainPair::pairs_in_group; ++slot) {
-    if ((seen_[slot] & touches) == 0) {
-      continue;
-    }
-    const std::uint32_t number = group * PlainPair::pairs_in_group + slot;
-    const CandidatePair &pair = candidates.pairs[number];
-    const RegionSums &region = group_[slot];
-    bool waits = false;
-    for (const std::size_t k : {0U, 1U}) {
-      const BlockIndex row = k == 0 ? pair.lower : pair.higher;
-      const When time = when(row);
-      waits = waits || time == When::later;
-      if (time == When::at_once) {
-        add_region(region, k, sums_[row.value]);
-        if (has_dyads_) {
-          add_dyads(system, pair, k, group_dyads_[slot], region);
-        }
-      }
-    }
-    if (waits) {
-      keep_plain(number, region, (seen_[slot] & is_born) != 0);
-    } else {
-      largest_squared_ = std::max(largest_squared_, squared(region.force));
-      ++count_.touching;
-    }
-  }
-}
-
-void BlockSums::close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group,
-                            const PlainBatch &batch) {
-  if (candidates.are_added[group] != 0) {
-    add_all(system, candidates.pairs.data() + group * PlainPair::pairs_in_group, batch);
-  } else {
-    add_those_that_can(system, candidates, group);
+  for (std::size_t k = 0; k < group.num_waiting; ++k) {
+    const std::uint32_t slot = group.waiting[k];
+    keep_plain(first + slot, group_[slot], (seen_[slot] & is_born) != 0);
   }
   seen_.fill(0);
 }
@@ -199,7 +167,7 @@ ContactCount BlockSums::finish(const BlockSystem &system, const Candidates &cand
     largest_waiting_squared_ = std::max(largest_waiting_squared_, squared(region.force));
     const std::array<BlockIndex, 2> rows{pair.lower, pair.higher};
     for (const std::size_t k : {0U, 1U}) {
-      if (when(rows[k]) == When::later) {
+      if (waits(rows[k])) {
         add_region(region, k, sums_[rows[k].value]);
         if (has_dyads_) {
           add_dyads(system, pair, k, kept_dyads_[number], region);

@@ -1,7 +1,7 @@
 #pragma once
 
 // What the pairs of a group do to their blocks, added up with one contact after the other, each in registers
-// of four numbers: to the bits of BlockSums::add_group().
+// of four numbers: to the bits of BlockSums::finish().
 
 #include "gcpdda/base/lanes.hpp"
 #include "plain_batch.hpp"
@@ -126,18 +126,21 @@ private:
   AtHand at_hand_;
 };
 
-template <bool has_dyads> [[gnu::always_inline]] inline void add_pairs(GroupToAdd &group) {
+template <bool has_dyads, bool some_wait> inline void add_pairs(GroupToAdd &group) {
   static_assert(std::endian::native == std::endian::little);
   LowerSum<SumAtHand, BlockContactSum> lower;
   LowerSum<GradientAtHand, BlockGradientSum> lower_gradient;
   const std::size_t num_owned = group.sums.size();
+  const auto gets_it = [&](std::size_t row) __attribute__((always_inline)) {
+    return row < num_owned && (!some_wait || group.is_added[row] != 0);
+  };
   const auto sum_of = [&](std::size_t row) __attribute__((always_inline)) {
-    return row < num_owned ? &group.sums[row] : nullptr;
+    return gets_it(row) ? &group.sums[row] : nullptr;
   };
   const auto gradient_of = [&](std::size_t row) __attribute__((always_inline))->BlockGradientSum * {
     const std::uint32_t entry = group.deformation_begin[row];
-    return row < num_owned && entry < group.deformation_begin[row + 1] ? &group.deformations[entry].contact
-                                                                       : nullptr;
+    return gets_it(row) && entry < group.deformation_begin[row + 1] ? &group.deformations[entry].contact
+                                                                    : nullptr;
   };
   double largest_squared = group.largest_squared;
   for (std::size_t first = 0; first < group.seen.size(); first += sizeof(std::uint64_t)) {
@@ -166,6 +169,13 @@ template <bool has_dyads> [[gnu::always_inline]] inline void add_pairs(GroupToAd
                                    group.motions[pair.higher.value].centroid);
           higher.store(*sum);
         }
+      }
+      const auto waits = [&](std::size_t row) __attribute__((always_inline)) {
+        return row < num_owned && !gets_it(row);
+      };
+      if (some_wait && (waits(pair.lower.value) || waits(pair.higher.value))) {
+        group.waiting[group.num_waiting++] = static_cast<std::uint16_t>(slot);
+        continue;
       }
       const double squared = region.force[0] * region.force[0] + region.force[1] * region.force[1];
       largest_squared = std::max(largest_squared, squared);

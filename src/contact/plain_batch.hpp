@@ -48,7 +48,7 @@ struct PlainResults {
   std::array<RegionDyads *, most_lanes> dyads;
 };
 
-/// A group of plain pairs that have all been evaluated, where no block waits for another pair.
+/// A group of plain pairs that have all been evaluated.
 struct GroupToAdd {
   static constexpr std::uint8_t touches = 1; ///< bit of `seen`
 
@@ -62,6 +62,10 @@ struct GroupToAdd {
   std::span<Deformation> deformations;
   const RowOffsets &deformation_begin;
   const BlockMotion *motions;
+  std::span<const std::uint8_t> is_added; ///< Candidates::is_added, if some of the blocks wait
+  // Out: slots of pairs with a block that waits; of the others the rest.
+  std::size_t num_waiting = 0;
+  std::array<std::uint16_t, PlainPair::pairs_in_group> waiting{};
   double largest_squared = 0.0; ///< of the forces of regions, (N/m)^2
   std::int64_t num_touching = 0;
 };

@@ -43,10 +43,11 @@ public:
   [[nodiscard]] double overlap(std::size_t lane) const override { return regions_.overlap(lane); }
   Extremes take_extremes() override { return regions_.take_extremes(); }
   void add_group(GroupToAdd &group) const override {
+    const bool some_wait = !group.is_added.empty();
     if (group.dyads == nullptr) {
-      add_pairs<false>(group);
+      some_wait ? add_pairs<false, true>(group) : add_pairs<false, false>(group);
     } else {
-      add_pairs<true>(group);
+      some_wait ? add_pairs<true, true>(group) : add_pairs<true, false>(group);
     }
   }
 

@@ -50,7 +50,7 @@ public:
   }
   RegionDyads &dyads(std::uint32_t pair) { return group_dyads_[pair % PlainPair::pairs_in_group]; }
   /// All pairs of a group have been evaluated.
-  void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group,
+  void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t number,
                    const PlainBatch &batch);
   /// All regions of some other pair.
   /// @param dyads  theirs, or none
@@ -79,18 +79,10 @@ private:
   static constexpr std::uint8_t touches = 1;
   static constexpr std::uint8_t is_born = 2;
 
-  /// When a row gets what a group does: not at all where it is not owned.
-  enum class When { at_once, later, never };
-  [[nodiscard]] When when(BlockIndex row) const {
-    if (row.value >= is_added_.size()) {
-      return When::never;
-    }
-    return is_added_[row.value] == 0 ? When::later : When::at_once;
+  /// Does an owned row wait for another pair than those of groups?
+  [[nodiscard]] bool waits(BlockIndex row) const {
+    return row.value < is_added_.size() && is_added_[row.value] == 0;
   }
-  /// Of the group at hand, none of whose blocks waits.
-  void add_all(const BlockSystem &system, const CandidatePair *pairs, const PlainBatch &batch);
-  /// Some of its blocks may wait.
-  void add_those_that_can(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
   /// The only region of a pair of the group at hand.
   void keep_plain(std::uint32_t pair, const RegionSums &region, bool born);
   /// To the lower (k = 0) or the higher block of a pair, if it deforms.
