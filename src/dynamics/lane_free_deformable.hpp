@@ -68,18 +68,13 @@ inline FreeStep step_free_deformables(BlockSystem &system, std::size_t first, co
   }
   sum.store(&system.contact[first]);
   FourLanes works = lane_half_works(sum, applied, half_increments(system, first));
-  const LaneMat way = stretched(system, first, block.trial);
-  add_on_gradient(shear, damping, way, works);
+  add_on_gradient(shear, damping, stretched(system, first, block.trial), works);
   add_to_ledger(works, &system.ledger[first]);
 
   LaneStepped now = step_of(block, FreeMatrix(block, masses, step), masses.mass, sum.force.u, gradient, step);
   const Mask sound = now.are_sound();
   if ((!sound).any()) {
     now.keep_where(sound, block, load(&Deformation::internal));
-  }
-  if (step.stiffness_damping > 0.0) {
-    damping = damping - now.viscous;
-    add_to_ledger({0.0, -(Lanes(0.5) * contract(now.viscous, way)), 0.0, 0.0}, &system.ledger[first]);
   }
   const auto to = places_of(deformation);
   const auto store = [&](std::size_t offset, const LaneMat &m) __attribute__((always_inline)) {

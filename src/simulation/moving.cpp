@@ -166,13 +166,12 @@ void Simulation::move_rows(std::size_t first, std::size_t end) {
 
 // On most blocks of most scenes only others act: with all that follows in one go.
 std::size_t Simulation::move_free_rows(std::size_t first, std::size_t end) {
-  if (scene_.run.rayleigh.mass_damping != 0.0) {
+  if (scene_.run.rayleigh.present()) {
     return first;
   }
   const auto scope = phases_.measure(Phase::update);
-  return advance_free_rows(blocks_, {moving_.body, local_damping_, calm_motion(), bolts_.empty()},
-                           own_forces_, scheme_, plan_.time_step, scene_.run.elasticity, first, end,
-                           moving_.report);
+  return advance_free_rows(blocks_, {moving_.body, local_damping_, calm_motion(), bolts_.empty()}, scheme_,
+                           plan_.time_step, scene_.run.elasticity, first, end, moving_.report);
 }
 
 void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {

@@ -309,7 +309,7 @@ struct FreeBlocks {
 
   std::size_t step(Instructions instructions) {
     report = {};
-    return advance_free_rows(system, {{{0.3, -9.81}, {0.7, 0.1}}, 0.6, calm}, {}, usual_scheme(), time_step,
+    return advance_free_rows(system, {{{0.3, -9.81}, {0.7, 0.1}}, 0.6, calm}, usual_scheme(), time_step,
                              Elasticity::implicit, 0, num_free, report, instructions);
   }
 

@@ -127,8 +127,8 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
 
-/// What acts on free rows: those without an entry of BlockSystem::applied, deformable ones in a scene without
-/// bolts.
+/// What acts on free rows: those without an entry of BlockSystem::applied in a run without Rayleigh damping,
+/// deformable ones in a scene without bolts.
 struct FreeRows {
   BodyForces body; ///< now
   double local_damping = 0.0;
@@ -172,10 +172,9 @@ struct AdvanceReport {
 /// forces, and the step, to the bits that one after the other would have.
 ///
 /// @return the first row that is left
-std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const OwnForces &own,
-                              const Scheme &scheme, double time_step, Elasticity elasticity,
-                              std::size_t first, std::size_t last, AdvanceReport &report,
-                              Instructions instructions = Instructions::widest);
+std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
+                              double time_step, Elasticity elasticity, std::size_t first, std::size_t last,
+                              AdvanceReport &report, Instructions instructions = Instructions::widest);
 
 /// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its
 /// size against the velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force
