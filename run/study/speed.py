@@ -52,12 +52,16 @@ def default_step(program, work, text):
     return float(re.search(r"^step +([-0-9.e]+) s", said, re.MULTILINE).group(1))
 
 
-def run(program, work, text, step, steps):
-    """Summary of a run, and its peak of memory in bytes."""
+def stepped(text, step, steps):
+    """The scene with so many of these steps, and frames at both ends."""
     duration = steps * step
     text = text.replace(f"duration = {steps}\ntime_step = 1.0", f"duration = {duration!r}\ntime_step = {step!r}")
-    text = text.replace("[output]\n", f"[output]\ninterval = {duration!r}\n")
-    (work / "scene.toml").write_text(text)
+    return text.replace("[output]\n", f"[output]\ninterval = {duration!r}\n")
+
+
+def run(program, work, text, step, steps):
+    """Summary of a run, and its peak of memory in bytes."""
+    (work / "scene.toml").write_text(stepped(text, step, steps))
     out = work / "out"
     shutil.rmtree(out, ignore_errors=True)
     process = subprocess.Popen([program, "run", work / "scene.toml", "--out", out], stderr=subprocess.DEVNULL)

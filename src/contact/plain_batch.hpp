@@ -63,11 +63,11 @@ struct GroupToAdd {
   const RowOffsets &deformation_begin;
   const BlockMotion *motions;
   std::span<const std::uint8_t> is_added; ///< Candidates::is_added, if some of the blocks wait
-  // Out: slots of pairs with a block that waits; of the others the rest.
+  // What comes of it.
   std::size_t num_waiting = 0;
-  std::array<std::uint16_t, PlainPair::pairs_in_group> waiting{};
-  double largest_squared = 0.0; ///< of the forces of regions, (N/m)^2
-  std::int64_t num_touching = 0;
+  std::array<std::uint16_t, PlainPair::pairs_in_group> waiting{}; ///< slots of pairs with a block that waits
+  std::int64_t num_touching = 0;                                  ///< other pairs
+  double largest_squared = 0.0; ///< of the forces of their regions and what it was before, (N/m)^2
 };
 
 /// Evaluates as many pairs at once as the registers of its instructions hold. All instructions give the same

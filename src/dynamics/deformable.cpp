@@ -47,12 +47,6 @@ double spin_of(const BlockSystem &system, std::size_t row) {
   return spin_of(d.gradient, d.rate);
 }
 
-double spin_rate_of(const Mat2 &gradient, const Mat2 &rate, const Mat2 &acceleration) {
-  const Mat2 back = inverse(gradient);
-  const Mat2 velocity_gradient = rate * back;
-  return motion_dof(acceleration * back - velocity_gradient * velocity_gradient).r;
-}
-
 Mat2 elastic_stress(const Deformation &d, const Mat2 &strain) {
   const double shear = d.stiffness_shear * (strain.xy + strain.yx);
   return {d.stiffness_direct * strain.xx + d.stiffness_cross * strain.yy, shear, shear,

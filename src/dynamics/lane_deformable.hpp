@@ -102,7 +102,6 @@ inline Lanes lane_angle_between(const LaneMat &from, const LaneMat &to) {
 /// Deformable blocks before their step.
 struct LaneDeformable {
   LaneVec u;
-  Lanes r;
   LaneVec v;
   LaneVec a;
   LaneMat gradient;

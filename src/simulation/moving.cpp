@@ -103,9 +103,7 @@ void Simulation::begin_moving() {
   moving_.predicted = 0;
   moving_.moved = 0;
   moving_.waiting.clear();
-  moving_.report.broken.reset();
-  moving_.report.restless.clear();
-  moving_.report.largest_turn = 0.0;
+  moving_.report.clear();
 }
 
 void Simulation::predict_to(std::size_t end) {

@@ -402,6 +402,30 @@ TEST(Predict, MovesDeformableBlocksSideBySideAsEachAlone) {
   }
 }
 
+TEST(LookAhead, LeavesHowBlocksMoved) {
+  Simulation simulation(Communicator::self(),
+                        testing::scene_of(testing::falling_pile_toml(45, 0.2),
+                                          {R"(run.fidelity="deformable")", "material.rock.youngs_modulus=1e9",
+                                           "material.rock.poissons_ratio=0.25"}));
+  for (int step = 0; step < 100; ++step) {
+    simulation.step();
+  }
+  const std::vector<BlockMotion> before = simulation.blocks().motion;
+  std::size_t ahead = 0; // of rows that deform in another way there
+  simulation.look_ahead([&](const BlockSystem &blocks) {
+    for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+      ahead += blocks.is_deformable(row) && blocks.motion[row].turn != before[row].turn ? 1 : 0;
+    }
+  });
+  EXPECT_GT(ahead, 0U);
+  for (std::size_t row = 0; row < simulation.blocks().num_owned; ++row) {
+    SCOPED_TRACE(row);
+    EXPECT_EQ(simulation.blocks().motion[row].increment(), before[row].increment());
+    EXPECT_EQ(simulation.blocks().motion[row].turn, before[row].turn);
+    EXPECT_EQ(simulation.blocks().motion[row].centroid, before[row].centroid);
+  }
+}
+
 // Blocks with three, four and five vertices, rigid and deformable, in any order; some have turned far.
 TEST(Predict, PosesEveryBlockAsPoseDoes) {
   std::mt19937 engine(23);

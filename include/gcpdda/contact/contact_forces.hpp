@@ -213,8 +213,8 @@ private:
                     std::span<RegionMemory> old);
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
-  /// Entries [first, last) of Candidates::plain.
   void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
+  /// Entries [first, last) of Candidates::plain.
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
                             std::size_t first, std::size_t last, const Front &front = {});
   /// How a pair is looked at: as one corner of each block; as corners of one in a face of the other; as

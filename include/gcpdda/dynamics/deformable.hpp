@@ -97,9 +97,6 @@ double spin_of(const Mat2 &gradient, const Mat2 &rate);
 /// Of a row, whether it deforms or not, at t_n.
 double spin_of(const BlockSystem &system, std::size_t row);
 
-/// Rate of that spin (1/s2).
-double spin_rate_of(const Mat2 &gradient, const Mat2 &rate, const Mat2 &acceleration);
-
 /// K e (N) on the symmetric part of e, in the axes of e.
 Mat2 elastic_stress(const Deformation &deformation, const Mat2 &strain);
 

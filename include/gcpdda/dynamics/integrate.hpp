@@ -165,6 +165,11 @@ struct AdvanceReport {
 
   void note_broken(std::size_t row) { broken = std::min(row, broken.value_or(row)); }
   void note_turn(double turn) { largest_turn = std::max(largest_turn, turn); }
+  void clear() {
+    broken.reset();
+    restless.clear();
+    largest_turn = 0.0;
+  }
 };
 
 /// Advances free rows from `first` on, several at a time, as far as rigid or deformable ones come one behind

@@ -20,6 +20,7 @@
 #include "gcpdda/simulation/stages.hpp"
 #include "gcpdda/simulation/time_plan.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -196,9 +197,13 @@ public:
     std::vector<RigidDof> trial = blocks_.trial;
     std::vector<Deformation> deformation = blocks_.deformation;
     std::vector<RigidDof> increments;
+    std::vector<std::array<Vec2, 2>> turns(deformation.size());
     increments.reserve(blocks_.motion.size());
-    for (const BlockMotion &motion : blocks_.motion) {
-      increments.push_back(motion.increment());
+    for (std::size_t row = 0; row < blocks_.motion.size(); ++row) {
+      increments.push_back(blocks_.motion[row].increment());
+      if (blocks_.is_deformable(row)) {
+        turns[blocks_.deformation_begin[row]] = blocks_.motion[row].turn;
+      }
     }
     send_trials();
     predict_rows(0, blocks_.num_owned, false);
@@ -208,6 +213,9 @@ public:
     blocks_.deformation = std::move(deformation);
     for (std::size_t row = 0; row < increments.size(); ++row) {
       blocks_.motion[row].set_increment(increments[row]);
+      if (blocks_.is_deformable(row)) {
+        blocks_.motion[row].turn = turns[blocks_.deformation_begin[row]];
+      }
     }
     pose_in_lanes(blocks_, 0, blocks_.num_mobile());
     increments = {};

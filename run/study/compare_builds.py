@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""compare.py PROGRAM_A PROGRAM_B CASE [CASE_B] [--rounds N]: how long two builds of gcpdda take for a contact, at once.
+"""compare_builds.py PROGRAM_A PROGRAM_B CASE [CASE_B] [--rounds N]: how long two builds of gcpdda take for a contact, at once.
 
 Both run at the same time, each on a core of its own, and change places in every round: what else a shared machine has
 to do then slows both. CASE is like deformable:100:2000, that is kind, rows of a pyramid (speed.py) and steps. Prints
@@ -23,11 +23,8 @@ def prepared(program, work, case):
     """The scene of a case with the step that the program chooses."""
     kind, rows, steps = case.split(":")
     text = speed.scene(work, int(rows), int(steps), kind, 1e-3)
-    step = speed.default_step(program, work, text)
-    duration = int(steps) * step
     path = work / f"{case.replace(':', '_')}.toml"
-    path.write_text(text.replace(f"duration = {steps}\ntime_step = 1.0", f"duration = {duration!r}\ntime_step = {step!r}")
-                    .replace("[output]\n", f"[output]\ninterval = {duration!r}\n"))
+    path.write_text(speed.stepped(text, speed.default_step(program, work, text), int(steps)))
     return path
 
 
@@ -58,7 +55,7 @@ def main():
             cores = (0, 1) if number % 2 == 0 else (1, 0)
             running = [start(*what, work) for what in zip((first, second), scenes, cores)]
             if any(process.wait() != 0 for process in running):
-                raise SystemExit("compare.py: a run failed")
+                raise SystemExit("compare_builds.py: a run failed")
             a, b = (nanoseconds(core, work) for core in cores)
             ratios.append({key: b[key] / a[key] for key in a})
             least = [min(least[0], a["all"]), min(least[1], b["all"])]
