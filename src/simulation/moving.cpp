@@ -102,7 +102,7 @@ void Simulation::begin_moving() {
   moving_.body = {gravity(), ground_acceleration()};
   moving_.predicted = 0;
   moving_.moved = 0;
-  moving_.waiting.clear();
+  moving_.passed = 0;
   moving_.report.clear();
 }
 
@@ -115,31 +115,42 @@ void Simulation::predict_to(std::size_t end) {
   }
 }
 
-// But rows that wait, and with them those that are in the same registers.
+// They are as many as the registers hold.
+void Simulation::find_waiting_rows() {
+  std::vector<RowSpan> &waiting = moving_.waiting;
+  waiting.clear();
+  for (std::size_t first = 0; first < blocks_.num_owned; first += rows_together) {
+    const std::size_t last = std::min(blocks_.num_owned, first + rows_together);
+    const std::uint8_t *is_added = candidates_.is_added.data();
+    if (std::find(is_added + first, is_added + last, 0) == is_added + last) {
+      continue;
+    }
+    if (waiting.empty() || waiting.back().last < first) {
+      waiting.push_back({first, first});
+    }
+    waiting.back().last = last;
+  }
+}
+
 void Simulation::move_to(std::size_t end) {
   const std::size_t last = end == blocks_.num_owned ? end : end / rows_at_once * rows_at_once;
-  const auto at = [&](std::size_t row) {
-    return candidates_.is_added.begin() + static_cast<std::ptrdiff_t>(row);
-  };
-  for (std::size_t first = moving_.moved; first < last;) {
-    const auto found = static_cast<std::size_t>(std::find(at(first), at(last), 0) - at(0));
-    const std::size_t stop = found == last ? last : std::max(first, found / rows_together * rows_together);
-    move_rows(first, stop);
-    first = found == last ? last : std::min(last, stop + rows_together);
-    std::vector<RowSpan> &waiting = moving_.waiting;
-    if (!waiting.empty() && waiting.back().last == stop) {
-      waiting.back().last = first;
-    } else if (stop < first) {
-      waiting.push_back({stop, first});
-    }
+  if (last <= moving_.moved) {
+    return;
   }
-  moving_.moved = std::max(moving_.moved, last);
+  const auto scope = phases_.measure(Phase::update);
+  while (moving_.moved < last) {
+    const bool is_last_run = moving_.passed == moving_.waiting.size();
+    const std::size_t stop = is_last_run ? last : std::min(last, moving_.waiting[moving_.passed].first);
+    move_rows(moving_.moved, stop);
+    moving_.moved = stop < last ? moving_.waiting[moving_.passed++].last : last;
+  }
 }
 
 // Those that are left.
 void Simulation::move_blocks() {
-  for (const RowSpan &rows : moving_.waiting) {
-    move_rows(rows.first, rows.last);
+  const auto scope = phases_.measure(Phase::update);
+  for (std::size_t k = 0; k < moving_.passed; ++k) {
+    move_rows(moving_.waiting[k].first, moving_.waiting[k].last);
   }
   move_rows(moving_.moved, blocks_.num_owned);
   blocks_.body = moving_.body;
@@ -153,11 +164,8 @@ void Simulation::move_rows(std::size_t first, std::size_t end) {
   for (first = move_free_rows(first, end); first < end;) {
     const std::size_t last = std::min(end, first + rows_at_once);
     gather_forces(first, last, moving_.body);
-    {
-      const auto scope = phases_.measure(Phase::update);
-      solve_and_update(blocks_, own_forces_, scheme_, plan_.time_step, scene_.run.elasticity, first, last,
-                       calm_motion(), moving_.report);
-    }
+    solve_and_update(blocks_, own_forces_, scheme_, plan_.time_step, scene_.run.elasticity, first, last,
+                     calm_motion(), moving_.report);
     first = move_free_rows(last, end);
   }
 }
@@ -167,13 +175,11 @@ std::size_t Simulation::move_free_rows(std::size_t first, std::size_t end) {
   if (scene_.run.rayleigh.present()) {
     return first;
   }
-  const auto scope = phases_.measure(Phase::update);
   return advance_free_rows(blocks_, {moving_.body, local_damping_, calm_motion(), bolts_.empty()}, scheme_,
                            plan_.time_step, scene_.run.elasticity, first, end, moving_.report);
 }
 
 void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
-  const auto scope = phases_.measure(Phase::forces);
   for (std::size_t row = first; row < last; ++row) {
     const WaterLoad water = scene_.water.empty()
                                 ? WaterLoad{}

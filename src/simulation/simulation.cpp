@@ -92,6 +92,7 @@ void Simulation::refresh(std::optional<ContactMemory> given) {
   pose(blocks_, blocks_.first_fixed(), blocks_.num_rows());
   pose_in_lanes(blocks_, 0, blocks_.num_mobile());
   bolts_.connect(blocks_);
+  find_waiting_rows();
   stale_ = false;
   if (step_count_ > 0) {
     counters_.migrations += left;

@@ -289,6 +289,7 @@ private:
   /// @param for_contacts  which are to be evaluated there
   void predict_rows(std::size_t first, std::size_t last, bool for_contacts);
   // How owned rows go through a step, see moving.cpp.
+  void find_waiting_rows();
   void begin_moving();
   /// Those below `end` have their trial configurations then.
   void predict_to(std::size_t end);
@@ -305,7 +306,6 @@ private:
   void take(const ForceReport &report);
   void sum_contacts_of_blocks();
   void move_blocks();
-  /// May there be any?
   void gather_forces(std::size_t first, std::size_t last, const BodyForces &body);
   AppliedForces gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);
@@ -337,7 +337,8 @@ private:
     BodyForces body;
     std::size_t predicted = 0;    ///< rows below have their trial configurations
     std::size_t moved = 0;        ///< those below are at the end of the step, but for ...
-    std::vector<RowSpan> waiting; ///< ... these
+    std::size_t passed = 0;       ///< ... so many of ...
+    std::vector<RowSpan> waiting; ///< ... these, which cannot go on with their group
     AdvanceReport report;         ///< of the last step
   };
   Moving moving_;
