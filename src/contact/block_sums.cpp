@@ -124,6 +124,11 @@ void BlockSums::close_group(const BlockSystem &system, const Candidates &candida
   seen_.fill(0);
 }
 
+void BlockSums::begin_border(std::size_t num_plain) {
+  kept_.reserve(kept_.size() + num_plain);
+  kept_dyads_.reserve(has_dyads_ ? kept_dyads_.size() + num_plain : 0);
+}
+
 RegionRange &BlockSums::range_of(std::uint32_t pair) {
   const bool is_behind = waiting_[last_asked_] <= pair;
   const auto from = waiting_.begin() + static_cast<std::ptrdiff_t>(is_behind ? last_asked_ : 0);

@@ -188,8 +188,9 @@ void order_evaluation(const BlockSystem &system, Candidates &candidates) {
     return is_ghost(pair.lower) || is_ghost(pair.higher);
   };
   const auto order = [&](const PlainPair &plain) {
-    return std::tuple(has_ghost(plain.pair), plain.group(), plain.kind.is_deformable, plain.kind.lower_edges,
-                      plain.kind.higher_edges, plain.kind.has_few_edges, plain.pair);
+    const bool is_border = has_ghost(plain.pair);
+    return std::tuple(is_border, is_border ? 0 : plain.group(), plain.kind.is_deformable,
+                      plain.kind.lower_edges, plain.kind.higher_edges, plain.kind.has_few_edges, plain.pair);
   };
   std::sort(candidates.plain.begin(), candidates.plain.end(),
             [&](const PlainPair &a, const PlainPair &b) { return order(a) < order(b); });
@@ -230,6 +231,15 @@ void find_waiting(const BlockSystem &system, Candidates &candidates) {
       candidates.waiting.push_back(k);
     }
   }
+  for (std::size_t k = candidates.num_interior_plain; k < candidates.plain.size(); ++k) {
+    const auto place =
+        std::lower_bound(candidates.waiting.begin(), candidates.waiting.end(), candidates.plain[k].pair);
+    candidates.border_places.push_back(static_cast<std::uint32_t>(place - candidates.waiting.begin()));
+    candidates.border_entries.push_back(static_cast<std::uint32_t>(k));
+  }
+  std::sort(
+      candidates.border_entries.begin(), candidates.border_entries.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return candidates.plain[a].pair < candidates.plain[b].pair; });
   candidates.are_added.assign(candidates.pairs.size() / PlainPair::pairs_in_group + 1, 1);
   for (const std::uint32_t k : candidates.waiting) {
     candidates.are_added[k / PlainPair::pairs_in_group] = 0;

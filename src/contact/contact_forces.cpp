@@ -158,25 +158,38 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   }
 }
 
-PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touching, PlainOverlap overlap) {
+RegionSums &ContactForces::open_region(const Candidates &candidates, std::size_t entry, bool born) {
+  return entry < candidates.num_interior_plain
+             ? sums_.open(candidates.plain[entry].pair, born)
+             : sums_.open_border(candidates.border_places[entry - candidates.num_interior_plain], born);
+}
+
+RegionDyads &ContactForces::dyads_of_opened(const Candidates &candidates, std::size_t entry) {
+  return entry < candidates.num_interior_plain ? sums_.dyads(candidates.plain[entry].pair)
+                                               : sums_.border_dyads();
+}
+
+PlainResults ContactForces::open_regions(const Candidates &candidates, const PlainLanes &lanes,
+                                         unsigned touching, PlainOverlap overlap) {
   PlainResults results;
   results.has_dyads = lanes.pair[0]->kind.is_deformable;
   unsigned wanted = 0;
   bool has_mixed = false;
   for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
+    const auto entry = static_cast<std::size_t>(&plain - candidates.plain.data());
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
     if (is_born && plain.is_mixed) {
-      births_.push_back(plain.pair);
+      births_.push_back(static_cast<std::uint32_t>(entry));
       return;
     }
     wanted |= 1U << i;
     has_mixed = has_mixed || plain.is_mixed;
-    results.sums[i] = &sums_.open(plain.pair, is_born);
+    results.sums[i] = &open_region(candidates, entry, is_born);
     results.memory[i] = &plain_memory_[plain.pair];
     next_.overlaps[plain.pair] = overlap;
     if (results.has_dyads) {
-      results.dyads[i] = &sums_.dyads(plain.pair);
+      results.dyads[i] = &dyads_of_opened(candidates, entry);
     }
   });
   results.wanted = wanted;
@@ -186,7 +199,7 @@ PlainResults ContactForces::open_regions(const PlainLanes &lanes, unsigned touch
 
 void ContactForces::store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching,
                                 PlainOverlap overlap) {
-  const PlainResults results = open_regions(lanes, touching, overlap);
+  const PlainResults results = open_regions(scene.candidates, lanes, touching, overlap);
   const unsigned too_deep = batch_->store(results);
   for_bits(results.has_mixed ? results.wanted : 0U, [&](std::size_t i) {
     if (lanes.pair[i]->is_mixed) {
@@ -288,6 +301,7 @@ void ContactForces::close_group(const BlockSystem &system, const Candidates &can
   sums_.close_group(system, candidates, group, *batch_);
 }
 
+// Those before num_interior_plain or all others.
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                                          ContactHistory &history, std::size_t first, std::size_t last,
                                          const Front &front) {
@@ -299,25 +313,30 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
                          parameters_.stiffness_damping,
                          false};
   plain_memory_ = history.plain;
+  const bool are_interior = first < candidates.num_interior_plain;
   for (std::size_t begin = first, end = first; begin < last; begin = end) {
     const std::uint32_t group = candidates.plain[begin].group();
-    const auto from = candidates.plain.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto most =
-        static_cast<std::ptrdiff_t>(std::min<std::size_t>(PlainPair::pairs_in_group, last - begin));
-    end = static_cast<std::size_t>(
-        std::partition_point(from, from + most, [&](const PlainPair &p) { return p.group() == group; }) -
-        candidates.plain.begin());
+    end = std::min(last, begin + PlainPair::pairs_in_group);
+    if (are_interior) {
+      const auto from = candidates.plain.begin() + static_cast<std::ptrdiff_t>(begin);
+      const auto most = static_cast<std::ptrdiff_t>(end - begin);
+      end = static_cast<std::size_t>(
+          std::partition_point(from, from + most, [&](const PlainPair &p) { return p.group() == group; }) -
+          candidates.plain.begin());
+    }
     if (front.before) {
       front.before(candidates.group_rows[group].end);
     }
     find_meeting(system, candidates, history, begin, end);
     evaluate_known(scene);
     evaluate_strangers(scene);
-    for (const std::uint32_t number : births_) {
-      evaluate_any_pair(system, candidates, number, {});
+    for (const std::uint32_t entry : births_) {
+      evaluate_birth(system, candidates, entry);
     }
     births_.clear();
-    close_group(system, candidates, group);
+    if (are_interior) {
+      close_group(system, candidates, group);
+    }
     if (front.after) {
       front.after(candidates.group_rows[group].done);
     }
@@ -328,30 +347,41 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
   report_.max_overlap_share = std::max(report_.max_overlap_share, seen.max_overlap_share);
 }
 
-void ContactForces::evaluate_any_pair(const BlockSystem &system, const Candidates &candidates,
-                                      std::uint32_t number, std::span<RegionMemory> old) {
-  const std::size_t begin = num_forces_;
-  const std::size_t first_known = next_.regions.size();
-  first_of_pair_ = begin;
+std::size_t ContactForces::append_regions(const BlockSystem &system, const Candidates &candidates,
+                                          std::uint32_t number, std::span<RegionMemory> old) {
+  first_of_pair_ = num_forces_;
   dyads_.clear();
   find_regions(system, candidates, number, old);
-  const std::size_t count = num_forces_ - begin; // of memories as well
-  if (!candidates.pairs[number].is_plain) {
-    ranges_[number] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(count)};
-    next_.ranges[number] = {static_cast<std::uint32_t>(first_known), static_cast<std::uint32_t>(count)};
-    if (count > 0) {
-      sums_.keep(number, std::span(forces_).subspan(begin, count),
-                 std::span(dyads_).first(std::min(count, dyads_.size())));
-    }
-  } else if (count > 0) { // one region, with its group
-    next_.overlaps[number] = PlainOverlap::other;
-    plain_memory_[number] = next_.regions.back();
-    next_.regions.pop_back();
-    sums_.open(number, true) = forces_[begin];
-    if (!dyads_.empty()) {
-      sums_.dyads(number) = dyads_.front();
-    }
-    drop_last_force();
+  return num_forces_ - first_of_pair_;
+}
+
+// One region at most.
+void ContactForces::evaluate_birth(const BlockSystem &system, const Candidates &candidates,
+                                   std::uint32_t entry) {
+  const std::uint32_t number = candidates.plain[entry].pair;
+  if (append_regions(system, candidates, number, {}) == 0) {
+    return;
+  }
+  next_.overlaps[number] = PlainOverlap::other;
+  plain_memory_[number] = next_.regions.back();
+  next_.regions.pop_back();
+  open_region(candidates, entry, true) = forces_[first_of_pair_];
+  if (!dyads_.empty()) {
+    dyads_of_opened(candidates, entry) = dyads_.front();
+  }
+  drop_last_force();
+}
+
+void ContactForces::evaluate_general_pair(const BlockSystem &system, const Candidates &candidates,
+                                          std::uint32_t number, std::span<RegionMemory> old) {
+  const std::size_t first_known = next_.regions.size();
+  const std::size_t count = append_regions(system, candidates, number, old); // of memories as well
+  const auto begin = static_cast<std::uint32_t>(first_of_pair_);
+  ranges_[number] = {begin, static_cast<std::uint32_t>(count)};
+  next_.ranges[number] = {static_cast<std::uint32_t>(first_known), static_cast<std::uint32_t>(count)};
+  if (count > 0) {
+    sums_.keep(number, std::span(forces_).subspan(begin, count),
+               std::span(dyads_).first(std::min(count, dyads_.size())));
   }
 }
 
@@ -362,7 +392,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
     if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) ||
         history.has_bonds(k) || history.is_dilated(k)) {
       ++report_.evaluations;
-      evaluate_any_pair(system, candidates, k, history.of_other(k));
+      evaluate_general_pair(system, candidates, k, history.of_other(k));
     }
   }
 }
@@ -392,6 +422,7 @@ void ContactForces::evaluate_interior(BlockSystem &system, const Candidates &can
 ForceReport ContactForces::evaluate_border(BlockSystem &system, const Candidates &candidates,
                                            ContactHistory &history) {
   begin_rows(system, system.num_owned, system.first_fixed());
+  sums_.begin_border(candidates.plain.size() - candidates.num_interior_plain);
   evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).subspan(candidates.num_interior_general));

@@ -136,6 +136,67 @@ void reserve_rows(BlockSystem &system, std::size_t rows, std::size_t vertices) {
   system.reference_normal.reserve(vertices);
 }
 
+namespace {
+
+/// Joints of edges as append_edge_joints() leaves them.
+std::vector<std::int32_t> edge_joints_of_runs(const BlockSystem &system, const BlockSystem &joining,
+                                              std::span<const RowRun> runs) {
+  std::vector<std::int32_t> taken;
+  if (system.edge_joint.empty() && joining.edge_joint.empty()) {
+    return taken;
+  }
+  for (const RowRun &run : runs) {
+    const BlockSystem &from = run.joins ? joining : system;
+    for (std::size_t k = from.vertex_begin[run.first]; k < from.vertex_begin[run.last]; ++k) {
+      taken.push_back(from.edge_joint.empty() ? -1 : from.edge_joint[k]);
+    }
+  }
+  return taken;
+}
+
+} // namespace
+
+void take_rows(BlockSystem &system, const BlockSystem &joining, std::span<const RowRun> runs,
+               std::size_t spare) {
+  std::vector<std::int32_t> edge_joint = edge_joints_of_runs(system, joining, runs);
+  const auto take_field = [&](auto field, const auto &place_of, std::size_t room) {
+    auto &old = system.*field;
+    std::decay_t<decltype(old)> taken;
+    taken.reserve(room);
+    for (const RowRun &run : runs) {
+      const auto begin = (run.joins ? joining.*field : old).begin();
+      taken.insert(taken.end(), begin + place_of(run, run.first), begin + place_of(run, run.last));
+    }
+    old = std::move(taken);
+  };
+  std::size_t num_rows = 0;
+  for (const RowRun &run : runs) {
+    num_rows += run.last - run.first;
+  }
+  const auto row_itself = [](const RowRun &, std::size_t row) { return static_cast<std::ptrdiff_t>(row); };
+  std::apply([&](auto... field) { (take_field(field, row_itself, num_rows + spare), ...); },
+             BlockSystem::row_fields());
+  const auto take_list = [&](auto begins, auto... fields) {
+    const auto begin_of = [&](const RowRun &run, std::size_t row) {
+      return static_cast<std::ptrdiff_t>((run.joins ? joining.*begins : system.*begins)[row]);
+    };
+    auto offsets = BlockSystem{}.*begins; // of no rows
+    offsets.reserve(num_rows + spare + 1);
+    std::size_t length = 0;
+    for (const RowRun &run : runs) {
+      for (std::size_t row = run.first; row < run.last; ++row) {
+        length += static_cast<std::size_t>(begin_of(run, row + 1) - begin_of(run, row));
+        offsets.push_back(static_cast<std::uint32_t>(length));
+      }
+    }
+    const std::size_t room = num_rows == 0 ? 0 : length + length * spare / num_rows;
+    (take_field(fields, begin_of, room), ...);
+    system.*begins = std::move(offsets);
+  };
+  std::apply([&](auto... list) { (std::apply(take_list, list), ...); }, BlockSystem::lists());
+  system.edge_joint = std::move(edge_joint);
+}
+
 void append_row(BlockSystem &to, const BlockSystem &from, std::size_t row) {
   append_rows(to, from, row, row + 1);
 }

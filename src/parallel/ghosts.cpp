@@ -124,39 +124,68 @@ std::vector<Aabb> boxes_of_cells(const CellGrid &grid, const BlockSystem &system
   return published;
 }
 
-/// Owned rows whose reach box meets the hull of another rank: all that can be anybody's ghosts.
-std::vector<std::uint32_t> rows_near_others(const Communicator &communicator, std::span<const Aabb> own,
-                                            const std::vector<std::vector<Aabb>> &hulls) {
-  std::vector<std::uint32_t> near;
-  std::vector<Aabb> others;
-  const auto rank = static_cast<std::size_t>(communicator.rank());
-  for (std::size_t r = 0; r < hulls.size(); ++r) {
-    if (r != rank && hulls[r][0].meets(hulls[rank][0])) {
-      others.push_back(hulls[r][0]);
+} // namespace
+
+RankReach reach_of_rank(const BlockSystem &system, std::span<const Aabb> own) {
+  RankReach reach;
+  for (std::size_t row = 0; row < own.size(); ++row) {
+    const Vec2 centroid = system.centroid(row);
+    reach.hull.include(own[row]);
+    for (const Vec2 beyond : {centroid - own[row].low, own[row].high - centroid}) {
+      reach.beyond = std::max({reach.beyond, beyond.x, beyond.y});
     }
   }
+  return reach;
+}
+
+// A block of another rank that meets a box has its centroid in that box inflated by what it may reach beyond
+// it, and places in a grid are monotone: one of the cells between those of the corners is its, and so the
+// other rank's.
+std::vector<std::uint32_t> rows_near_others(std::span<const Aabb> own, std::span<const RankReach> ranks,
+                                            std::size_t rank, const DomainMap *owners) {
+  constexpr std::int64_t most_cells = 1024; // more take longer than they save
+  std::vector<std::uint32_t> near;
+  std::vector<Aabb> others;
+  double beyond = 0.0;
+  for (std::size_t r = 0; r < ranks.size(); ++r) {
+    if (r != rank && ranks[r].hull.meets(ranks[rank].hull)) {
+      others.push_back(ranks[r].hull);
+      beyond = std::max(beyond, ranks[r].beyond);
+    }
+  }
+  const auto is_by_others = [&](const Aabb &box) {
+    const CellGrid::Place low = owners->grid.place_of(box.low);
+    const CellGrid::Place high = owners->grid.place_of(box.high);
+    bool is_by = (high.row - low.row + 1) * (high.column - low.column + 1) > most_cells;
+    for (std::int64_t row = low.row; row <= high.row && !is_by; ++row) {
+      const auto cells = owners->owner.begin() + row * owners->grid.columns;
+      is_by = std::any_of(cells + low.column, cells + high.column + 1,
+                          [&](std::int32_t owner) { return static_cast<std::size_t>(owner) != rank; });
+    }
+    return is_by;
+  };
   for (std::uint32_t row = 0; row < own.size(); ++row) {
-    if (std::any_of(others.begin(), others.end(), [&](const Aabb &hull) { return hull.meets(own[row]); })) {
+    if (std::any_of(others.begin(), others.end(), [&](const Aabb &hull) { return hull.meets(own[row]); }) &&
+        (owners == nullptr || is_by_others(own[row].inflated(beyond)))) {
       near.push_back(row);
     }
   }
   return near;
 }
 
-} // namespace
-
-CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes) {
-  if (system.num_owned == 0) {
+CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes,
+                         std::span<const std::uint32_t> rows) {
+  if (rows.empty()) {
     return {};
   }
   std::vector<Vec2> centroids;
-  centroids.reserve(system.num_owned);
+  centroids.reserve(rows.size());
   double extent = 0.0;
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
+  for (const std::uint32_t row : rows) {
     centroids.push_back(system.centroid(row));
     extent += std::max(boxes[row].extent().x, boxes[row].extent().y);
   }
-  const auto num_blocks = static_cast<double>(system.num_owned);
+  const auto num_blocks = static_cast<double>(rows.size());
   const double cell_size = std::sqrt(0.5) * extent / num_blocks;
   const Aabb region = box_without_strays(centroids);
   const double cells = region.extent().x / cell_size * (region.extent().y / cell_size);
@@ -165,23 +194,25 @@ CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes)
 }
 
 std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator,
-                                                    const BlockSystem &system, std::span<const Aabb> boxes) {
+                                                    const BlockSystem &system, std::span<const Aabb> boxes,
+                                                    const DomainMap *owners) {
   const auto num_ranks = static_cast<std::size_t>(communicator.size());
   const std::span<const Aabb> own = boxes.first(system.num_owned);
-  Aabb hull;
-  for (const Aabb &box : own) {
-    hull.include(box);
-  }
+  const RankReach reach = reach_of_rank(system, own);
   // One hull from everybody, then details only between ranks whose hulls meet.
-  const std::vector<std::vector<Aabb>> hulls = communicator.all_gather(std::vector<Aabb>{hull});
-  const std::vector<std::uint32_t> near = rows_near_others(communicator, own, hulls);
-  const CellGrid grid = publishing_grid(system, boxes);
+  std::vector<RankReach> ranks;
+  for (const std::vector<RankReach> &of_rank : communicator.all_gather(std::vector<RankReach>{reach})) {
+    ranks.push_back(of_rank.front());
+  }
+  const std::vector<std::uint32_t> near =
+      rows_near_others(own, ranks, static_cast<std::size_t>(communicator.rank()), owners);
+  const CellGrid grid = publishing_grid(system, boxes, near);
   const std::vector<Aabb> mine = boxes_of_cells(grid, system, boxes, near);
   std::vector<std::vector<Aabb>> details(num_ranks);
   for (std::size_t r = 0; r < num_ranks; ++r) {
-    if (static_cast<int>(r) != communicator.rank() && hulls[r][0].meets(hull)) {
+    if (static_cast<int>(r) != communicator.rank() && ranks[r].hull.meets(reach.hull)) {
       std::copy_if(mine.begin(), mine.end(), std::back_inserter(details[r]),
-                   [&](const Aabb &box) { return box.meets(hulls[r][0]); });
+                   [&](const Aabb &box) { return box.meets(ranks[r].hull); });
     }
   }
   std::vector<PublishedBox> published;
@@ -193,10 +224,10 @@ std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communic
   }
   const BoxesByCell lookup(grid, published, own, near);
   std::vector<std::vector<std::uint32_t>> rows(num_ranks);
-  std::vector<std::int32_t> ranks;
+  std::vector<std::int32_t> meeting;
   for (const std::uint32_t row : near) {
-    lookup.ranks_meeting(boxes[row], ranks);
-    for (const std::int32_t r : ranks) {
+    lookup.ranks_meeting(boxes[row], meeting);
+    for (const std::int32_t r : meeting) {
       rows[static_cast<std::size_t>(r)].push_back(row);
     }
   }
@@ -228,12 +259,13 @@ struct Arrivals {
 
 } // namespace
 
-void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span<const FarGhost> far) {
+void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span<const FarGhost> far,
+                     const DomainMap *owners) {
   expect(system.num_ghosts == 0, "ghosts are rebuilt from owned blocks alone");
   if (communicator_.size() == 1) {
     return;
   }
-  auto rows = border_rows(communicator_, system, boxes);
+  auto rows = border_rows(communicator_, system, boxes, owners);
   for (const FarGhost &ghost : far) {
     std::vector<std::uint32_t> &of_rank = rows[static_cast<std::size_t>(ghost.rank)];
     const auto place = std::lower_bound(of_rank.begin(), of_rank.end(), ghost.row);
@@ -261,12 +293,16 @@ void Ghosts::rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span
   keep_rows(system, system.num_owned);
   // Senders pack in order of id, so walking the ghosts by id meets each sender's rows in message order.
   const Arrivals arrivals(received);
-  for (const std::size_t ghost : arrivals.by_id()) {
-    const auto neighbour = std::find_if(neighbours_.begin(), neighbours_.end(),
-                                        [&](const Neighbour &n) { return n.rank == arrivals.sender[ghost]; });
-    neighbour->receive_rows.push_back(static_cast<std::uint32_t>(system.num_rows()));
-    append_row(system, arrivals.blocks, ghost);
-    ++system.num_ghosts;
+  const std::vector<std::size_t> order = arrivals.by_id();
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) { // rows that stay together
+    for (end = begin; end < order.size() && order[end] == order[begin] + (end - begin); ++end) {
+      const int sender = arrivals.sender[order[end]];
+      const auto neighbour = std::find_if(neighbours_.begin(), neighbours_.end(),
+                                          [&](const Neighbour &n) { return n.rank == sender; });
+      neighbour->receive_rows.push_back(static_cast<std::uint32_t>(system.num_rows() + (end - begin)));
+    }
+    append_rows(system, arrivals.blocks, order[begin], order[begin] + (end - begin));
+    system.num_ghosts += end - begin;
   }
   append_rows(system, fixed, 0, fixed.num_rows());
   prepare_motion(system);

@@ -14,45 +14,43 @@ namespace {
 /// Owned rows are `staying` and all of `arrived`, sorted by id; ghosts are dropped. Where nothing changes
 /// owned rows are not touched.
 void settle_rows(BlockSystem &system, const std::vector<std::size_t> &staying, const BlockSystem &arrived) {
-  BlockSystem fixed;
-  append_rows(fixed, system, system.first_fixed(), system.num_rows());
   if (staying.size() == system.num_owned && arrived.num_rows() == 0) {
+    BlockSystem fixed;
+    append_rows(fixed, system, system.first_fixed(), system.num_rows());
     keep_rows(system, system.num_owned);
-  } else {
-    std::vector<std::pair<std::int64_t, std::size_t>>
-        order; // id and row, arrived ones behind all of the system
-    order.reserve(staying.size() + arrived.num_rows());
-    for (const std::size_t row : staying) {
-      order.emplace_back(system.properties[row].id.value, row);
-    }
-    for (std::size_t row = 0; row < arrived.num_rows(); ++row) {
-      order.emplace_back(arrived.properties[row].id.value, system.num_rows() + row);
-    }
-    const auto first_arrived = order.begin() + std::ssize(staying);
-    std::sort(first_arrived, order.end());
-    std::inplace_merge(order.begin(), first_arrived, order.end());
-    BlockSystem sorted;
-    const std::size_t ghosts = system.num_ghosts + system.num_ghosts / 8 + 16; // about as many will come
-    reserve_rows(sorted, order.size() + ghosts + fixed.num_rows(),
-                 system.reference_vertex.size() + arrived.reference_vertex.size() + 4 * ghosts);
-    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) { // rows that stay together
-      const std::size_t first = order[begin].second;
-      const bool is_new = first >= system.num_rows();
-      end = begin + 1;
-      while (end < order.size() && order[end].second == first + (end - begin) &&
-             (order[end].second >= system.num_rows()) == is_new) {
-        ++end;
-      }
-      const std::size_t from = is_new ? first - system.num_rows() : first;
-      append_rows(sorted, is_new ? arrived : system, from, from + (end - begin));
-    }
-    sorted.num_owned = order.size();
-    sorted.num_fixed = system.num_fixed;
-    sorted.body = system.body;
-    system = std::move(sorted);
+    append_rows(system, fixed, 0, fixed.num_rows());
+    system.num_ghosts = 0;
+    return;
   }
+  std::vector<std::size_t> arriving(arrived.num_rows());
+  std::iota(arriving.begin(), arriving.end(), std::size_t{0});
+  std::sort(arriving.begin(), arriving.end(), [&](std::size_t a, std::size_t b) {
+    return arrived.properties[a].id < arrived.properties[b].id;
+  });
+  std::vector<RowRun> runs; // of rows that stay together
+  const auto add = [&](std::size_t row, bool joins) {
+    if (runs.empty() || runs.back().joins != joins || runs.back().last != row) {
+      runs.push_back({row, row, joins});
+    }
+    ++runs.back().last;
+  };
+  auto next = arriving.begin();
+  for (const std::size_t row : staying) {
+    for (; next != arriving.end() && arrived.properties[*next].id < system.properties[row].id; ++next) {
+      add(*next, true);
+    }
+    add(row, false);
+  }
+  for (; next != arriving.end(); ++next) {
+    add(*next, true);
+  }
+  for (std::size_t row = system.first_fixed(); row < system.num_rows(); ++row) {
+    add(row, false);
+  }
+  const std::size_t about_as_many = system.num_ghosts + system.num_ghosts / 8 + 16; // ghosts will come
+  take_rows(system, arrived, runs, about_as_many);
+  system.num_owned = staying.size() + arrived.num_rows();
   system.num_ghosts = 0;
-  append_rows(system, fixed, 0, fixed.num_rows());
 }
 
 /// Those of blocks that leave go to their new owners as well.

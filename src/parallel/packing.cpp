@@ -14,6 +14,14 @@ template <class T> void put(Bytes &message, const T *values, std::size_t count) 
   message.insert(message.end(), bytes, bytes + count * sizeof(T));
 }
 
+template <class T> T take_one(std::span<const std::byte> &message) {
+  expect(message.size() >= sizeof(T), "a message of blocks holds whole rows");
+  T value;
+  std::memcpy(&value, message.data(), sizeof(T));
+  message = message.subspan(sizeof(T));
+  return value;
+}
+
 template <class T> void take(std::span<const std::byte> &message, std::vector<T> &to, std::size_t count) {
   expect(message.size() >= count * sizeof(T), "a message of blocks holds whole rows");
   if (count == 0) {
@@ -42,14 +50,19 @@ void pack_row(const BlockSystem &system, std::size_t row, Bytes &message) {
 
 void unpack_rows(std::span<const std::byte> message, BlockSystem &system) {
   const auto take_list = [&](auto begins, auto first, auto... fields) {
-    std::vector<std::uint64_t> count;
-    take(message, count, 1);
-    take(message, system.*first, count[0]);
-    (take(message, system.*fields, count[0]), ...);
+    const auto count = take_one<std::uint64_t>(message);
+    take(message, system.*first, count);
+    (take(message, system.*fields, count), ...);
     (system.*begins).push_back(static_cast<std::uint32_t>((system.*first).size()));
   };
   while (!message.empty()) {
-    std::apply([&](auto... field) { (take(message, system.*field, 1), ...); }, BlockSystem::row_fields());
+    std::apply(
+        [&](auto... field) {
+          ((system.*field)
+               .push_back(take_one<typename std::decay_t<decltype(system.*field)>::value_type>(message)),
+           ...);
+        },
+        BlockSystem::row_fields());
     std::apply([&](auto... list) { (std::apply(take_list, list), ...); }, BlockSystem::lists());
     const std::size_t row = system.num_rows() - 1;
     std::vector<std::int32_t> joints;

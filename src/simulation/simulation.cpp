@@ -81,7 +81,7 @@ void Simulation::refresh(std::optional<ContactMemory> given) {
   // A joint is remembered until it is open by twice that; only one of its blocks may be inflated.
   const double reach_skin = skin_ + 4.0 * dilation;
   std::vector<Aabb> boxes = reach_boxes(blocks_, reach_skin);
-  ghosts_.rebuild(blocks_, boxes, bolts_.partners(communicator_, blocks_));
+  ghosts_.rebuild(blocks_, boxes, bolts_.partners(communicator_, blocks_), &map_);
   const std::vector<Aabb> ghost_boxes =
       reach_boxes(blocks_, reach_skin, blocks_.num_owned, blocks_.first_fixed());
   boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(blocks_.num_owned), ghost_boxes.begin(),
@@ -152,9 +152,12 @@ void Simulation::evaluate_contacts() {
   begin_moving();
   Front front;
   front.before = [this](std::size_t end) { predict_to(end); };
-  if (bolts_.empty()) { // else their forces come last
-    front.after = [this](std::size_t end) { move_to(end); };
-  }
+  front.after = [this](std::size_t end) {
+    ghosts_.advance();
+    if (bolts_.empty()) { // else their forces come last
+      move_to(end);
+    }
+  };
   {
     const auto scope = phases_.measure(Phase::forces);
     contacts_.evaluate_interior(blocks_, candidates_, history_, front);

@@ -57,7 +57,7 @@ struct Case {
       : whole(testing::random_system(seed, num_mobile, num_fixed, region)), boxes(reach_boxes(whole, skin)),
         map(domain_map), mine(testing::part_of(whole, map, world.rank())), num_owned(mine.num_owned),
         ghosts(world) {
-    ghosts.rebuild(mine, reach_boxes(mine, skin));
+    ghosts.rebuild(mine, reach_boxes(mine, skin), {}, &map);
   }
 
   [[nodiscard]] int owner(std::size_t id) const { return map.rank_of(whole.centroid(id)); }
@@ -96,7 +96,16 @@ void expect_all_that_meet(const Case &c, int rank) {
 void expect_no_superfluous(const Case &c, int rank) {
   std::map<std::int64_t, Aabb> of_cell;
   const BlockSystem part = testing::part_of(c.whole, c.map, rank);
-  const CellGrid grid = publishing_grid(part, reach_boxes(part, skin));
+  std::vector<RankReach> ranks;
+  for (int r = 0; r < Communicator::world().size(); ++r) {
+    const BlockSystem of_rank = testing::part_of(c.whole, c.map, r);
+    const std::vector<Aabb> its_boxes = reach_boxes(of_rank, skin);
+    ranks.push_back(reach_of_rank(of_rank, std::span(its_boxes).first(of_rank.num_owned)));
+  }
+  const std::vector<Aabb> boxes = reach_boxes(part, skin);
+  const std::vector<std::uint32_t> near =
+      rows_near_others(std::span(boxes).first(part.num_owned), ranks, static_cast<std::size_t>(rank), &c.map);
+  const CellGrid grid = publishing_grid(part, boxes, near);
   for (std::size_t a = 0; a < num_mobile; ++a) {
     if (c.owner(a) == rank) {
       of_cell[grid.cell_of(c.whole.centroid(a))].include(c.boxes[a]);

@@ -7,7 +7,8 @@
 // as they ascend. Plain pairs without a ghost are evaluated by groups that ascend: what a group does is added
 // at once, and its regions are overwritten by those of the next one. Blocks that have some other pair as well
 // have to wait for it (Candidates::is_added); regions on them are kept, and finish() adds them. These are
-// few: blocks at the border of a domain, and those of odd shape.
+// few: blocks at the border of a domain, and those of odd shape. All plain pairs with a ghost wait, so they
+// need no groups: so few would leave many lanes empty.
 
 #include "gcpdda/contact/candidates.hpp"
 #include "gcpdda/contact/region_sums.hpp"
@@ -52,6 +53,20 @@ public:
   /// All pairs of a group have been evaluated.
   void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t number,
                    const PlainBatch &batch);
+  /// Now come so many plain pairs with a ghost.
+  void begin_border(std::size_t num_plain);
+  /// Place for what the only region of one of them does, until one is opened that is not.
+  /// @param place  of its number in Candidates::waiting
+  RegionSums &open_border(std::size_t place, bool born) {
+    kept_range_[place] = {static_cast<std::uint32_t>(kept_.size()), 1};
+    if (has_dyads_) {
+      kept_dyads_.emplace_back();
+    }
+    kept_.push_back({RegionSums{}, born});
+    return kept_.back();
+  }
+  /// Of the last one opened.
+  RegionDyads &border_dyads() { return kept_dyads_.back(); }
   /// All regions of some other pair.
   /// @param dyads  theirs, or none
   void keep(std::uint32_t pair, std::span<const RegionForce> regions, std::span<const RegionDyads> dyads);

@@ -89,14 +89,18 @@ struct Candidates {
   std::vector<CandidatePair> pairs; ///< with at least one owned block, by (lower id, higher id)
   std::vector<LawConstants> laws;   ///< by CandidatePair::law
   // In the order in which they are evaluated: first those without a ghost, whose number stands beside.
-  std::vector<PlainPair> plain; ///< by groups, in each those of like numbers of edges together
+  std::vector<PlainPair> plain; ///< those of like numbers of edges together, in the first ones by groups
   std::size_t num_interior_plain = 0;
   std::vector<std::uint32_t> general; ///< numbers of all other pairs
   std::size_t num_interior_general = 0;
   /// By owned row: all of its pairs are plain and without a ghost, and come in the order of the other blocks'
   /// ids; see BlockSums.
   std::vector<std::uint8_t> is_added;
-  std::vector<std::uint32_t> waiting;  ///< numbers of the pairs of the others, in order
+  std::vector<std::uint32_t> waiting; ///< numbers of the pairs of the others, in order
+  /// Places in `waiting` of the plain pairs with a ghost, as these stand in `plain`; and these, by ascending
+  /// pair.
+  std::vector<std::uint32_t> border_places;
+  std::vector<std::uint32_t> border_entries;
   std::vector<std::uint8_t> are_added; ///< by PlainPair::group: none of its pairs is one of these
   /// Of the owned rows, a group and those before it have none from `end` on, and those behind it have none
   /// below `done`, which is not beyond `end`.
@@ -108,18 +112,17 @@ struct Candidates {
 
   /// visit(entry of `plain`) for all pairs of a group.
   template <class Visit> void for_plain_of_group(std::uint32_t group, Visit &&visit) const {
-    const auto visit_run = [&](std::size_t begin, std::size_t end) {
-      const auto from = plain.begin() + static_cast<std::ptrdiff_t>(begin);
-      const auto to = plain.begin() + static_cast<std::ptrdiff_t>(end);
-      const auto first =
-          std::partition_point(from, to, [&](const PlainPair &p) { return p.group() < group; });
-      for (auto k = static_cast<std::size_t>(first - plain.begin()); k < end && plain[k].group() == group;
-           ++k) {
-        visit(k);
-      }
-    };
-    visit_run(0, num_interior_plain);
-    visit_run(num_interior_plain, plain.size());
+    const auto interior_end = plain.begin() + static_cast<std::ptrdiff_t>(num_interior_plain);
+    const auto first = std::partition_point(plain.begin(), interior_end,
+                                            [&](const PlainPair &p) { return p.group() < group; });
+    for (auto entry = first; entry != interior_end && entry->group() == group; ++entry) {
+      visit(static_cast<std::size_t>(entry - plain.begin()));
+    }
+    auto border = std::partition_point(border_entries.begin(), border_entries.end(),
+                                       [&](std::uint32_t k) { return plain[k].group() < group; });
+    for (; border != border_entries.end() && plain[*border].group() == group; ++border) {
+      visit(std::size_t{*border});
+    }
   }
 };
 

@@ -206,9 +206,14 @@ private:
     double shear = 0.0;    ///< ... and leaves this, N/m
   };
 
-  /// The regions of one pair, whatever its shapes and laws.
-  void evaluate_any_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
-                         std::span<RegionMemory> old);
+  /// The regions of one pair, whatever its shapes and laws, behind all others.
+  /// @return how many
+  std::size_t append_regions(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
+                             std::span<RegionMemory> old);
+  void evaluate_general_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
+                             std::span<RegionMemory> old);
+  /// Of an entry of Candidates::plain that has no region so far and must choose among laws.
+  void evaluate_birth(const BlockSystem &system, const Candidates &candidates, std::uint32_t entry);
   void find_regions(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                     std::span<RegionMemory> old);
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
@@ -231,7 +236,11 @@ private:
   void evaluate_known(const PlainScene &scene);
   void evaluate_strangers(const PlainScene &scene);
   /// Places for the lanes that touch.
-  PlainResults open_regions(const PlainLanes &lanes, unsigned touching, PlainOverlap overlap);
+  PlainResults open_regions(const Candidates &candidates, const PlainLanes &lanes, unsigned touching,
+                            PlainOverlap overlap);
+  /// Of an entry of Candidates::plain.
+  RegionSums &open_region(const Candidates &candidates, std::size_t entry, bool born);
+  RegionDyads &dyads_of_opened(const Candidates &candidates, std::size_t entry);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, PlainOverlap overlap);
   /// Once more, with details.
@@ -304,7 +313,7 @@ private:
   std::vector<std::uint32_t> others_;    ///< they were none of these
   std::vector<std::uint32_t> left_;      ///< they are none of these
   std::vector<std::uint32_t> strangers_; ///< without a region so far
-  std::vector<std::uint32_t> births_;    ///< plain pairs whose new regions must choose among laws
+  std::vector<std::uint32_t> births_;    ///< new ones that must choose among laws
   std::array<CandidatePair, 8> own_;     ///< constants of mixed pairs at hand, by lane
   BlockSums sums_;
   // The regions of pairs that are not plain are the first num_forces_; those of plain pairs of the group at

@@ -361,6 +361,17 @@ struct BlockSystem {
 /// Stiffness of a block of that area (m2) and material.
 void set_elasticity(Deformation &deformation, double area, const Material &material, bool plane_strain);
 
+/// Rows [first, last) of a system, or of the one that joins it.
+struct RowRun {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  bool joins = false;
+};
+/// The system's rows become those of these runs, field by field. The ranges' counts are the caller's.
+/// @param spare  rows that there is room for behind them
+void take_rows(BlockSystem &system, const BlockSystem &joining, std::span<const RowRun> runs,
+               std::size_t spare);
+
 /// Append the row of a scene's block in its initial configuration. A deformable kind needs the material's
 /// elastic constants. Its own matrix, where it has one, is made later (dynamics/deformable.hpp); the ranges'
 /// counts are the caller's.

@@ -37,12 +37,16 @@ public:
   ///
   /// @param boxes  reach boxes of the owned rows
   /// @param far  further rows to send, in any order
-  void rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span<const FarGhost> far = {});
+  /// @param owners  the map, where all blocks are with the ranks it says: spares looking at those inside
+  void rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span<const FarGhost> far = {},
+               const DomainMap *owners = nullptr);
 
   /// Owners' trial configurations and velocities set out to their ghosts, by requests that were prepared at
   /// the rebuild. Until finish() ghost rows keep the old ones.
   /// @param trial_of  what it is going to be, by owned row
   void begin(const BlockSystem &system, const std::function<TrialConfiguration(std::uint32_t)> &trial_of);
+  /// Looks after them on their way.
+  void advance() { motion_.advance(); }
   /// They have arrived; ghosts are posed.
   void finish(BlockSystem &system);
 
@@ -101,12 +105,25 @@ private:
   std::int64_t bytes_ = 0;
 };
 
-/// The grid by whose cells this rank publishes its blocks: cells of about half a block, over strips that lie
-/// askew too.
-CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes);
+/// The grid by whose cells this rank publishes these owned blocks: cells of about half a block, over strips
+/// that lie askew too.
+CellGrid publishing_grid(const BlockSystem &system, std::span<const Aabb> boxes,
+                         std::span<const std::uint32_t> rows);
+/// How far the owned blocks of a rank reach.
+struct RankReach {
+  Aabb hull;           ///< of their boxes
+  double beyond = 0.0; ///< largest way along an axis from a centroid to the end of its block's box, m
+};
+/// @param own  boxes of the owned rows
+RankReach reach_of_rank(const BlockSystem &system, std::span<const Aabb> own);
+/// Owned rows of which a box of another rank may meet the box: all that can be anybody's ghosts.
+/// @param owners  as in Ghosts::rebuild
+std::vector<std::uint32_t> rows_near_others(std::span<const Aabb> own, std::span<const RankReach> ranks,
+                                            std::size_t rank, const DomainMap *owners);
 
 /// For each rank the owned rows it needs, ascending; nothing for the own rank. Collective.
 std::vector<std::vector<std::uint32_t>> border_rows(const Communicator &communicator,
-                                                    const BlockSystem &system, std::span<const Aabb> boxes);
+                                                    const BlockSystem &system, std::span<const Aabb> boxes,
+                                                    const DomainMap *owners = nullptr);
 
 } // namespace gcpdda

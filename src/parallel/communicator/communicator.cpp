@@ -197,6 +197,7 @@ PendingMax Communicator::start_max(double value) const {
 struct MessageRound::Requests {
   std::vector<MPI_Request> all;
   bool running = false;
+  bool arrived = false; ///< all of a round that is not finished
 
   Requests() = default;
   ~Requests() {
@@ -248,7 +249,18 @@ void MessageRound::start() {
   }
   expect(!requests_->running, "a round is started once at a time");
   requests_->running = true;
+  requests_->arrived = false;
   check(MPI_Startall(count_of(requests_->all.size()), requests_->all.data()), "MPI_Startall");
+}
+
+void MessageRound::advance() {
+  if (requests_ == nullptr || !requests_->running || requests_->arrived) {
+    return;
+  }
+  int arrived = 0;
+  check(MPI_Testall(count_of(requests_->all.size()), requests_->all.data(), &arrived, MPI_STATUSES_IGNORE),
+        "MPI_Testall");
+  requests_->arrived = arrived != 0;
 }
 
 void MessageRound::finish() {
@@ -256,7 +268,9 @@ void MessageRound::finish() {
     return;
   }
   expect(requests_->running, "only a started round is finished");
-  wait_all(requests_->all);
+  if (!requests_->arrived) {
+    wait_all(requests_->all);
+  }
   requests_->running = false;
 }
 
