@@ -158,38 +158,32 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   }
 }
 
-RegionSums &ContactForces::open_region(const Candidates &candidates, std::size_t entry, bool born) {
-  return entry < candidates.num_interior_plain
-             ? sums_.open(candidates.plain[entry].pair, born)
-             : sums_.open_border(candidates.border_places[entry - candidates.num_interior_plain], born);
-}
-
-RegionDyads &ContactForces::dyads_of_opened(const Candidates &candidates, std::size_t entry) {
-  return entry < candidates.num_interior_plain ? sums_.dyads(candidates.plain[entry].pair)
-                                               : sums_.border_dyads();
-}
-
 PlainResults ContactForces::open_regions(const Candidates &candidates, const PlainLanes &lanes,
                                          unsigned touching, PlainOverlap overlap) {
   PlainResults results;
   results.has_dyads = lanes.pair[0]->kind.is_deformable;
+  const PlainPair *const first_at_border = candidates.plain.data() + candidates.num_interior_plain;
+  const bool is_at_border = lanes.pair[0] >= first_at_border; // as all others, then
   unsigned wanted = 0;
   bool has_mixed = false;
   for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
-    const auto entry = static_cast<std::size_t>(&plain - candidates.plain.data());
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
     if (is_born && plain.is_mixed) {
-      births_.push_back(static_cast<std::uint32_t>(entry));
+      births_.push_back(static_cast<std::uint32_t>(&plain - candidates.plain.data()));
       return;
     }
     wanted |= 1U << i;
     has_mixed = has_mixed || plain.is_mixed;
-    results.sums[i] = &open_region(candidates, entry, is_born);
+    results.sums[i] =
+        is_at_border
+            ? &sums_.open_border(candidates.border_places[static_cast<std::size_t>(&plain - first_at_border)],
+                                 is_born)
+            : &sums_.open(plain.pair, is_born);
     results.memory[i] = &plain_memory_[plain.pair];
     next_.overlaps[plain.pair] = overlap;
     if (results.has_dyads) {
-      results.dyads[i] = &dyads_of_opened(candidates, entry);
+      results.dyads[i] = is_at_border ? &sums_.border_dyads() : &sums_.dyads(plain.pair);
     }
   });
   results.wanted = wanted;
@@ -365,9 +359,11 @@ void ContactForces::evaluate_birth(const BlockSystem &system, const Candidates &
   next_.overlaps[number] = PlainOverlap::other;
   plain_memory_[number] = next_.regions.back();
   next_.regions.pop_back();
-  open_region(candidates, entry, true) = forces_[first_of_pair_];
+  const bool is_at_border = entry >= candidates.num_interior_plain;
+  (is_at_border ? sums_.open_border(candidates.border_places[entry - candidates.num_interior_plain], true)
+                : sums_.open(number, true)) = forces_[first_of_pair_];
   if (!dyads_.empty()) {
-    dyads_of_opened(candidates, entry) = dyads_.front();
+    (is_at_border ? sums_.border_dyads() : sums_.dyads(number)) = dyads_.front();
   }
   drop_last_force();
 }

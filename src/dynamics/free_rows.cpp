@@ -9,7 +9,7 @@ namespace gcpdda {
 std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
                               double time_step, Elasticity elasticity, std::size_t first, std::size_t last,
                               AdvanceReport &report, Instructions instructions) {
-  const BlockLanes lanes = block_lanes(instructions);
+  const BlockLanes &lanes = block_lanes(instructions);
   const OwnStep step = own_step({}, scheme, time_step, elasticity);
   for (std::size_t end = first + lanes.width; end <= last; first = end, end += lanes.width) {
     const std::size_t entry = system.deformation_begin[first];

@@ -39,7 +39,7 @@ void add_to_ledger(BlockSystem &system, std::size_t row, const HalfWorks &half) 
 }
 
 void add_half_works(BlockSystem &system, std::size_t first, std::size_t last, Instructions instructions) {
-  const BlockLanes lanes = block_lanes(instructions);
+  const BlockLanes &lanes = block_lanes(instructions);
   const auto in_lanes = [&](std::size_t row) { // were they?
     const std::size_t end = row + lanes.width;
     if (end > last || !are_free(system, row, end)) {

@@ -86,7 +86,7 @@ private:
 } // namespace
 
 void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last) {
-  const BlockLanes lanes = block_lanes(Instructions::widest);
+  const BlockLanes &lanes = block_lanes(Instructions::widest);
   Quads rigid(system, lanes.width, lanes.pose_rigid_quads);
   Quads deformable(system, lanes.width, lanes.pose_deformable_quads);
   std::size_t others = first; // where a run of them may begin
@@ -143,7 +143,7 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpa
   constexpr std::size_t rows_at_once = 64; // they are posed from the cache
   pose(system, 0, 0);                      // lists have their lengths
   const TrialFactors next(scheme, time_step);
-  const BlockLanes lanes = block_lanes(Instructions::widest);
+  const BlockLanes &lanes = block_lanes(Instructions::widest);
   const auto in_lanes = [&](std::size_t row, std::size_t last) { // were they?
     const std::size_t end = row + lanes.width;
     if (end > last) {

@@ -194,7 +194,7 @@ private:
   const OwnStep &step_;
   double calm_;
   AdvanceReport &report_;
-  const BlockLanes block_lanes_;
+  const BlockLanes &block_lanes_;
   DeformableLanes free_;
   DeformableLanes held_;
   std::array<std::optional<OwnSprings>, most_lanes> springs_; ///< of held_

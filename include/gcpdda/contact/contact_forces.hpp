@@ -238,9 +238,6 @@ private:
   /// Places for the lanes that touch.
   PlainResults open_regions(const Candidates &candidates, const PlainLanes &lanes, unsigned touching,
                             PlainOverlap overlap);
-  /// Of an entry of Candidates::plain.
-  RegionSums &open_region(const Candidates &candidates, std::size_t entry, bool born);
-  RegionDyads &dyads_of_opened(const Candidates &candidates, std::size_t entry);
   /// What the batch at hand found for the lanes that touch, as regions and their memory.
   void store_alike(const PlainScene &scene, const PlainLanes &lanes, unsigned touching, PlainOverlap overlap);
   /// Once more, with details.
