@@ -47,7 +47,6 @@ std::vector<std::int64_t> work_of_blocks(const BlockSystem &system, const Candid
 }
 
 CellGrid lay_grid(const Communicator &communicator, std::span<const Vec2> centroids) {
-  constexpr std::int64_t cells_per_block = 2;
   constexpr std::int64_t most_per_block = 64;
   constexpr std::int64_t least_per_rank = 64;
   // Every rank holds all cells, and a thousand for each rank balance to a thousandth.
@@ -64,12 +63,15 @@ CellGrid lay_grid(const Communicator &communicator, std::span<const Vec2> centro
   const std::int64_t most = std::clamp(
       std::min(most_per_block * num_blocks, std::max(most_of_few_ranks, most_per_rank * num_ranks)), least,
       max_background_cells);
-  std::int64_t num_cells = std::clamp(cells_per_block * num_blocks, least, most);
+  // More take longer to cut and let more blocks go back and forth.
+  const std::int64_t enough = std::max(num_blocks / 2, most_per_rank * num_ranks);
+  std::int64_t num_cells = std::clamp(std::min(2 * num_blocks, enough), least, most);
+  const std::int64_t wanted = std::min(num_blocks, num_cells);
   // Of a strip that lies askew most cells would be empty and the others coarse.
   std::int64_t occupied = num_occupied(CellGrid::over(region, num_cells), centroids);
   communicator.sum(std::span(&occupied, 1));
-  if (occupied > 0 && occupied < num_blocks) {
-    const double finer = static_cast<double>(num_blocks) / static_cast<double>(occupied);
+  if (occupied > 0 && occupied < wanted) {
+    const double finer = static_cast<double>(wanted) / static_cast<double>(occupied);
     num_cells = std::min(most, static_cast<std::int64_t>(finer * static_cast<double>(num_cells)));
   }
   return CellGrid::over(region, num_cells);

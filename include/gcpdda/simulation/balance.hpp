@@ -40,9 +40,9 @@ private:
 /// That of candidates at the system's trial configuration.
 std::vector<std::int64_t> work_of_blocks(const BlockSystem &system, const Candidates &candidates);
 
-/// Grid over the mobile blocks of all ranks, known by their centroids: about two cells a block, so that
-/// balance and borders are fine and most blocks stay in theirs, but never more than all ranks can hold.
-/// Collective.
+/// Grid over the mobile blocks of all ranks, known by their centroids: about a cell for two blocks, up to
+/// two for each where these are few, so that balance is fine and a new map soon made, but never more than all
+/// ranks can hold. Collective.
 CellGrid lay_grid(const Communicator &communicator, std::span<const Vec2> centroids);
 
 /// Sum by cell of everybody's weighted points. Collective.
