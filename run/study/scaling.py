@@ -165,7 +165,7 @@ def model(counts):
         for ranks in (1e3, 1e4, 1e5):
             own = blocks / ranks
             ghosts = per_root[-1] * math.sqrt(own)
-            cells = min(2.0**27, 2.0 * blocks, max(2.0**20, 1024.0 * ranks))
+            cells = min(2.0**27, 2.0 * blocks, max(blocks / 2.0, 1024.0 * ranks), max(2.0**20, 1024.0 * ranks))
             rows.append({"blocks": int(blocks), "ranks": int(ranks), "blocks_per_rank": own, "ghosts_per_rank": ghosts,
                          "bytes_per_rank_and_step": bytes_per_ghost * ghosts, "messages_per_rank_and_step": messages,
                          "share_of_ghosts": ghosts / own, "cells_on_every_rank": int(cells),

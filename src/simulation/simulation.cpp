@@ -191,9 +191,10 @@ void Simulation::sum_contacts_of_blocks() {
   prepare_forces();
 }
 
-// One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop. It runs while
-// this rank counts. It cannot run on into the next step: how far a block may go in two steps depends on
-// contacts that nobody has evaluated yet, so a flag one step late is no bound.
+// One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop. It cannot be a
+// step late: how far a block may go in two steps depends on contacts that nobody has evaluated yet, so a flag
+// one step late is no bound. One that runs on while this rank counts is no shorter: to start it and to look
+// for its end, each with the cache full of blocks, takes longer than counting.
 void Simulation::report() {
   if (stages_[static_cast<std::size_t>(stage_.index)].kinetic_damping && stage_step() > 0) {
     stop_at_energy_peak();
@@ -202,9 +203,8 @@ void Simulation::report() {
     look_at_stage();
   }
   const auto scope = phases_.measure(Phase::report);
-  PendingMax status = communicator_.start_max(own_status());
   count();
-  const double agreed = status.wait();
+  const double agreed = communicator_.max(own_status());
   stale_ = agreed >= needs_refresh;
   stop_agreed_ = agreed == asked_to_stop;
   if (agreed >= failed) {

@@ -14,7 +14,6 @@ namespace gcpdda {
 using Bytes = std::vector<std::byte>;
 
 class MessageRound;
-class PendingMax;
 
 /// Owner of one MPI communicator; the only way to messages outside parallel HDF5. Every return code is
 /// checked: a failed call throws InternalError. Calls are collective unless said otherwise.
@@ -35,11 +34,9 @@ public:
   void barrier() const;
   /// In place; largest of each entry over all ranks. NaN is not allowed.
   void max(std::span<double> values) const;
+  [[nodiscard]] double max(double value) const;
   void max(std::span<std::int64_t> values) const;
   void sum(std::span<std::int64_t> values) const;
-  /// The same as max(), begun here and completed by what is returned; other calls may come between, in the
-  /// same order on all ranks.
-  [[nodiscard]] PendingMax start_max(double value) const;
   /// Root's bytes to everybody.
   void broadcast(Bytes &bytes) const;
   void broadcast(std::string &text) const;
@@ -102,7 +99,6 @@ public:
 
 private:
   friend class MessageRound;
-  friend class PendingMax;
   struct Handle;
   explicit Communicator(std::shared_ptr<Handle> handle);
 
@@ -156,22 +152,6 @@ public:
 private:
   struct Requests;
   std::unique_ptr<Requests> requests_;
-};
-
-/// A reduction under way. wait() exactly once.
-class PendingMax {
-public:
-  PendingMax(const Communicator &communicator, double value);
-  ~PendingMax();
-  PendingMax(const PendingMax &) = delete;
-  PendingMax &operator=(const PendingMax &) = delete;
-  /// Largest value of all ranks.
-  double wait();
-
-private:
-  struct Request;
-  double value_;
-  std::unique_ptr<Request> request_;
 };
 
 /// MPI_Init and MPI_Finalize as a scope. An exception must be caught inside: one that leaves the scope ends

@@ -190,8 +190,13 @@ const void *Communicator::native() const {
   return &handle_->value;
 }
 
-PendingMax Communicator::start_max(double value) const {
-  return {*this, value};
+// Over one rank it takes MPI microseconds, as long as the step of a few blocks.
+double Communicator::max(double value) const {
+  double largest = value;
+  if (size_ > 1) {
+    check(MPI_Allreduce(&value, &largest, 1, MPI_DOUBLE, MPI_MAX, handle_->value), "MPI_Allreduce");
+  }
+  return largest;
 }
 
 struct MessageRound::Requests {
@@ -272,29 +277,6 @@ void MessageRound::finish() {
     wait_all(requests_->all);
   }
   requests_->running = false;
-}
-
-struct PendingMax::Request {
-  MPI_Request value = MPI_REQUEST_NULL;
-};
-
-// A reduction over one rank takes MPI microseconds, as long as the step of a few blocks.
-PendingMax::PendingMax(const Communicator &communicator, double value) : value_(value) {
-  if (communicator.size() > 1) {
-    request_ = std::make_unique<Request>();
-    check(MPI_Iallreduce(MPI_IN_PLACE, &value_, 1, MPI_DOUBLE, MPI_MAX, communicator.handle_->value,
-                         &request_->value),
-          "MPI_Iallreduce");
-  }
-}
-
-PendingMax::~PendingMax() = default;
-
-double PendingMax::wait() {
-  if (request_ != nullptr) {
-    check(MPI_Wait(&request_->value, MPI_STATUS_IGNORE), "MPI_Wait");
-  }
-  return value_;
 }
 
 MpiScope::MpiScope(int &argc, char **&argv) {
