@@ -144,6 +144,7 @@ RankReach reach_of_rank(const BlockSystem &system, std::span<const Aabb> own) {
 std::vector<std::uint32_t> rows_near_others(std::span<const Aabb> own, std::span<const RankReach> ranks,
                                             std::size_t rank, const DomainMap *owners) {
   constexpr std::int64_t most_cells = 1024; // more take longer than they save
+  constexpr double rounding = 1.0 + 1e-9;
   std::vector<std::uint32_t> near;
   std::vector<Aabb> others;
   double beyond = 0.0;
@@ -166,7 +167,7 @@ std::vector<std::uint32_t> rows_near_others(std::span<const Aabb> own, std::span
   };
   for (std::uint32_t row = 0; row < own.size(); ++row) {
     if (std::any_of(others.begin(), others.end(), [&](const Aabb &hull) { return hull.meets(own[row]); }) &&
-        (owners == nullptr || is_by_others(own[row].inflated(beyond)))) {
+        (owners == nullptr || is_by_others(own[row].inflated(rounding * beyond)))) {
       near.push_back(row);
     }
   }
