@@ -83,6 +83,15 @@ def share_of_communication(summary):
     return (phases["ghosts"]["mean"] + phases["report"]["mean"]) / loop
 
 
+PHASES = ("refresh", "predict", "ghosts", "forces", "update", "report", "output")
+
+
+def excess(one, two):
+    """What each phase takes on two ranks beyond half of what it takes one, us of a step."""
+    return {f"{phase}_excess_us": 1e6 / one["steps"] * (two["phases"][phase]["mean"] - 0.5 * one["phases"][phase]["mean"])
+            for phase in PHASES}
+
+
 def write(path, rows):
     with open(path, "w", newline="") as file:
         table = csv.DictWriter(file, rows[0])
@@ -137,14 +146,15 @@ def time_rounds(runner, work, cases, rounds):
             taken.append({"efficiency": one["wall_s"] / (2.0 * two["wall_s"]),
                           "ceiling": alone["wall_s"] / max(run["wall_s"] for run in at_once),
                           "wall_1": one["wall_s"], "wall_2": two["wall_s"],
-                          "communication": share_of_communication(two)})
+                          "communication": share_of_communication(two)} | excess(one, two))
         middle = {key: statistics.median(t[key] for t in taken) for key in taken[0]}
         contacts = one["contact_steps"] / one["steps"] / one["blocks"]
         rows.append({"problem": name, "blocks": one["blocks"], "contacts_per_block": contacts, "steps": steps,
                      "rounds": rounds, "wall_1_rank_s": middle["wall_1"], "wall_2_ranks_s": middle["wall_2"],
                      "efficiency": middle["efficiency"], "ceiling": middle["ceiling"],
                      "efficiency_over_ceiling": statistics.median(t["efficiency"] / t["ceiling"] for t in taken),
-                     "communication": middle["communication"], "build": "release"})
+                     "communication": middle["communication"], "build": "release"} |
+                    {key: middle[key] for key in excess(one, two)})
         row = rows[-1]
         print(f"{name} {row['blocks']} blocks, {contacts:.2f} contacts a block, median of {rounds}: efficiency on 2 ranks "
               f"{row['efficiency']:.3f}, ceiling {row['ceiling']:.3f}, of it {row['efficiency_over_ceiling']:.3f}, "

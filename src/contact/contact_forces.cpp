@@ -162,24 +162,23 @@ PlainResults ContactForces::open_regions(const Candidates &candidates, const Pla
                                          unsigned touching, PlainOverlap overlap) {
   PlainResults results;
   results.has_dyads = lanes.pair[0]->kind.is_deformable;
-  const PlainPair *const first_at_border = candidates.plain.data() + candidates.num_interior_plain;
-  const bool is_at_border = lanes.pair[0] >= first_at_border; // as all others, then
+  const auto entry_of = [&](const PlainPair &plain) {
+    return static_cast<std::size_t>(&plain - candidates.plain.data());
+  };
+  const bool is_at_border = entry_of(*lanes.pair[0]) >= candidates.num_interior_plain; // as all others, then
   unsigned wanted = 0;
   bool has_mixed = false;
   for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
     if (is_born && plain.is_mixed) {
-      births_.push_back(static_cast<std::uint32_t>(&plain - candidates.plain.data()));
+      births_.push_back(static_cast<std::uint32_t>(entry_of(plain)));
       return;
     }
     wanted |= 1U << i;
     has_mixed = has_mixed || plain.is_mixed;
-    results.sums[i] =
-        is_at_border
-            ? &sums_.open_border(candidates.border_places[static_cast<std::size_t>(&plain - first_at_border)],
-                                 is_born)
-            : &sums_.open(plain.pair, is_born);
+    results.sums[i] = is_at_border ? &sums_.open_border(candidates.border_place(entry_of(plain)), is_born)
+                                   : &sums_.open(plain.pair, is_born);
     results.memory[i] = &plain_memory_[plain.pair];
     next_.overlaps[plain.pair] = overlap;
     if (results.has_dyads) {
@@ -360,8 +359,8 @@ void ContactForces::evaluate_birth(const BlockSystem &system, const Candidates &
   plain_memory_[number] = next_.regions.back();
   next_.regions.pop_back();
   const bool is_at_border = entry >= candidates.num_interior_plain;
-  (is_at_border ? sums_.open_border(candidates.border_places[entry - candidates.num_interior_plain], true)
-                : sums_.open(number, true)) = forces_[first_of_pair_];
+  (is_at_border ? sums_.open_border(candidates.border_place(entry), true) : sums_.open(number, true)) =
+      forces_[first_of_pair_];
   if (!dyads_.empty()) {
     (is_at_border ? sums_.border_dyads() : sums_.dyads(number)) = dyads_.front();
   }

@@ -280,6 +280,36 @@ TEST(BlockSystem, AppendedRowsKeepEveryBit) {
   EXPECT_EQ(to.loads_of(4).size(), 2U);
 }
 
+// As rows appended one run after the other.
+TEST(BlockSystem, TakenRowsKeepEveryBit) {
+  const BlockSystem from = filled_system();
+  BlockSystem joining;
+  append_row(joining, from, 2);
+  append_row(joining, from, 1);
+  joining.properties[1].has_edge_joints = true; // of which the system knows none
+  joining.edge_joint.assign(joining.reference_vertex.size(), -1);
+  joining.edge_joint.back() = 2;
+  const std::vector<RowRun> runs{{1, 2, true}, {0, 2, false}, {0, 1, true}, {2, 3, false}};
+  BlockSystem expected;
+  for (const RowRun &run : runs) {
+    append_rows(expected, run.joins ? joining : from, run.first, run.last);
+  }
+  BlockSystem system = from;
+  take_rows(system, joining, runs, 3);
+  ASSERT_EQ(system.num_rows(), 5U);
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    SCOPED_TRACE(row);
+    expect_same_row(system, row, expected, row);
+  }
+  EXPECT_EQ(system.edge_joint, expected.edge_joint);
+  EXPECT_EQ(system.edge_joints(0).back(), 2);
+  EXPECT_TRUE(system.is_deformable(2));
+
+  take_rows(system, {}, {}, 0);
+  EXPECT_EQ(system.num_rows(), 0U);
+  EXPECT_TRUE(system.reference_vertex.empty());
+}
+
 TEST(BlockSystem, PackedRowsKeepEveryBit) {
   BlockSystem from = filled_system();
   from.velocity[1].u.x = -0.0;

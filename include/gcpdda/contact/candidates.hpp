@@ -110,6 +110,10 @@ struct Candidates {
   };
   std::vector<GroupRows> group_rows; ///< by PlainPair::group
 
+  /// Of an entry of `plain` with a ghost, in `waiting`.
+  [[nodiscard]] std::size_t border_place(std::size_t entry) const {
+    return border_places[entry - num_interior_plain];
+  }
   /// visit(entry of `plain`) for all pairs of a group.
   template <class Visit> void for_plain_of_group(std::uint32_t group, Visit &&visit) const {
     const auto interior_end = plain.begin() + static_cast<std::ptrdiff_t>(num_interior_plain);
