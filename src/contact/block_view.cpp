@@ -26,4 +26,9 @@ Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x) {
                                    : Rotation::of(-system.trial[row].r)(arm);
 }
 
+Vec2 current_point(const BlockSystem &system, std::size_t row, Vec2 x) {
+  return system.motion[row].centroid + (system.is_deformable(row) ? system.deformation_of(row).trial(x)
+                                                                  : Rotation::of(system.trial[row].r)(x));
+}
+
 } // namespace gcpdda

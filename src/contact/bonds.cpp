@@ -246,6 +246,7 @@ void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair 
     force.normal = -stretched.normal;
     force.normal_force = -bond.pull;
     force.point = bond.middle();
+    force.grip = force.point;
     force.origin = force.point;
     force.cap = bond.cap;
     force.extent_begin = -0.5 * stretched.length;

@@ -299,24 +299,32 @@ Candidates with_room(std::size_t pairs, const JointLaws &joints) {
   return candidates;
 }
 
-/// With room for so many pairs.
-void forget_all(std::size_t pairs, ContactHistory &history) {
+/// Forget the memory of all pairs, with room for that of so many.
+/// @param deforms  some block does
+void forget_all(std::size_t pairs, bool deforms, ContactHistory &history) {
   history.overlaps.clear();
   history.plain.clear();
+  history.grips.clear();
   history.ranges.clear();
   history.regions.clear();
   history.overlaps.reserve(pairs);
   history.plain.reserve(pairs);
+  history.grips.reserve(deforms ? pairs : 0);
 }
 
 /// Of a pair whose regions are the last ones of all, from `begin` on: those of a plain pair move to its own
 /// place.
 /// @param overlap  of a plain pair: as what it is looked at first
-void append_places(bool is_plain, PlainOverlap overlap, std::size_t begin, ContactHistory &history) {
+/// @param deforms  some block does
+void append_places(bool is_plain, PlainOverlap overlap, std::size_t begin, bool deforms,
+                   ContactHistory &history) {
   const std::size_t count = history.regions.size() - begin;
   const bool has_plain = is_plain && count > 0;
   history.overlaps.push_back(has_plain ? overlap : PlainOverlap::none);
   history.plain.push_back(has_plain ? history.regions[begin] : RegionState{});
+  if (deforms) {
+    history.grips.push_back(has_plain ? history.regions[begin].grip : Vec2{});
+  }
   if (is_plain) {
     history.regions.resize(begin);
   } else {
@@ -362,7 +370,8 @@ Candidates make_candidates(const BlockSystem &system,
   Candidates candidates = with_room(pairs.size(), parameters.joints);
   RecordsInOrder plain_records(memory.plain);
   RecordsInOrder other_records(memory.others);
-  forget_all(pairs.size(), history);
+  const bool deforms = !system.deformation.empty();
+  forget_all(pairs.size(), deforms, history);
   ChainFinder finder(system, skin);
   for (const auto &[lower, higher] : pairs) {
     EdgeChain lower_chain;
@@ -388,14 +397,15 @@ Candidates make_candidates(const BlockSystem &system,
     const BlockId lower_id = system.properties[lower.value].id;
     const BlockId higher_id = system.properties[higher.value].id;
     plain_records.for_pair(lower_id, higher_id, [&](const RegionState &state) {
-      add(RegionMemory{state, {}, {}, 0, 0});
+      add(RegionMemory{state, {}, {}, 0, 0, {}});
     });
     other_records.for_pair(lower_id, higher_id, add);
     if (candidate.is_mixed && history.regions.size() > begin && history.regions[begin].law >= 0) {
       take_law(system, parameters, history.regions[begin].law, candidates.pairs.back());
     }
     const bool may_be_corners = is_plain && candidates.plain.back().kind.may_be_corners();
-    append_places(is_plain, may_be_corners ? PlainOverlap::corners : PlainOverlap::other, begin, history);
+    append_places(is_plain, may_be_corners ? PlainOverlap::corners : PlainOverlap::other, begin, deforms,
+                  history);
   }
 
   order_evaluation(system, candidates);

@@ -55,6 +55,7 @@ void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
   results.has_details = true;
   results.has_dyads = is_changing_ && lanes.pair[0]->kind.is_deformable;
   std::array<RegionState, most_lanes> known;
+  std::array<Vec2, most_lanes> grips;
   for_bits(touching, [&](std::size_t i) {
     const std::uint32_t pair = lanes.pair[i]->pair;
     RegionForce &force = forces_[places_[pair % PlainPair::pairs_in_group]];
@@ -66,6 +67,7 @@ void ContactForces::store_again(const PlainLanes &lanes, unsigned touching) {
     results.details[i] = &force;
     if (results.has_dyads) {
       results.dyads[i] = &sums_.dyads(pair);
+      results.grips[i] = &grips[i];
     }
   });
   results.wanted = touching;
@@ -96,8 +98,8 @@ void ContactForces::put_sums(const Candidates &candidates, std::uint32_t pair, s
 ContactForces::ShearToSet::ShearToSet(const BlockSystem &system, const CandidatePair &of, RegionForce &force_,
                                       RegionDyads *dyads, RegionState &state)
     : pair(of), force(force_), memory(state), tangent(perp(force_.normal)),
-      arm_lower(force_.point - system.motion[of.lower.value].centroid),
-      arm_higher(force_.point - system.motion[of.higher.value].centroid), changing_(force_), dyads_(dyads) {}
+      arm_lower(force_.grip - system.motion[of.lower.value].centroid),
+      arm_higher(force_.grip - system.motion[of.higher.value].centroid), changing_(force_), dyads_(dyads) {}
 
 void ContactForces::ShearToSet::set(double shear) {
   RegionForce &f = changing_;
@@ -106,7 +108,7 @@ void ContactForces::ShearToSet::set(double shear) {
     torque[1] -= cross(arm_higher, added);
   };
   const Vec2 change = (f.shear - shear) * tangent;
-  add_force(f, f.point, change);
+  add_force(f, f.grip, change);
   add_torques(f.torque, change);
   const Vec2 drag = (f.shear + dot(f.shear_force, tangent)) * tangent;
   f.damping_force += drag;

@@ -23,6 +23,9 @@ constexpr std::size_t ahead = 16;
 void fetch_pair(const Candidates &candidates, const ContactHistory &history, std::uint32_t pair) {
   prefetch(&candidates.pairs[pair], sizeof(CandidatePair));
   prefetch(&history.plain[pair], sizeof(RegionState));
+  if (!history.grips.empty()) {
+    prefetch(&history.grips[pair], sizeof(Vec2));
+  }
 }
 
 // TrialIncrement::turn between a trial configuration and the one before, in a form without cancellation.
@@ -92,12 +95,14 @@ PlainLanes ContactForces::lanes_of(const PlainScene &scene, std::span<const std:
   const CandidatePair *pairs = scene.candidates.pairs.data();
   const PlainOverlap *overlaps = scene.history.overlaps.data();
   const RegionState *known = scene.history.plain.data();
+  const std::vector<Vec2> &grips = scene.history.grips;
   for (std::size_t i = 0; i < width; ++i) {
     const PlainPair &plain = plains[entries[std::min(i, entries.size() - 1)]];
     const bool is_known = overlaps[plain.pair] != PlainOverlap::none;
     lanes.pair[i] = &plain;
     lanes.constants[i] = pairs + plain.pair;
     lanes.memory[i] = is_known ? known + plain.pair : &PlainLanes::no_memory;
+    lanes.grip[i] = grips.empty() ? &PlainLanes::no_grip : &grips[plain.pair];
     if (plain.is_mixed && is_known && lanes.memory[i]->law != lanes.constants[i]->law) {
       own_[i] = constants_of(scene.system, parameters_, *lanes.constants[i], lanes.memory[i]->law);
       lanes.constants[i] = &own_[i];
@@ -183,6 +188,7 @@ PlainResults ContactForces::open_regions(const Candidates &candidates, const Pla
     next_.overlaps[plain.pair] = overlap;
     if (results.has_dyads) {
       results.dyads[i] = is_at_border ? &sums_.border_dyads() : &sums_.dyads(plain.pair);
+      results.grips[i] = &plain_grips_[plain.pair];
     }
   });
   results.wanted = wanted;
@@ -306,6 +312,7 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
                          parameters_.stiffness_damping,
                          false};
   plain_memory_ = history.plain;
+  plain_grips_ = history.grips;
   const bool are_interior = first < candidates.num_interior_plain;
   for (std::size_t begin = first, end = first; begin < last; begin = end) {
     const std::uint32_t group = candidates.plain[begin].group();
@@ -357,6 +364,9 @@ void ContactForces::evaluate_birth(const BlockSystem &system, const Candidates &
   }
   next_.overlaps[number] = PlainOverlap::other;
   plain_memory_[number] = next_.regions.back();
+  if (!plain_grips_.empty()) {
+    plain_grips_[number] = next_.regions.back().grip;
+  }
   next_.regions.pop_back();
   const bool is_at_border = entry >= candidates.num_interior_plain;
   (is_at_border ? sums_.open_border(candidates.border_place(entry), true) : sums_.open(number, true)) =

@@ -166,6 +166,7 @@ void ContactForces::keep_open(const BlockSystem &system, const CandidatePair &pa
   RegionForce &force = append_force();
   force.pair = number;
   force.point = nearest.point;
+  force.grip = nearest.point;
   force.origin = nearest.point;
   force.normal = nearest.normal;
   damping_dyad_ = {};

@@ -207,11 +207,16 @@ struct DeformingMotion : TranslatingMotion {
   LaneVec higher_step;
   LaneMat lower_turn;
   LaneMat higher_turn;
+  LaneVec grip;           ///< the one that is remembered, in the lower block's reference axes (grip.hpp)
+  LaneMat lower_gradient; ///< F of the lower block, which turns a rigid one
+  LaneMat lower_to_reference;
 
-  DeformingMotion(const PlainScene &scene, const LaneBlocks &lower, const LaneBlocks &higher)
+  DeformingMotion(const PlainScene &scene, const PlainLanes &lanes, const LaneBlocks &lower,
+                  const LaneBlocks &higher)
       : TranslatingMotion(lower, higher) {
     take_gradients(scene, lower, lower_rate, lower_step, lower_turn);
     take_gradients(scene, higher, higher_rate, higher_step, higher_turn);
+    take_grip(scene, lanes, lower);
   }
   [[nodiscard, gnu::always_inline]] LaneVec velocity_at(const LaneVec &x) const {
     return (lower_velocity + lower_rate(x - lower_centroid)) -
@@ -247,6 +252,30 @@ private:
     rate = LaneMat{load_by_lane([&](std::size_t i) { return rates[i]; })};
     turn = LaneMat{load_by_lane([&](std::size_t i) { return turns[i]; })};
     step = LaneVec::of([&](std::size_t i) { return &blocks.motion[i]->step; });
+  }
+  [[gnu::always_inline]] void take_grip(const PlainScene &scene, const PlainLanes &lanes,
+                                        const LaneBlocks &lower) {
+    std::array<Mat2, num_lanes> rotation; // of rigid blocks, and its inverse
+    std::array<Mat2, num_lanes> back;
+    std::array<const double *, num_lanes> gradients;
+    std::array<const double *, num_lanes> inverses;
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      const std::size_t row = lower.row[i];
+      if (scene.system.is_deformable(row)) {
+        const std::size_t entry = scene.system.deformation_begin[row];
+        gradients[i] = &scene.system.deformation[entry].trial.xx;
+        inverses[i] = &scene.system.trial_inverse[entry].xx;
+      } else {
+        const Vec2 turn = lower.motion[i]->turn[1];
+        rotation[i] = {turn.x, -turn.y, turn.y, turn.x};
+        back[i] = {turn.x, turn.y, -turn.y, turn.x};
+        gradients[i] = &rotation[i].xx;
+        inverses[i] = &back[i].xx;
+      }
+    }
+    lower_gradient = LaneMat{load_by_lane([&](std::size_t i) { return gradients[i]; })};
+    lower_to_reference = LaneMat{load_by_lane([&](std::size_t i) { return inverses[i]; })};
+    grip = LaneVec::of([&](std::size_t i) { return lanes.grip[i]; });
   }
 };
 

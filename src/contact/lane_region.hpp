@@ -5,6 +5,7 @@
 // contact_forces.hpp.
 
 #include "gcpdda/base/lanes.hpp"
+#include "lane_grip.hpp"
 #include "lane_motion.hpp"
 #include "plain_batch.hpp"
 
@@ -55,6 +56,7 @@ struct LaneConstants {
   Lanes allowed_overlap;
   double damping_ratio;
   double stiffness_damping;
+  Mask has_memory;   ///< the region is not new
   Mask is_stretched; ///< the slide of this step stretches its spring
   Lanes shear;
   Lanes longest;
@@ -117,6 +119,13 @@ public:
   [[nodiscard]] double overlap(std::size_t lane) const { return overlap_[lane]; }
 
 private:
+  LaneGrip find_grip(const LaneConstants &constants, const DeformingMotion &motion, const LaneVec &tangent,
+                     const Lanes &extent) const;
+  [[gnu::always_inline]] LaneNoGrip find_grip(const LaneConstants &, const RigidMotion &, const LaneVec &,
+                                              const Lanes &) const {
+    return LaneNoGrip(point_);
+  }
+
   LaneVec force_;
   FourLanes dyad_;
   Lanes pressure_;
@@ -134,6 +143,8 @@ private:
   Lanes slip_;
   Lanes cap_;
   Mask slips_;
+  LaneVec grip_;           ///< where friction acts
+  LaneVec reference_grip_; ///< the same in the axes of ContactHistory::grips, where a block deforms
   LaneVec damping_force_;
   FourLanes damping_dyad_;               ///< this and the next of pairs with a deformable block
   std::array<FourLanes, 3> on_gradient_; ///< RegionDyads
@@ -148,6 +159,7 @@ private:
   RegionState unwanted_memory_;
   RegionDetails unwanted_details_;
   RegionDyads unwanted_dyads_;
+  Vec2 unwanted_grip_;
 };
 
 inline void LaneRegions::find_resultant() {
@@ -177,6 +189,14 @@ inline void LaneRegions::take_extent(const Extent &extent, const Lanes &deepest,
   overlap_share_ = Lanes(0.5) * overlap_ / constants.allowed_overlap;
 }
 
+[[gnu::always_inline]] inline LaneGrip LaneRegions::find_grip(const LaneConstants &constants,
+                                                              const DeformingMotion &motion,
+                                                              const LaneVec &tangent,
+                                                              const Lanes &extent) const {
+  const Mask is_new = (!constants.has_memory) | (extent > constants.longest);
+  return {motion, point_, tangent, extent_begin_, extent_end_, is_new};
+}
+
 template <class AnyMotion>
 void LaneRegions::add_friction(const LaneConstants &constants, const AnyMotion &motion) {
   const LaneVec tangent = perp(normal_);
@@ -187,17 +207,23 @@ void LaneRegions::add_friction(const LaneConstants &constants, const AnyMotion &
   const Mask holds = cap_ > 0.0;
   slips_ = !holds;
   const Lanes stiffness = constants.tangential_stiffness * longest_;
-  const LaneVec slide = motion.slide_at(point_);
+  auto grip = find_grip(constants, motion, tangent, extent);
+  grip.move_to_middle(slips_);
+  grip_ = grip.point();
+  const LaneVec slide = motion.slide_at(grip_);
   Lanes shear = select(constants.is_stretched & holds, constants.shear + stiffness * dot(slide, tangent),
                        constants.shear);
   const Mask breaks = holds & (abs(shear) > cap_);
   slips_ = slips_ | breaks;
   slip_ = select(breaks, constants.slip + (abs(shear) - cap_) / stiffness, constants.slip);
+  grip.slip(breaks, abs(shear) - cap_, cap_);
+  grip_ = grip.point();
+  reference_grip_ = grip.reference();
   shear = select(breaks, select(shear < 0.0, -cap_, cap_), shear);
   elastic_ = select(holds, shear, 0.0);
   Lanes viscous = 0.0;
   if (constants.has_dashpots()) {
-    const LaneVec velocity = motion.velocity_at(point_);
+    const LaneVec velocity = motion.velocity_at(grip_);
     const Lanes drag = (Lanes(2.0 * constants.damping_ratio) * sqrt(stiffness * constants.mass) +
                         Lanes(constants.stiffness_damping) * stiffness) *
                        dot(velocity, tangent);
@@ -206,8 +232,8 @@ void LaneRegions::add_friction(const LaneConstants &constants, const AnyMotion &
   shear_ = elastic_ + viscous;
   const LaneVec friction = -shear_ * tangent;
   force_ += friction;
-  add_outer(dyad_, point_ - origin, friction);
-  // A force at x_r has the torque of its size along t_r.
+  add_outer(dyad_, grip_ - origin, friction);
+  // A force along t_r has the same torque at x_r and at the grip.
   const Lanes lower_lever = cross(point_ - motion.lower_centroid, tangent);
   const Lanes higher_lever = cross(point_ - motion.higher_centroid, tangent);
   shear_torque_ = {-elastic_ * lower_lever, elastic_ * higher_lever};
@@ -215,7 +241,7 @@ void LaneRegions::add_friction(const LaneConstants &constants, const AnyMotion &
   damping_force_ = -viscous * tangent;
   if constexpr (std::is_same_v<AnyMotion, DeformingMotion>) {
     damping_dyad_ = {0.0, 0.0, 0.0, 0.0};
-    add_outer(damping_dyad_, point_ - origin, damping_force_);
+    add_outer(damping_dyad_, grip_ - origin, damping_force_);
   }
 }
 
@@ -246,7 +272,7 @@ inline void LaneRegions::find_dyads(const LaneVec &centroid) {
   const LaneVec arm = origin - centroid;
   on_gradient_ = {dyad_, {0.0, 0.0, 0.0, 0.0}, damping_dyad_};
   add_outer(on_gradient_[0], arm, force_);
-  add_outer(on_gradient_[1], point_ - centroid, -elastic_ * perp(normal_));
+  add_outer(on_gradient_[1], grip_ - centroid, -elastic_ * perp(normal_));
   add_outer(on_gradient_[2], arm, damping_force_);
 }
 
@@ -289,6 +315,7 @@ inline unsigned LaneRegions::store(const PlainResults &results) {
     store_by_lane(known, offsetof(RegionDetails, normal), normal_.x, normal_.y, normal_force_, shear_);
     store_by_lane(known, offsetof(RegionDetails, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
                   select(undefined, 0.0, extent_end_));
+    store_pairs(known, offsetof(RegionDetails, grip), grip_.x, grip_.y);
   }
   if (results.has_dyads) {
     static_assert(sizeof(RegionDyads) == 3 * sizeof(Mat2));
@@ -297,6 +324,7 @@ inline unsigned LaneRegions::store(const PlainResults &results) {
       const FourLanes &m = on_gradient_[k];
       store_by_lane(known, k * sizeof(Mat2), m[0], m[1], m[2], m[3]);
     }
+    store_pairs(places(results.grips, unwanted_grip_), 0, reference_grip_.x, reference_grip_.y);
   }
   const unsigned cancels = undefined.by_lane() & results.wanted;
   normals_undefined_ += std::popcount(cancels);

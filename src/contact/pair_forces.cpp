@@ -1,6 +1,7 @@
 // One pair after the other, any shapes: what the plain pairs' lanes (plain_kernel.hpp) are not for.
 
 #include "bond_work.hpp"
+#include "grip.hpp"
 #include "pair_motion.hpp"
 
 #include "gcpdda/contact/contact_forces.hpp"
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 namespace gcpdda {
 
@@ -80,6 +82,7 @@ bool ContactForces::measure(const Region &region, RegionForce &force) const {
   force.dyad = Mat2{sum.dyad[0], sum.dyad[1], sum.dyad[2], sum.dyad[3]};
   // Divided, not multiplied by the inverse: faces that just touch leave pressures whose inverse overflows.
   force.point = sum.origin + Vec2{sum.pressure_moment.x / sum.pressure, sum.pressure_moment.y / sum.pressure};
+  force.grip = force.point; // unless a block deforms
   const double resultant = norm(sum.force);
   force.normal_force = resultant;
   const auto pieces = overlap_.pieces().subspan(region.begin, region.end - region.begin);
@@ -113,10 +116,27 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
                                  const RelativeVelocity &velocity, const BondShare &bonds,
                                  RegionMemory &memory, RegionForce &force) {
   const double extent = force.extent_end - force.extent_begin;
+  std::optional<Grip> grip;
+  if (has_grip(system, pair)) {
+    grip.emplace(system, pair, force, memory.grip, force.born, memory.longest);
+  }
+  const auto take_grip = [&] {
+    if (grip) {
+      memory.grip = grip->reference();
+      force.grip = grip->point();
+    }
+  };
+  const auto take_middle = [&] {
+    if (grip) {
+      grip->move_to_middle();
+      take_grip();
+    }
+  };
   memory.longest = std::max(memory.longest, extent);
   if (bonds.holds) {
     memory.shear = 0.0;
     memory.state = ContactState::stick;
+    take_middle();
     return;
   }
   const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
@@ -127,17 +147,23 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   memory.state = force.cap > 0.0 ? ContactState::stick : ContactState::slip;
   if (force.cap <= 0.0) {
     memory.shear = 0.0;
+    take_middle();
     return;
   }
+  take_grip();
   const Vec2 tangent = perp(force.normal);
   const double stiffness = constants.tangential_stiffness * memory.longest;
   if (bonds.released) {
     memory.shear += bonds.shear; // stretched to this configuration already
   } else if (!force.born) {
-    const Vec2 slide = slide_at(system, pair, force.point);
+    const Vec2 slide = slide_at(system, pair, force.grip);
     memory.shear += stiffness * dot(slide, tangent);
   }
   if (std::abs(memory.shear) > force.cap) {
+    if (grip) {
+      grip->slip(std::abs(memory.shear) - force.cap, force.cap);
+      take_grip();
+    }
     const double slip_before = memory.slip;
     memory.slip += (std::abs(memory.shear) - force.cap) / stiffness;
     memory.shear = std::copysign(force.cap, memory.shear);
@@ -150,7 +176,7 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   if (parameters_.has_dashpots()) {
     const double drag = (2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) +
                          parameters_.stiffness_damping * stiffness) *
-                        dot(velocity.at(force.point - force.origin), tangent);
+                        dot(velocity.at(force.grip - force.origin), tangent);
     viscous = std::clamp(memory.shear + drag, -force.cap, force.cap) - memory.shear;
   }
   add_shear(force, memory.shear, viscous);
@@ -161,8 +187,8 @@ void ContactForces::add_shear(RegionForce &force, double elastic, double viscous
   force.shear = elastic + viscous;
   force.shear_force = -elastic * tangent;
   const Vec2 drag = -viscous * tangent;
-  add_damping(force, drag, force.point - force.origin, drag);
-  add_force(force, force.point, -force.shear * tangent);
+  add_damping(force, drag, force.grip - force.origin, drag);
+  add_force(force, force.grip, -force.shear * tangent);
 }
 
 void ContactForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
@@ -221,7 +247,7 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
     const Vec2 arm = force.origin - system.motion[row].centroid;
     const auto torque = [&](const Mat2 &dyad, Vec2 f) { return sign * (dyad.xy - dyad.yx + cross(arm, f)); };
     force.torque[k] = torque(force.dyad, force.force);
-    force.shear_torque[k] = sign * cross(force.point - system.motion[row].centroid, force.shear_force);
+    force.shear_torque[k] = sign * cross(force.grip - system.motion[row].centroid, force.shear_force);
     force.damping_torque[k] = torque(damping_dyad_, force.damping_force);
   }
   note_dyads(system, pair, force);
@@ -237,7 +263,7 @@ void ContactForces::note_dyads(const BlockSystem &system, const CandidatePair &p
   const Vec2 centroid = system.motion[pair.lower.value].centroid;
   const Vec2 arm = force.origin - centroid;
   dyads_[number] = {force.dyad + outer(arm, force.force),
-                    outer(force.point - centroid, force.shear_force) + beyond,
+                    outer(force.grip - centroid, force.shear_force) + beyond,
                     damping_dyad_ + outer(arm, force.damping_force)};
 }
 
@@ -307,13 +333,16 @@ void ContactForces::load_region(const BlockSystem &system, const CandidatePair &
   if (force.normal_undefined) {
     memory.shear = 0.0;
     memory.state = ContactState::slip;
+    if (has_grip(system, pair)) {
+      memory.grip = reference_point(system, pair.lower.value, force.point);
+    }
   } else {
     RelativeVelocity velocity(system, pair, force.origin);
     const Vec2 dilation_before = memory.dilation;
     add_friction(system, pair, velocity, bonds, memory, force);
     if (memory.dilation != dilation_before) { // what slip opens does not part the surfaces that touch
       const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
-      const double sliding = dot(velocity.at(force.point - force.origin), perp(force.normal));
+      const double sliding = dot(velocity.at(force.grip - force.origin), perp(force.normal));
       velocity.at_origin -= law.tan_dilation * std::abs(sliding) * force.normal;
     }
     if (pair.damping > 0.0) {

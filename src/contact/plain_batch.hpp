@@ -32,8 +32,10 @@ struct PlainLanes {
   std::array<const PlainPair *, most_lanes> pair;
   std::array<const CandidatePair *, most_lanes> constants;
   std::array<const RegionState *, most_lanes> memory; ///< no_memory where there is none
+  std::array<const Vec2 *, most_lanes> grip;          ///< of pairs with a deformable block
 
   static const RegionState no_memory; ///< has a slip below 0
+  static constexpr Vec2 no_grip{};
 };
 
 /// Where results go, by lane.
@@ -46,6 +48,7 @@ struct PlainResults {
   std::array<RegionDetails *, most_lanes> details;
   bool has_dyads = false; ///< the blocks deform
   std::array<RegionDyads *, most_lanes> dyads;
+  std::array<Vec2 *, most_lanes> grips; ///< of blocks that deform
 };
 
 /// A group of plain pairs that have all been evaluated.

@@ -127,6 +127,7 @@ inline LaneConstants LaneBatch::load_constants(const PlainScene &scene, const Pa
           dashpot[2],
           scene.damping_ratio,
           scene.stiffness_damping,
+          known[2] >= 0.0,
           scene.is_known ? Mask{} : known[2] >= 0.0,
           known[0],
           known[1],
@@ -226,7 +227,7 @@ void LaneBatch::add_friction_and_dashpots(const PlainScene &scene, const Pairs &
     regions_.find_torques(motion);
   };
   if (pairs.first.kind.is_deformable) {
-    add_with(DeformingMotion(scene, pairs.lower, pairs.higher));
+    add_with(DeformingMotion(scene, pairs.lanes, pairs.lower, pairs.higher));
   } else {
     add_with(RigidMotion(pairs.lower, pairs.higher));
   }

@@ -17,8 +17,7 @@
 namespace gcpdda::checkpoint {
 
 inline constexpr const char *format = "gcpdda checkpoint";
-inline constexpr std::int64_t version =
-    6; ///< since 5 there are body forces, and no trial_previous of rigid blocks, since 6 of none
+inline constexpr std::int64_t version = 7; ///< of the lists below: it rises with every change of them
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -206,7 +205,8 @@ inline constexpr std::array region_fields{detail::of_region<&RegionMemory::shear
                                           detail::of_region<&RegionMemory::longest>("/region/longest"),
                                           detail::of_region<&RegionMemory::slip>("/region/slip"),
                                           detail::of_region<&RegionMemory::position>("/region/position"),
-                                          detail::of_region<&RegionMemory::dilation>("/region/dilation")};
+                                          detail::of_region<&RegionMemory::dilation>("/region/dilation"),
+                                          detail::of_region<&RegionMemory::grip>("/region/grip")};
 inline constexpr const char *region_blocks = "/region/blocks"; ///< i64 (n, 2): lower, higher
 inline constexpr const char *region_stretches =
     "/region/stretches";                                      ///< i32 (n, 2): of the lower, of the higher
@@ -220,7 +220,7 @@ static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
 static_assert(sizeof(Deformation) == 7 * 64);
-static_assert(sizeof(RegionMemory) == 9 * sizeof(double));
+static_assert(sizeof(RegionMemory) == 11 * sizeof(double));
 
 inline constexpr std::array<const char *, 8> groups{"/clock", "/run",   "/stage",       "/bolt",
                                                     "/scene", "/block", "/deformation", "/region"};

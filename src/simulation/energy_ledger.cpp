@@ -226,7 +226,7 @@ void add_coming_stick(const Simulation &simulation, const ComingConfiguration &c
     const Spring spring = spring_of(simulation, pair, memory);
     const double slide = memory.state == ContactState::slip
                              ? 0.0
-                             : coming.slide(simulation.blocks(), pair, force.point, force.normal);
+                             : coming.slide(simulation.blocks(), pair, force.grip, force.normal);
     sum.add(0.5 * memory.shear * (memory.shear + spring.stiffness * slide) / spring.stiffness);
   });
 }

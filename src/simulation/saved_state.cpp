@@ -73,8 +73,10 @@ ContactMemory Simulation::remembered_contacts() const {
   ContactMemory memory;
   memory.plain.reserve(history_.num_plain());
   for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    if (history_.has_plain(k)) {
-      const CandidatePair &pair = candidates_.pairs[k];
+    const CandidatePair &pair = candidates_.pairs[k];
+    const bool deforms = blocks_.is_deformable(pair.lower.value) ||
+                         blocks_.is_deformable(pair.higher.value); // has a grip, too
+    if (history_.has_plain(k) && !deforms) {
       memory.plain.push_back({blocks_.properties[pair.lower.value].id,
                               blocks_.properties[pair.higher.value].id, history_.plain[k]});
     } else {

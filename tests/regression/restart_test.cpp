@@ -344,7 +344,7 @@ TEST_F(Restart, WithoutAValidCheckpointIsRefused) {
   std::ofstream(files_[1], std::ios::binary) << good;
   set_number(files_[1], "/version", 1000);
   expect_refusal(0, {"restart", "run"}, 4,
-                 {last + ": it has format version 1000, this gcpdda reads version 6"});
+                 {last + ": it has format version 1000, this gcpdda reads version 7"});
   fs::remove_all(folder_ / "run/checkpoints");
   fs::remove(folder_ / "run/summary.json");
   expect_refusal(0, {"restart", "run"}, 4, {"there is no checkpoint in run/checkpoints"});

@@ -17,8 +17,10 @@
 // dt would feed energy into a sticking block, and a k_t that follows the current l gains energy in every
 // cycle of opening. F_t is cut at cap = |N| tan(phi) + c l first; the dashpot adds to it and the sum is cut
 // again. A region's spring turns with t_r, dies with the region, and gets no increment in the step of its
-// birth. Of several regions of a pair each finds its memory among those between the same stretches of the two
-// outlines, the nearest one in the lower block's axes, if it lies within reach of the old and the new extent.
+// birth. On a pair with a deformable block friction acts, and du is taken, not at x_r but at the region's
+// grip, a point that is fixed in the material as long as the joint sticks (src/contact/grip.hpp). Of several
+// regions of a pair each finds its memory among those between the same stretches of the two outlines, the
+// nearest one in the lower block's axes, if it lies within reach of the old and the new extent.
 //
 // The normal dashpot is distributed: on each piece with outward normal n of its own block and u = -n_r (lower
 // block) or n_r (higher), w = max(0, u.n), the traction q = max(-s w p, (c'/2) w (v_own - v_other).u) acts
@@ -161,7 +163,7 @@ public:
     const RegionForce &force;
     RegionState &memory;
     Vec2 tangent;
-    Vec2 arm_lower; ///< of x_r from the trial centroids
+    Vec2 arm_lower; ///< of the grip from the trial centroids
     Vec2 arm_higher;
 
   private:
@@ -295,7 +297,7 @@ private:
   /// Torques of the region at hand, from its dyads, which are whole.
   void finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force);
   /// Its dyads on deformable blocks.
-  /// @param beyond  what the forces of a bond in `shear_force` do beyond acting at `point`
+  /// @param beyond  what the forces of a bond in `shear_force` do beyond acting at its grip
   void note_dyads(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
                   const Mat2 &beyond = {});
 
@@ -326,6 +328,7 @@ private:
   /// afterwards what it was.
   ContactHistory next_;
   std::span<RegionState> plain_memory_;  ///< that of the evaluation at hand
+  std::span<Vec2> plain_grips_;          ///< the same, ContactHistory::grips
   std::vector<Mat2> velocity_gradients_; ///< 1/s, by entry of BlockSystem::deformation
   std::size_t first_of_pair_ = 0;        ///< region of the pair at hand
   std::vector<RegionDyads> dyads_;       ///< of its regions, if a block deforms
@@ -369,6 +372,8 @@ private:
 
 /// Material point X of a block that is now at x, in the trial configuration.
 Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x);
+/// Where the material point X of a block is in the trial configuration.
+Vec2 current_point(const BlockSystem &system, std::size_t row, Vec2 x);
 
 /// @param outline  is found, and has to live as long as the view
 BlockView view_of(const BlockSystem &system, std::size_t row, TrialOutline &outline);

@@ -18,7 +18,7 @@ using PairTorques = std::array<double, 2>;
 struct RegionSums {
   Vec2 force; ///< normal, friction and dashpot, N/m
   PairTorques torque{};
-  Vec2 shear_force; ///< elastic part of friction in `force`; acts at `point`
+  Vec2 shear_force; ///< elastic part of friction in `force`; acts at `grip`
   PairTorques shear_torque{};
   Vec2 damping_force; ///< dashpots in `force`
   PairTorques damping_torque{};
@@ -36,8 +36,9 @@ struct RegionDetails {
   double overlap = 0.0;      ///< thickness of the overlap along n_r, m
   double extent_begin = 0.0; ///< of the pieces along t_r, from x_r, m
   double extent_end = 0.0;
-  std::uint32_t pair = 0;        ///< number of the candidate
-  bool born = false;             ///< not there at the evaluation before
+  Vec2 grip;              ///< where friction acts: x_r between rigid blocks, else see src/contact/grip.hpp
+  std::uint32_t pair = 0; ///< number of the candidate
+  bool born = false;      ///< not there at the evaluation before
   bool normal_undefined = false; ///< normals nearly cancel: no friction, no dashpot
   bool bonded = false; ///< a bond (bonds.hpp): normal_force is minus its tension, which joins shear_force
 };

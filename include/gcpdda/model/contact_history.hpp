@@ -23,12 +23,14 @@ struct RegionState {
   ContactState state = ContactState::stick;
 };
 
-/// Of any region, or of one bond, alive until it breaks.
+/// Memory of any region, or of one bond, alive until it breaks.
 struct RegionMemory : RegionState {
   Vec2 position; ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
   Vec2 dilation; ///< what slip has opened, in axes that turn with the mean of both blocks, m
   std::int32_t lower_stretch = 0;  ///< stretches of the outlines between re-entrant vertices that face each
   std::int32_t higher_stretch = 0; ///< other; 0 for a convex block; of a bond -1 - number of its edge
+  Vec2 grip; ///< where friction acts, in the lower block's reference axes, m; kept if one of the blocks
+             ///< deforms
 
   [[nodiscard]] bool is_bond() const { return lower_stretch < 0; }
   [[nodiscard]] bool is_dilated() const { return dilation != Vec2{}; }
@@ -46,7 +48,7 @@ struct RegionRecord {
   BlockId higher;
   RegionMemory memory;
 };
-/// The same of a plain pair (contact/candidates.hpp).
+/// The same of a plain pair (contact/candidates.hpp) of rigid blocks, which needs no more.
 struct PlainRecord {
   BlockId lower;
   BlockId higher;
@@ -76,6 +78,7 @@ struct ContactHistory {
   // One a pair. A step writes these of plain pairs, and nothing else.
   std::vector<PlainOverlap> overlaps; ///< `none` of the other pairs
   std::vector<RegionState> plain;     ///< the region of a plain pair that overlaps
+  std::vector<Vec2> grips;            ///< RegionMemory::grip of it; empty where no block deforms
   // Of the other pairs.
   std::vector<RegionRange> ranges; ///< of `regions`, one a pair; empty if all pairs are plain
   std::vector<RegionMemory> regions;
@@ -103,7 +106,7 @@ struct ContactHistory {
   /// visit(memory) for the regions and bonds of a pair.
   template <class Visit> void for_pair(std::size_t pair, Visit &&visit) const {
     if (has_plain(pair)) {
-      visit(RegionMemory{plain[pair], {}, {}, 0, 0});
+      visit(RegionMemory{plain[pair], {}, {}, 0, 0, grips.empty() ? Vec2{} : grips[pair]});
     } else {
       std::ranges::for_each(of_other(pair), visit);
     }
