@@ -151,7 +151,7 @@ inline void expect_same_bits(const RegionForce &a, const RegionForce &b) {
     return std::tie(f.force, f.torque, f.shear_force, f.shear_torque, f.damping_force, f.damping_torque);
   };
   const auto place = [](const RegionForce &f) {
-    return std::tie(f.dyad, f.origin, f.point, f.normal, f.extent_begin, f.extent_end);
+    return std::tie(f.dyad, f.origin, f.point, f.grip, f.normal, f.extent_begin, f.extent_end);
   };
   const auto sizes = [](const RegionForce &f) {
     return std::tie(f.normal_force, f.shear, f.cap, f.overlap, f.born, f.normal_undefined);

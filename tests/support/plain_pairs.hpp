@@ -71,6 +71,7 @@ inline double expect_same(const RegionForce &a, const RegionForce &b, double sti
   EXPECT_NEAR(a.normal_force, b.normal_force, force);
   expect_near(a.normal, b.normal, turned, "normal");
   expect_near(a.point, b.point, rounding + turned, "point");
+  expect_near(a.grip, b.grip, rounding + turned, "grip");
   EXPECT_NEAR(a.overlap, b.overlap, rounding + turned);
   EXPECT_NEAR(a.extent_end - a.extent_begin, b.extent_end - b.extent_begin, rounding + turned);
   EXPECT_NEAR(a.shear, b.shear, forces);
