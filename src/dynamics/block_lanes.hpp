@@ -20,6 +20,7 @@ struct OwnStep {
   SpringTime spring;
   Vec2 wave;                ///< velocity of the one that comes in through viscous sides, m/s
   double stiffness_damping; ///< s
+  double local_damping;     ///< share, of deformable blocks
   bool is_implicit;         ///< the elasticity of blocks
 
   // Q is Vec2, RigidDof or Mat2.
@@ -46,6 +47,8 @@ struct DeformableLanes {
   bool are_held = false;                      ///< by matrices of their own
   std::array<AnchorForce, most_lanes> held;   ///< what fixed points and viscous sides do, so far known
   std::array<Mat2, most_lanes> viscous;       ///< out: what beta K adds to the elastic force, N
+  std::array<AnchorForce, most_lanes> damped; ///< out: what local damping does
+  std::array<double, most_lanes> damped_work; ///< out: half its work over the way to the trial configuration
   std::array<double, most_lanes> turned;      ///< out: rad
   std::array<double, most_lanes> most_motion; ///< out: of the new state, m
 };

@@ -10,7 +10,7 @@ std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const S
                               double time_step, Elasticity elasticity, std::size_t first, std::size_t last,
                               AdvanceReport &report, Instructions instructions) {
   const BlockLanes &lanes = block_lanes(instructions);
-  const OwnStep step = own_step({}, scheme, time_step, elasticity);
+  const OwnStep step = own_step({.local_damping = rows.local_damping}, scheme, time_step, elasticity);
   for (std::size_t end = first + lanes.width; end <= last; first = end, end += lanes.width) {
     const std::size_t entry = system.deformation_begin[first];
     const std::size_t num_deformable = system.deformation_begin[end] - entry;

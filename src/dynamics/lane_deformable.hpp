@@ -3,8 +3,9 @@
 // The step of deformable blocks, one in each lane; the derivation is in deformable.hpp.
 
 #include "block_lanes.hpp"
+#include "lane_damping.hpp"
+#include "lane_deformable_block.hpp"
 #include "lane_ledger.hpp"
-#include "lane_matrix.hpp"
 #include "lane_newmark.hpp"
 
 #include "gcpdda/base/lanes.hpp"
@@ -17,190 +18,7 @@
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-// As the members of OwnStep: Q is LaneVec or LaneMat.
-template <class Q>
-[[gnu::always_inline]] inline Q base_of(const OwnStep &step, const Q &q, const Q &v, const Q &a) {
-  return q + (Lanes(step.spring.velocity) * v + Lanes(step.spring.acceleration) * a);
-}
-template <class Q> [[gnu::always_inline]] inline Q base_rate_of(const OwnStep &step, const Q &v, const Q &a) {
-  return v + Lanes(step.spring.rate_acceleration) * a;
-}
-/// A motion of F in turning axes, or a force that works on it: (r, ex, ey, gxy).
-using LaneGradientDofs = std::array<Lanes, 4>;
-
-/// What accelerations in turning axes follow from: of the centroid and of F.
-struct LaneDofs {
-  LaneVec u;
-  LaneGradientDofs gradient;
-};
-
-[[gnu::always_inline]] inline LaneMat lane_rotation_of(const LaneMat &gradient) {
-  const Lanes c = gradient.xx() + gradient.yy();
-  const Lanes s = gradient.yx() - gradient.xy();
-  const Lanes unit = Lanes(1.0) / sqrt(c * c + s * s);
-  return {{unit * c, -unit * s, unit * s, unit * c}};
-}
-
-[[gnu::always_inline]] inline LaneMat lane_gradient_of(const LaneGradientDofs &x) {
-  return {{x[1], Lanes(0.5) * x[3] - x[0], Lanes(0.5) * x[3] + x[0], x[2]}};
-}
-
-/// tr(J stress stretch): minus the torque of a force on F in turning axes.
-[[gnu::always_inline]] inline Lanes lane_moment(const LaneMat &stress, const LaneMat &stretch) {
-  const LaneMat product = stress * stretch;
-  return product.xy() - product.yx();
-}
-
-/// motion_dof(g).r.
-[[gnu::always_inline]] inline Lanes lane_spin(const LaneMat &g) {
-  return Lanes(0.5) * (g.yx() - g.xy());
-}
-
-struct LaneElasticity {
-  Lanes direct;
-  Lanes cross;
-  Lanes shear;
-
-  [[nodiscard, gnu::always_inline]] LaneMat stress(const LaneMat &strain) const {
-    const Lanes tau = shear * (strain.xy() + strain.yx());
-    return {
-        {direct * strain.xx() + cross * strain.yy(), tau, tau, cross * strain.xx() + direct * strain.yy()}};
-  }
-  /// As elastic_force(), in turning axes.
-  [[nodiscard, gnu::always_inline]] LaneMat force(const LaneMat &stretch,
-                                                  const LaneMat &initial_strain) const {
-    const LaneMat sigma = stress(stretch - LaneMat::identity() + initial_strain);
-    const LaneMat product = sigma * stretch;
-    const Lanes no_torque = (product.xy() - product.yx()) / (stretch.xx() + stretch.yy());
-    return {{sigma.xx(), sigma.xy() - no_torque, sigma.yx() + no_torque, sigma.yy()}};
-  }
-};
-
-/// As angle_between(); many turn by little.
-inline Lanes lane_angle_between(const LaneMat &from, const LaneMat &to) {
-  const LaneVec a{from.xx() + from.yy(), from.yx() - from.xy()};
-  const LaneVec b{to.xx() + to.yy(), to.yx() - to.xy()};
-  const Lanes along = dot(a, b);
-  const Lanes x = cross(a, b) / along;
-  const Mask is_small = (along > 0.0) & (abs(x) <= largest_ratio_of_series);
-  const Lanes q = x * x;
-  const Lanes one = 1.0;
-  const Lanes angle =
-      x * (one - q * (Lanes(1.0 / 3.0) -
-                      q * (Lanes(1.0 / 5.0) -
-                           q * (Lanes(1.0 / 7.0) - q * (Lanes(1.0 / 9.0) - q * Lanes(1.0 / 11.0))))));
-  if (!(!is_small).any()) {
-    return angle;
-  }
-  const unsigned small = is_small.by_lane();
-  return Lanes::of([&](std::size_t i) {
-    const auto lane = [i](const LaneMat &f) { return Mat2{f.xx()[i], f.xy()[i], f.yx()[i], f.yy()[i]}; };
-    return (small >> i & 1U) != 0 ? angle[i] : angle_between(lane(from), lane(to));
-  });
-}
-
-/// Deformable blocks before their step.
-struct LaneDeformable {
-  LaneVec u;
-  LaneVec v;
-  LaneVec a;
-  LaneMat gradient;
-  LaneMat rate;
-  LaneMat acceleration;
-  LaneMat trial;
-  LaneMat second_moment;
-  LaneMat initial_strain;
-  LaneElasticity elasticity;
-
-  /// All but what stands in lists of RigidDof: of *get(i).
-  template <class Get> [[gnu::always_inline]] void load(Get &&get) {
-    const auto take = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
-      return LaneMat::of([&](std::size_t i) { return &(get(i)->*field); });
-    };
-    gradient = take(&Deformation::gradient);
-    rate = take(&Deformation::rate);
-    acceleration = take(&Deformation::acceleration);
-    trial = take(&Deformation::trial);
-    second_moment = take(&Deformation::second_moment);
-    initial_strain = take(&Deformation::initial_strain);
-    const FourLanes stiffness = load_by_lane([&](std::size_t i) { return &get(i)->stiffness_direct; });
-    elasticity = {stiffness[0], stiffness[1], stiffness[2]};
-  }
-};
-
-/// The matrix of blocks that nothing holds: F apart from the centroid, from what the step knows anyway. To
-/// read six times as many numbers would take longer than to find these.
-class FreeMatrix {
-public:
-  [[gnu::always_inline]] FreeMatrix(const LaneDeformable &block, const LaneMasses &of, const OwnStep &step)
-      : by_mass_(Lanes(1.0) / (Lanes(1.0 - step.scheme.alpha_m) * of.mass)) {
-    const Lanes share = 1.0 - step.scheme.alpha_m;
-    const Lanes springs =
-        (step.is_implicit ? step.spring.coming : 0.0) + step.stiffness_damping * step.spring.rate_coming;
-    const LaneMat s = share * block.second_moment;
-    const LaneElasticity &k = block.elasticity;
-    const Lanes quarter = Lanes(0.25) * (s.xx() + s.yy());
-    const Lanes half = Lanes(0.5) * s.xy();
-    factor_ = {share * of.inertia,
-               -s.xy(),
-               s.xx() + springs * k.direct,
-               s.xy(),
-               springs * k.cross,
-               s.yy() + springs * k.direct,
-               Lanes(0.5) * (s.xx() - s.yy()),
-               half,
-               half,
-               quarter + springs * k.shear};
-    factorise<4>(factor_);
-  }
-  [[gnu::always_inline]] void solve(LaneDofs &x) const {
-    x.u = by_mass_ * x.u;
-    gcpdda::GCPDDA_INSTRUCTIONS::solve(factor_, x.gradient);
-  }
-  /// The solution under a unit torque.
-  [[nodiscard, gnu::always_inline]] LaneDofs by_torque() const {
-    LaneDofs x{{0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}};
-    gcpdda::GCPDDA_INSTRUCTIONS::solve(factor_, x.gradient);
-    return x;
-  }
-
-private:
-  Lanes by_mass_;
-  std::array<Lanes, 10> factor_;
-};
-
-/// That of blocks on springs of their own, as it stands in the system.
-class HeldMatrix {
-public:
-  template <class Get> [[gnu::always_inline]] explicit HeldMatrix(Get &&get) {
-    static_assert(offsetof(BlockMatrix, by_torque) == 21 * sizeof(double));
-    const auto load = [&](std::size_t first) __attribute__((always_inline)) {
-      return load_by_lane([&](std::size_t i) { return get(i)->factor.data() + first; });
-    };
-    for (std::size_t k = 0; k < 20; k += 4) {
-      const FourLanes four = load(k);
-      for (std::size_t j = 0; j < 4; ++j) {
-        factor_[k + j] = four[j];
-      }
-    }
-    const FourLanes middle = load(20);
-    const FourLanes last = load(23);
-    factor_[20] = middle[0];
-    by_torque_ = {{middle[1], middle[2]}, {middle[3], last[1], last[2], last[3]}};
-  }
-  [[gnu::always_inline]] void solve(LaneDofs &x) const {
-    std::array<Lanes, 6> all{x.u.x, x.u.y, x.gradient[0], x.gradient[1], x.gradient[2], x.gradient[3]};
-    gcpdda::GCPDDA_INSTRUCTIONS::solve(factor_, all);
-    x = {{all[0], all[1]}, {all[2], all[3], all[4], all[5]}};
-  }
-  [[nodiscard, gnu::always_inline]] const LaneDofs &by_torque() const { return by_torque_; }
-
-private:
-  std::array<Lanes, 21> factor_;
-  LaneDofs by_torque_;
-};
-
-/// And after it.
+/// Deformable blocks after their step.
 struct LaneStepped {
   LaneVec u;
   LaneVec v;
@@ -211,6 +29,7 @@ struct LaneStepped {
   LaneMat acceleration;
   LaneMat internal;
   LaneMat viscous; ///< what beta K adds to the elastic force, N
+  LaneWay damped;  ///< force of local damping, N
 
   /// Finite, and not inside out.
   [[nodiscard, gnu::always_inline]] Mask are_sound() const {
@@ -237,6 +56,8 @@ struct LaneStepped {
     keep(acceleration, before.acceleration);
     keep(internal, internal_before);
     keep(viscous, {{0.0, 0.0, 0.0, 0.0}});
+    damped.u = select(sound, damped.u, {0.0, 0.0});
+    keep(damped.gradient, {{0.0, 0.0, 0.0, 0.0}});
   }
   [[gnu::always_inline]] void store(const std::array<std::byte *, num_lanes> &deformation) const {
     const auto put = [&](std::size_t offset, const LaneMat &m) __attribute__((always_inline)) {
@@ -260,10 +81,11 @@ struct LaneStepped {
 };
 
 /// @param force, gradient_force  all that acts at the trial configuration, without the elasticity
+/// @param way  from the trial configuration before to this one; read where local damping acts
 template <class Matrix>
-[[gnu::always_inline]] inline LaneStepped step_of(const LaneDeformable &block, const Matrix &matrix,
-                                                  const Lanes &mass, const LaneVec &force,
-                                                  const LaneMat &gradient_force, const OwnStep &step) {
+[[gnu::always_inline]] inline LaneStepped
+step_of(const LaneDeformable &block, const Matrix &matrix, const Lanes &mass, const LaneVec &force,
+        const LaneMat &gradient_force, const LaneWay &way, const OwnStep &step) {
   const LaneMat turn = lane_rotation_of(block.trial);
   const LaneMat back = transposed(turn);
   const LaneMat stretch = back * block.trial;
@@ -286,9 +108,9 @@ template <class Matrix>
   const double am = step.scheme.alpha_m;
   const LaneMat h =
       back * (gradient_force - Lanes(am) * (block.acceleration * block.second_moment)) - resisting;
-  LaneDofs x{back(force - am * mass * block.a),
-             {h.yx() - h.xy(), h.xx(), h.yy(), Lanes(0.5) * (h.xy() + h.yx())}};
+  LaneDofs x{back(force - am * mass * block.a), lane_force_dofs(h)};
   matrix.solve(x);
+  LaneMat torque_free{{0.0, 0.0, 0.0, 0.0}};
   if (step.is_implicit) {
     // a J added to the elastic force so that all of it, K e included, has no torque. One linear equation: it
     // works on r alone, as the force -2 a against it.
@@ -303,11 +125,19 @@ template <class Matrix>
     for (std::size_t k = 0; k < 4; ++k) {
       x.gradient[k] = x.gradient[k] - Lanes(2.0) * no_torque * by_torque.gradient[k];
     }
-    stress = stress + (Lanes(step.spring.coming) * elasticity.stress(lane_gradient_of(x.gradient)) +
-                       LaneMat{{0.0, -no_torque, no_torque, 0.0}});
+    torque_free = LaneMat{{0.0, -no_torque, no_torque, 0.0}};
+  }
+  LaneStepped now;
+  now.damped = {{0.0, 0.0}, {{0.0, 0.0, 0.0, 0.0}}};
+  if (step.local_damping > 0.0) {
+    const LaneDofs d = damp_locally(block, matrix, mass, back, way, step, x);
+    now.damped = {turn(d.u), turn * lane_force_of(d.gradient)};
+  }
+  if (step.is_implicit) {
+    stress =
+        stress + (Lanes(step.spring.coming) * elasticity.stress(lane_gradient_of(x.gradient)) + torque_free);
   }
 
-  LaneStepped now;
   now.a = turn(x.u);
   now.acceleration = turn * lane_gradient_of(x.gradient);
   now.internal = turn * stress;
@@ -356,7 +186,11 @@ inline unsigned step_scattered(BlockSystem &system, DeformableLanes &lanes, cons
     gradient_force =
         gradient_force + LaneMat::of([&](std::size_t i) { return &lanes.held[given[i]].gradient; });
   }
-  LaneStepped now = step_of(block, matrix_of(block, masses, row), masses.mass, force, gradient_force, step);
+  const LaneWay way{LaneVec::of([&](std::size_t i) { return &system.motion[row[i]].step; }),
+                    LaneMat{load_by_lane([&](std::size_t i) { return &system.motion[row[i]].turn[0].x; })} *
+                        block.trial};
+  LaneStepped now =
+      step_of(block, matrix_of(block, masses, row), masses.mass, force, gradient_force, way, step);
   const Mask sound = now.are_sound();
   const unsigned broken = (!sound).by_lane() & ((1U << lanes.count) - 1U);
   if (broken != 0) {
@@ -372,7 +206,12 @@ inline unsigned step_scattered(BlockSystem &system, DeformableLanes &lanes, cons
   }
   now.store(state);
   store_by_lane(viscous, 0, now.viscous.xx(), now.viscous.xy(), now.viscous.yx(), now.viscous.yy());
+  const Lanes damped_work = half_work(now.damped, way);
   for (std::size_t i = 0; i < lanes.count; ++i) {
+    const LaneMat &damped = now.damped.gradient;
+    lanes.damped[i] = {{now.damped.u.x[i], now.damped.u.y[i]},
+                       {damped.xx()[i], damped.xy()[i], damped.yx()[i], damped.yy()[i]}};
+    lanes.damped_work[i] = damped_work[i];
     system.displacement[row[i]].u = {now.u.x[i], now.u.y[i]};
     system.displacement[row[i]].r += now.turned[i];
     system.velocity[row[i]].u = {now.v.x[i], now.v.y[i]};

@@ -1,8 +1,8 @@
 #pragma once
 
 // Deformable blocks that nothing but contacts, weight and local damping acts on, one in each lane: the forces
-// on them, the works of the ledger and the step, as the scalar way of simulation/moving.cpp and
-// local_damping.cpp with step_deformables(), to the same bits.
+// on them, the works of the ledger and the step, as the scalar way of simulation/moving.cpp with
+// step_deformables(), to the same bits.
 
 #include "lane_deformable.hpp"
 #include "lane_ledger.hpp"
@@ -11,19 +11,6 @@
 #include <cstddef>
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
-
-/// As damp_gradient().
-[[gnu::always_inline]] inline LaneMat lane_damping(const LaneMat &trial, const LaneMat &force,
-                                                   const LaneMat &rate, const Lanes &share) {
-  const LaneMat turn = lane_rotation_of(trial);
-  const LaneMat back = transposed(turn);
-  const LaneMat h = back * force;
-  const LaneMat g = back * rate;
-  const Lanes r = lane_against(h.yx() - h.xy(), lane_spin(g));
-  const Lanes gxy = lane_against(Lanes(0.5) * (h.xy() + h.yx()), g.xy() + g.yx());
-  return share * (turn * LaneMat{{lane_against(h.xx(), g.xx()), gxy - Lanes(0.5) * r, gxy + Lanes(0.5) * r,
-                                  lane_against(h.yy(), g.yy())}});
-}
 
 inline FreeStep step_free_deformables(BlockSystem &system, std::size_t first, const FreeRows &rows,
                                       const OwnStep &step) {
@@ -55,27 +42,25 @@ inline FreeStep step_free_deformables(BlockSystem &system, std::size_t first, co
   LaneMat gradient = on_gradient(&BlockGradientSum::force);
   const LaneMat shear = on_gradient(&BlockGradientSum::shear);
   LaneMat damping = on_gradient(&BlockGradientSum::damping);
-  if (rows.local_damping != 0.0) {
-    const Lanes share = rows.local_damping;
-    const LaneVec taken =
-        share * LaneVec{lane_against(sum.force.u.x, block.v.x), lane_against(sum.force.u.y, block.v.y)};
-    const LaneMat taken_gradient =
-        lane_damping(block.trial, gradient - load(&Deformation::internal), block.rate, share);
-    gradient = gradient + taken_gradient;
-    damping = damping + taken_gradient;
-    sum.force.u += taken;
-    sum.damping.u += taken;
-  }
-  sum.store(&system.contact[first]);
-  FourLanes works = lane_half_works(sum, applied, half_increments(system, first));
-  add_on_gradient(shear, damping, stretched(system, first, block.trial), works);
-  add_to_ledger(works, &system.ledger[first]);
+  const LaneRigid half_increment = half_increments(system, first);
+  const LaneWay way{Lanes(2.0) * half_increment.u, stretched(system, first, block.trial)};
+  FourLanes works = lane_half_works(sum, applied, half_increment);
+  add_on_gradient(shear, damping, way.gradient, works);
 
-  LaneStepped now = step_of(block, FreeMatrix(block, masses, step), masses.mass, sum.force.u, gradient, step);
+  LaneStepped now =
+      step_of(block, FreeMatrix(block, masses, step), masses.mass, sum.force.u, gradient, way, step);
   const Mask sound = now.are_sound();
   if ((!sound).any()) {
     now.keep_where(sound, block, load(&Deformation::internal));
   }
+  if (step.local_damping > 0.0) {
+    sum.force.u += now.damped.u;
+    sum.damping.u += now.damped.u;
+    gradient = gradient + now.damped.gradient;
+    damping = damping + now.damped.gradient;
+  }
+  sum.store(&system.contact[first]);
+  add_to_ledger(works, &system.ledger[first], half_work(now.damped, way));
   const auto to = places_of(deformation);
   const auto store = [&](std::size_t offset, const LaneMat &m) __attribute__((always_inline)) {
     store_by_lane(to, offsetof(Deformation, contact) + offset, m.xx(), m.xy(), m.yx(), m.yy());

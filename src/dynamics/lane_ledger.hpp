@@ -154,11 +154,13 @@ lane_half_works(const LaneContacts &contacts, const LaneApplied &applied, const 
   works[1] += Lanes(0.5) * contract(damping, stretched);
 }
 
-[[gnu::always_inline]] inline void add_to_ledger(const FourLanes &works, BlockLedger *first) {
+/// @param damped  what local damping adds to the second of them
+[[gnu::always_inline]] inline void add_to_ledger(const FourLanes &works, BlockLedger *first,
+                                                 const Lanes &damped = 0.0) {
   static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
   const FourLanes before = load_four(first, 0);
-  store_by_lane(places_of(first), 0, before[0] + works[0], before[1] + works[1], before[2] + works[2],
-                before[3] + works[3]);
+  store_by_lane(places_of(first), 0, before[0] + works[0], before[1] + works[1] + damped,
+                before[2] + works[2], before[3] + works[3]);
 }
 
 /// What add_half_works() says of free rows [first, first + num_lanes), rigid or deformable ones.

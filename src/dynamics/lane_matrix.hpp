@@ -31,6 +31,42 @@ template <std::size_t N, std::size_t size>
   }
 }
 
+/// x becomes L^T x, the components over which the quadratic form x L D L^T x is a sum of squares.
+template <std::size_t N, std::size_t size>
+[[gnu::always_inline]] inline void to_squares(const std::array<Lanes, size> &f, std::array<Lanes, N> &x) {
+  static_assert(size == N * (N + 1) / 2);
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t k = i + 1; k < N; ++k) {
+      x[i] = x[i] + f[packed(k, i)] * x[k];
+    }
+  }
+}
+
+/// The inverse of to_squares().
+template <std::size_t N, std::size_t size>
+[[gnu::always_inline]] inline void from_squares(const std::array<Lanes, size> &f, std::array<Lanes, N> &x) {
+  static_assert(size == N * (N + 1) / 2);
+  for (std::size_t i = N - 1; i-- > 0;) {
+    for (std::size_t k = i + 1; k < N; ++k) {
+      x[i] = x[i] - f[packed(k, i)] * x[k];
+    }
+  }
+}
+
+/// L D x: the force under which the accelerations of the factorised system are from_squares(x).
+template <std::size_t N, std::size_t size>
+[[gnu::always_inline]] inline void to_force(const std::array<Lanes, size> &f, std::array<Lanes, N> &x) {
+  static_assert(size == N * (N + 1) / 2);
+  for (std::size_t i = 0; i < N; ++i) {
+    x[i] = x[i] / f[packed(i, i)];
+  }
+  for (std::size_t i = N; i-- > 1;) {
+    for (std::size_t k = 0; k < i; ++k) {
+      x[i] = x[i] + f[packed(i, k)] * x[k];
+    }
+  }
+}
+
 /// x becomes the solution of the factorised system of which it is the right-hand side.
 template <std::size_t N, std::size_t size>
 [[gnu::always_inline]] inline void solve(const std::array<Lanes, size> &f, std::array<Lanes, N> &x) {

@@ -1,3 +1,38 @@
+// Local damping takes a share a of the net force against the motion.
+//
+// Rigid blocks lose a |f| sign(v_n) in each of their three components. What swings as fast as the step allows
+// bounds the step then (stability_limit()).
+//
+// Deformable blocks. That rule drives them: the net force of a step holds the elastic force, which is known
+// only after the step; in a mode that the step does not resolve that of the step before alternates with the
+// step, v_n differs in sign from the motion over which the force does work, and up to half of |d| |dx*| is
+// gained in a step. The damping of a deformable block is therefore dry friction, found together with the
+// step. Scenes see the trial configurations x* alone (scheme.hpp). Over them a force d_n does the work
+//     d_n . (x*_{n+1} - x*_{n-1})/2 = dt d_n . w,    w = (w- + w+)/2,
+// w- and w+ the rates behind and ahead; this is the trapezoid of the energy ledger. The step is linear in a
+// force, A da' = d with the matrix A of the block's step (own mass and, implicitly, its springs), and
+//     w+ = v_n + dt (P a_n + Q a_{n+1}),    so    w = y + (dt/2) Q A^-1 d,
+// y being w without damping. With A = L D L^T and z = L^T w this is z_i = (L^T y)_i + (dt/2) Q b_i/D_i for d
+// = L b: the components do not couple, and
+//     d . w = sum b_i z_i.
+// Friction b_i = -B_i sign(z_i), any |b_i| <= B_i where z_i = 0, has the closed solution
+//     z_i = sign(y_i) max(0, |y_i| - (dt/2) Q B_i/D_i),    y_i short for (L^T y)_i.
+// So d . w <= 0 in every step, whatever the block, its elasticity and the share: to round-off of d, dx*.
+//
+// Its size B is the share of the net force: f = M (w+ - w-)/dt of the undamped step, elastic forces included,
+// as components L^-1 f. Then (dt/2) Q B_i/D_i = a |L^T (1 - am) A^-1 M (w+ - w-)/2|_i. In a mode that the
+// step resolves A = (1 - am) M, and this is a |w+ - w-|/2 as for a rigid block; a stiff one has little net
+// force. (A share of A (w+ - w-) in place of M (w+ - w-) is as passive but lets stiff blocks alternate for
+// ever.)
+//
+// Stability. Without damping, the leapfrog of x* keeps w+ . M w+/2 + U(x*_n, x*_{n+1}) for a linear U, and
+// that is positive below its limit W = 2. Implicit elasticity K resists with the impedance Z = d/w at the
+// angle phi of a step, of which Re Z = K dt 2 (1 - cos phi) ((1 - r)/(1 + r))^3/|1 - am + am exp(-i phi)|^2
+// >= 0: it takes energy or none. Damping takes energy, so nothing grows below the limit without damping. A
+// motion that it takes nothing from has z_i = 0 always: one that alternates with the step, w+ = -w-, held
+// where |w- + (dt/2) f/m| <= a (dt/2) |f|/m. With f/m = -W^2 x/dt^2, x alternating between +-dt w-/2, this is
+// |1 - W^2/4| <= a W^2/4, or W >= 2/sqrt(1 + a). Below it, the limit of rigid blocks too, all comes to rest.
+
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/integrate.hpp"
 
@@ -12,38 +47,19 @@ double against(double force, double velocity) {
   return velocity == 0.0 ? 0.0 : -std::copysign(force, velocity);
 }
 
-/// On a deformable block's F, in its turning axes: there an eigenmode of a block at rest is one component or
-/// a few, whatever way it lies.
-Mat2 damp_gradient(const Deformation &d, double share) {
-  const Mat2 turn = rotation_of(d.trial);
-  const Mat2 back = transposed(turn);
-  const GradientDof f = force_dof(back * unbalanced_on_gradient(d));
-  const GradientDof v = motion_dof(back * d.rate);
-  return share * (turn * force_matrix({against(f.r, v.r), against(f.ex, v.ex), against(f.ey, v.ey),
-                                       against(f.gxy, v.gxy)}));
-}
-
 } // namespace
 
-// What the block's own springs do is known only after the step, so theirs of the step before counts. Without
-// the anchors' a block that hangs at rest would count its whole weight as out of balance, and be held
-// wherever it is like by friction. The elastic force of x* instead would be far off in a block too stiff for
-// the step, and damping it would drive it.
+// What a block's anchors do is known only after the step, so their force of the step before counts. Without
+// it a block that hangs at rest would count its whole weight as out of balance, and be held wherever it is
+// like by friction.
 void apply_local_damping(BlockSystem &system, std::size_t row, double share) {
-  if (share == 0.0 || system.properties[row].keeps_its_velocity()) {
+  if (share == 0.0 || system.properties[row].keeps_its_velocity() || system.is_deformable(row)) {
     return;
   }
   BlockContactSum &sum = system.contact[row];
   const RigidDof f = sum.force + system.anchor_force(row);
   const RigidDof &v = system.velocity[row];
-  RigidDof taken = share * RigidDof{{against(f.u.x, v.u.x), against(f.u.y, v.u.y)}, against(f.r, v.r)};
-  if (system.is_deformable(row)) {
-    taken.r = 0.0;
-    Deformation &d = system.deformation_of(row);
-    const Mat2 taken_gradient = damp_gradient(d, share);
-    d.contact.force += taken_gradient;
-    d.contact.damping += taken_gradient;
-  }
+  const RigidDof taken = share * RigidDof{{against(f.u.x, v.u.x), against(f.u.y, v.u.y)}, against(f.r, v.r)};
   sum.force += taken;
   sum.damping += taken;
 }

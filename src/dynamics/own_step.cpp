@@ -139,6 +139,16 @@ void note_viscous(BlockSystem &system, std::size_t row, const Mat2 &viscous) {
   system.ledger[row].damping -= 0.5 * contract(viscous, system.stretched(row));
 }
 
+void note_local_damping(BlockSystem &system, std::size_t row, const AnchorForce &damped, double half_work) {
+  BlockContactSum &sum = system.contact[row];
+  BlockGradientSum &on_gradient = system.deformation_of(row).contact;
+  sum.force.u += damped.u;
+  sum.damping.u += damped.u;
+  on_gradient.force += damped.gradient;
+  on_gradient.damping += damped.gradient;
+  system.ledger[row].damping += half_work;
+}
+
 /// Deformable rows on their way to the lanes, those on springs of their own apart from others.
 class DeformableSteps {
 public:
@@ -183,6 +193,9 @@ private:
       if (lanes.are_held) {
         note_springs(system_, row, *springs_[i]);
       }
+      if (step_.local_damping > 0.0) {
+        note_local_damping(system_, row, lanes.damped[i], lanes.damped_work[i]);
+      }
       if (step_.stiffness_damping > 0.0) {
         note_viscous(system_, row, lanes.viscous[i]);
       }
@@ -208,6 +221,7 @@ OwnStep own_step(const OwnForces &forces, const Scheme &scheme, double time_step
           spring_time(scheme, time_step),
           forces.wave,
           forces.stiffness_damping,
+          forces.local_damping,
           elasticity_of(scheme, elasticity) == Elasticity::implicit};
 }
 

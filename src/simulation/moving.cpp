@@ -95,6 +95,7 @@ void Simulation::prescribe_motion() {
 void Simulation::prepare_forces() {
   own_forces_.wave = incoming_wave();
   own_forces_.stiffness_damping = scene_.run.rayleigh.stiffness_damping;
+  own_forces_.local_damping = local_damping_;
 }
 
 void Simulation::begin_moving() {

@@ -92,6 +92,13 @@ void Simulation::mark_stage() {
   }
 }
 
+// What local damping of the last evaluation acted against, to a positive factor.
+RigidDof Simulation::damped_motion(std::size_t row) const {
+  return blocks_.is_deformable(row) ? next_trial(blocks_, scheme_, plan_.time_step, row).motion -
+                                          blocks_.trial[row] + blocks_.motion[row].increment()
+                                    : blocks_.velocity[row];
+}
+
 // Two reductions, now and then; both are exact.
 void Simulation::look_at_stage() {
   ExactSum kinetic;
@@ -104,7 +111,7 @@ void Simulation::look_at_stage() {
       continue;
     }
     const AppliedForces applied = applied_forces(blocks_, row);
-    const RigidDof &v = blocks_.velocity[row];
+    const RigidDof v = damped_motion(row);
     const RigidDof force = blocks_.contact[row].force + applied.anchor;
     const double along_x = undamped(force.u.x, v.u.x, local_damping_);
     const double along_y = undamped(force.u.y, v.u.y, local_damping_);

@@ -19,6 +19,7 @@ namespace gcpdda {
 struct OwnForces {
   Vec2 wave{};                    ///< velocity of the wave that comes in through viscous sides, m/s
   double stiffness_damping = 0.0; ///< beta of Rayleigh damping, of the blocks' own elasticity, s
+  double local_damping = 0.0;     ///< share of the net force that deformable blocks lose
 };
 
 /// Motion of a block that follows a velocity table: its velocity and the exact integral of it.
@@ -181,10 +182,10 @@ std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const S
                               double time_step, Elasticity elasticity, std::size_t first, std::size_t last,
                               AdvanceReport &report, Instructions instructions = Instructions::widest);
 
-/// Non-viscous damping of one owned row, for static problems: every generalised force loses `share` of its
-/// size against the velocity it works on, f - share |f| sign(v), on F in its turning axes. The elastic force
-/// and that of anchors of the last step count in f. What is taken is added to the damping forces.
-/// Driven blocks are left alone.
+/// Non-viscous damping of one owned rigid row, for static problems: every generalised force loses `share` of
+/// its size against the velocity it works on, f - share |f| sign(v). The force of anchors of the last step
+/// counts in f. What is taken is added to the damping forces. Driven blocks are left alone, and so are
+/// deformable ones: they lose their share within the step (OwnForces::local_damping).
 void apply_local_damping(BlockSystem &system, std::size_t row, double share);
 
 /// Mass-proportional damping of one owned row, f - alpha M v_n; what is taken is added to the damping forces.
@@ -194,6 +195,9 @@ void apply_mass_damping(BlockSystem &system, std::size_t row, double mass_dampin
 
 /// Advance owned rows [first, last) from t_n to t_{n+1} under their total forces: one system each, diagonal
 /// for a rigid block without fixed points, else by its own factorised matrix. Needs make_block_matrices().
+///
+/// What local damping takes from deformable rows is added to their forces and damping forces, and its work
+/// over the increment of x* that ends here to their ledger.
 ///
 /// The elastic and anchor forces that were applied are noted; of the anchors' work the half over the
 /// increment of x* that ends here, the other half is the caller's after the next predict().

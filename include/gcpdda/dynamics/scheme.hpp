@@ -38,6 +38,18 @@ struct Scheme {
 /// @param contact_time     used by generalized_alpha
 Scheme make_scheme(SchemeKind kind, double spectral_radius, ContactTime contact_time);
 
+/// Shares of the accelerations in the way between two trial configurations,
+///     x*_{n+1} - x*_n = dt v_n + dt^2 (old a_n + coming a_{n+1}),
+/// P and Q of the derivation above.
+struct TrialWay {
+  double old = 0.0;
+  double coming = 0.0;
+};
+inline TrialWay trial_way(const Scheme &s) {
+  return {0.5 - s.beta + s.trial_velocity * (1.0 - s.gamma) - s.trial_acceleration,
+          s.beta + s.trial_velocity * s.gamma + s.trial_acceleration};
+}
+
 /// Whether nothing can be taken implicitly: q_{n+1-af} does not depend on q''_{n+1}.
 inline bool is_explicit(const Scheme &scheme) {
   return (1.0 - scheme.alpha_f) * scheme.beta == 0.0;
@@ -56,7 +68,8 @@ double amplification(const Scheme &scheme, double frequency, double damping_rati
 ///
 /// Local damping of share a drives back what moves away with (1 + a) times its force. What swings fastest
 /// moves away in every step, and then W grows by sqrt(1 + a) and the dashpot's ratio too: at a = 0.8 a
-/// neutral scheme has a limit of 1.49. (Not a bound for a scheme that takes forces later than leapfrog does:
+/// neutral scheme has a limit of 1.49. Deformable blocks do not grow there, but they come to rest below this
+/// limit only (local_damping.cpp). (Not a bound for a scheme that takes forces later than leapfrog does:
 /// central differences have 1.09.)
 double stability_limit(const Scheme &scheme, double damping_ratio, double local_damping = 0.0);
 

@@ -229,6 +229,7 @@ private:
   void scale_masses();
   void unscale_masses();
   void set_to_rest();
+  [[nodiscard]] RigidDof damped_motion(std::size_t row) const;
   void look_at_stage();
   void stop_at_energy_peak();
   void book_stop();
