@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Stress around a circular opening in a fine blocky medium, beside Kirsch's solution for a plate.
 
-    run/study/kirsch.py GCPDDA OUT_DIR [--quick]
+    run/study/kirsch.py GCPDDA OUT_DIR [--quick] [--friction | --deformable]
 
 Rigid square blocks of side L under an in-situ stress without gravity, in a fixed square box; a circle is taken out of
 them and they settle. Joints have cohesion enough not to slip. Such a medium has E = k_n L, no Poisson ratio and, since
@@ -15,6 +15,10 @@ It does not depend on the elastic constants. The box does not follow when the op
 circular box of radius R (Lame, no Poisson ratio) sigma_r falls by (1 - rho^2) and sigma_t by (1 + rho^2) times
 sigma_v a^2/(a^2 + R^2); R of a circle as large as the box is printed beside what the blocks differ by. Writes kirsch.csv and kirsch.png and prints mean and scatter of the
 difference in rings about the opening.
+
+--deformable takes run/scenes/deformable_tunnel.toml instead, whose plate is loaded from outside, with blocks of several
+sizes and k_n L/E as it ships. A plate of radius R under sigma_v = sigma_h has (Lame) R^2/(R^2 - a^2) times the stresses of
+an endless one; R is again that of a circle as large as the plate. Writes kirsch_deformable.csv and kirsch_deformable.png.
 """
 
 import json
@@ -109,19 +113,85 @@ def polar(points, stress):
     return c * c * xx + s * s * yy + 2 * c * s * xy, s * s * xx + c * c * yy - 2 * c * s * xy
 
 
+def summary_of(folder):
+    with open(os.path.join(folder, "summary.json")) as file:
+        return json.load(file)
+
+
 def run(gcpdda, out, name, **values):
     scene = os.path.join(out, name + ".toml")
     with open(scene, "w") as file:
         file.write(SCENE.format(vertical=VERTICAL, width=2 * RADIUS, **values))
     folder = os.path.join(out, name)
     subprocess.run([gcpdda, "run", scene, "--out", folder, "--overwrite"], check=True, stderr=subprocess.DEVNULL)
-    with open(os.path.join(folder, "summary.json")) as file:
-        return folder, json.load(file)
+    return folder, summary_of(folder)
+
+
+def run_deformable(gcpdda, out, size, k0, half, ratio=3.0, modulus=10e9):
+    folder = os.path.join(out, f"kirsch_deformable_{size:g}_{k0:g}")
+    corners = [[-half, -half], [half, -half], [half, half], [-half, half]]
+    sets = [f"region.polygon={corners}", f"bricks=[{{block_size=[{size}, {size}], bond=0.0}}]", f"in_situ.k0={k0}",
+            f"region.min_width={0.2 * size}", f"joint.default.normal_stiffness={ratio * modulus / size}"]
+    scene = os.path.join(os.path.dirname(__file__), "..", "scenes", "deformable_tunnel.toml")
+    subprocess.run([gcpdda, "run", scene, "--out", folder, "--overwrite", *(word for s in sets for word in ("--set", s))],
+                   check=True, stderr=subprocess.DEVNULL)
+    return folder, summary_of(folder)
+
+
+def draw(ax, points, radial, hoop, k0, half):
+    r = np.hypot(*points.T)
+    for values, colour, label in ((hoop, "#b5482f", "hoop"), (radial, "#2f6db5", "radial")):
+        for angle, marker, where in ((0.0, "o", "beside"), (0.5 * np.pi, "^", "above and below")):
+            along = np.abs(np.sin(np.arctan2(points[:, 1], points[:, 0]) - angle)) < np.sin(np.radians(12.0))
+            ax.plot(r[along] / RADIUS, values[along] / VERTICAL, marker, color=colour, ms=3, alpha=0.5, mew=0,
+                    fillstyle="full", label=f"{label}, {where}")
+            line = np.linspace(RADIUS, half, 200)
+            exact = kirsch(np.outer(line, (np.cos(angle), np.sin(angle))), k0)[0 if label == "radial" else 1]
+            ax.plot(line / RADIUS, exact / VERTICAL, "-" if angle == 0.0 else "--", color=colour, lw=1.2)
+    ax.set_xlabel("distance from the centre over radius")
+    ax.set_xlim(1.0, half / RADIUS)
+    ax.grid(alpha=0.3)
+
+
+def deformable(gcpdda, out, quick):
+    """Convergence with the size of the blocks, and a picture of the finest at two ratios of stress."""
+    half = 9.0 if quick else 15.0
+    sizes = (1.0, 0.75) if quick else (1.0, 0.75, 0.5, 0.375)
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), sharey=True)
+    rows = []
+    for k0, ax in ((1.0, axes[0]), (0.5, axes[1])):
+        for size in sizes if k0 == 1.0 else sizes[-1:]:
+            folder, summary = run_deformable(gcpdda, out, size, k0, half)
+            points, areas, stress = last_frame(folder)
+            radial, hoop = polar(points, stress)
+            plate = 1.0 / (1.0 - RADIUS**2 / (4.0 * half**2 / np.pi))
+            r = np.hypot(*points.T)
+            near = (r > RADIUS) & (r < 2.0 * RADIUS)
+            exact = kirsch(points, k0)
+            errors = [float(np.sqrt(np.average((got - plate * want)[near] ** 2, weights=areas[near]))) / VERTICAL
+                      for got, want in zip((radial, hoop), exact)]
+            rows.append((k0, size / RADIUS, summary["blocks"], summary["verdict"], *errors))
+            print(f"K0 = {k0:g}, L/a = {size / RADIUS:.3f}: {summary['blocks']} blocks {summary['verdict']}, 1 to 2 radii: rms "
+                  f"difference over sigma_v radial {errors[0]:.3f}, hoop {errors[1]:.3f}", flush=True)
+        draw(ax, points, radial, hoop, k0, half)
+        ax.set_title(f"$K_0$ = {k0:g}, {summary['blocks']} deformable blocks left")
+    axes[0].set_ylabel("compressive stress over $\\sigma_v$")
+    axes[0].legend(fontsize=8, title="points: blocks, lines: Kirsch, endless plate")
+    figure.tight_layout()
+    figure.savefig(os.path.join(out, "kirsch_deformable.png"), dpi=130)
+    with open(os.path.join(out, "kirsch_deformable.csv"), "w") as file:
+        file.write("k0,L/a,blocks,verdict,rms radial,rms hoop\n")
+        for row in rows:
+            file.write(",".join(x if isinstance(x, str) else f"{x:.6g}" for x in row) + "\n")
 
 
 def main():
     gcpdda, out = sys.argv[1:3]
     quick = "--quick" in sys.argv
+    if "--deformable" in sys.argv:
+        os.makedirs(out, exist_ok=True)
+        deformable(gcpdda, out, quick)
+        return
     size, half = (0.6, 12.0) if quick else (0.4, 18.0)
     strength = "friction_angle_deg = 35.0" if "--friction" in sys.argv else "friction_angle_deg = 45.0\ncohesion = 1e9"
     os.makedirs(out, exist_ok=True)
@@ -147,18 +217,8 @@ def main():
             lame = f"; by the box {box * (1 - middle):+.3f}, {box * (1 + middle):+.3f}" if k0 == 1.0 else ""
             print(f"  r/a {inner / RADIUS:.2f} to {inner / RADIUS + 0.25:.2f}: {ring.sum():4} blocks, difference over "
                   f"sigma_v: radial {means[0]:+.3f}, hoop {means[1]:+.3f}; rms {scatter[0]:.3f}, {scatter[1]:.3f}{lame}")
-        for values, colour, label in ((hoop, "#b5482f", "hoop"), (radial, "#2f6db5", "radial")):
-            for angle, marker, where in ((0.0, "o", "beside"), (0.5 * np.pi, "^", "above and below")):
-                along = np.abs(np.sin(np.arctan2(points[:, 1], points[:, 0]) - angle)) < np.sin(np.radians(12.0))
-                ax.plot(r[along] / RADIUS, values[along] / VERTICAL, marker, color=colour, ms=3, alpha=0.5, mew=0,
-                        fillstyle="full", label=f"{label}, {where}")
-                line = np.linspace(RADIUS, half, 200)
-                exact = kirsch(np.outer(line, (np.cos(angle), np.sin(angle))), k0)[0 if label == "radial" else 1]
-                ax.plot(line / RADIUS, exact / VERTICAL, "-" if angle == 0.0 else "--", color=colour, lw=1.2)
+        draw(ax, points, radial, hoop, k0, half)
         ax.set_title(f"$K_0$ = {k0:g}, {summary['blocks']} blocks left")
-        ax.set_xlabel("distance from the centre over radius")
-        ax.set_xlim(1.0, half / RADIUS)
-        ax.grid(alpha=0.3)
     axes[0].set_ylabel("compressive stress over $\\sigma_v$")
     axes[0].legend(fontsize=8, title="points: blocks, lines: Kirsch")
     figure.tight_layout()

@@ -2,6 +2,7 @@
 
 #include "problem.hpp"
 
+#include "gcpdda/blockgen/region_cutter.hpp"
 #include "gcpdda/simulation/safety_factor.hpp"
 #include "support/plane_failure.hpp"
 #include "support/run_facts.hpp"
@@ -11,6 +12,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 
 namespace gcpdda::testing::safety_factor_test {
 namespace {
@@ -21,7 +23,8 @@ struct Found {
   double fails = 0.0;
   std::string text; ///< for people
 
-  explicit Found(const std::string &toml) {
+  explicit Found(const std::string &toml) : Found(scene_of(toml)) {}
+  explicit Found(const Scene &scene) {
     std::string folder = (std::filesystem::temp_directory_path() / "gcpdda_fos_XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) {
       throw std::runtime_error("no temporary folder");
@@ -29,7 +32,7 @@ struct Found {
     ::testing::internal::CaptureStdout();
     ::testing::internal::CaptureStderr();
     const std::filesystem::path result = std::filesystem::path(folder) / "fos";
-    exit_code = find_safety_factor(Communicator::self(), scene_of(toml), {result, false});
+    exit_code = find_safety_factor(Communicator::self(), scene, {result, false});
     ::testing::internal::GetCapturedStderr();
     text = ::testing::internal::GetCapturedStdout();
     if (std::filesystem::exists(result / "fos.json")) {
@@ -88,6 +91,19 @@ limit = 20.0
   const Found found(toml);
   expect_value("factor of safety, glued column that topples", 2.2, found.factor(), 0.006);
   EXPECT_EQ(found.exit_code, 0) << found.text;
+}
+
+// The mass slides on its bedding whatever its blocks are made of. The bracket is 0.01 wide.
+TEST(SafetyFactor, OfASlopeOfBlocksThatDeform) {
+  for (const char *modulus : {"2e9", "30e9"}) {
+    Scene scene = shipped_scene("deformable_slope", {std::string("material.rock.youngs_modulus=") + modulus,
+                                                     "fos.from=1.2", "fos.to=1.4"});
+    scene.region_blocks = std::make_shared<RegionCutter>(scene);
+    const Found found(scene);
+    expect_value(std::string("factor of safety, deformable slope, E = ") + modulus + " Pa",
+                 std::tan(42.0 * degree) / std::tan(35.0 * degree), found.factor(), 0.0075);
+    EXPECT_EQ(found.exit_code, 0) << found.text;
+  }
 }
 
 // One that stands whatever the friction, in the range asked for.
