@@ -54,22 +54,6 @@ double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
   return is_lower ? -dot(normal, piece.normal) : dot(normal, piece.normal);
 }
 
-/// The memory of a region among those its pair had: the nearest between the same stretches that can be the
-/// same patch; null for a new region.
-RegionMemory *find_memory(std::span<RegionMemory> old, const Region &region, Vec2 position, double extent) {
-  RegionMemory *nearest = nullptr;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (RegionMemory &memory : old) {
-    const double distance = norm(memory.position - position);
-    if (memory.lower_stretch == region.faces.first && memory.higher_stretch == region.faces.second &&
-        distance <= memory.longest + extent && distance < smallest) {
-      smallest = distance;
-      nearest = &memory;
-    }
-  }
-  return nearest;
-}
-
 } // namespace
 
 bool ContactForces::measure(const Region &region, RegionForce &force) const {
@@ -97,19 +81,48 @@ bool ContactForces::measure(const Region &region, RegionForce &force) const {
   return true;
 }
 
-// Which of the pair's old regions goes on in this one.
-void ContactForces::recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-                           std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const {
-  const Vec2 position = reference_point(system, pair.lower.value, force.point);
-  RegionMemory *known = find_memory(old, region, position, force.extent_end - force.extent_begin);
-  force.born = known == nullptr;
-  if (known != nullptr) {
-    memory = *known;
-    known->longest = -std::numeric_limits<double>::infinity(); // out of reach for the next region
+// A memory can be that of a region between the same stretches which the old and the new extent reach. The
+// nearest two of all belong together, then the nearest of those that are left: a tip that has just begun to
+// touch beside a joint does not take the joint's memory, whatever the order of the regions.
+void ContactForces::match_memories(const BlockSystem &system, const CandidatePair &pair,
+                                   std::span<RegionMemory> old) {
+  matches_.clear();
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    FoundRegion &found = found_[k];
+    found.position = reference_point(system, pair.lower.value, found.force.point);
+    const double extent = found.force.extent_end - found.force.extent_begin;
+    for (std::size_t m = 0; m < old.size(); ++m) {
+      const double distance = norm(old[m].position - found.position);
+      if (old[m].lower_stretch == found.region->faces.first &&
+          old[m].higher_stretch == found.region->faces.second && distance <= old[m].longest + extent) {
+        matches_.push_back({distance, k, m});
+      }
+    }
   }
-  memory.position = position;
-  memory.lower_stretch = region.faces.first;
-  memory.higher_stretch = region.faces.second;
+  std::sort(matches_.begin(), matches_.end());
+  for (const auto &[distance, k, m] : matches_) {
+    const bool is_taken = std::any_of(found_.begin(), found_.end(),
+                                      [&](const FoundRegion &found) { return found.known == &old[m]; });
+    if (found_[k].known == nullptr && !is_taken) {
+      found_[k].known = &old[m];
+    }
+  }
+}
+
+void ContactForces::find_touching(const BlockSystem &system, const CandidatePair &pair,
+                                  std::span<RegionMemory> old) {
+  found_.clear();
+  for (const Region &region : overlap_.regions()) {
+    FoundRegion found{&region, {}, {}, nullptr};
+    if (measure(region, found.force)) {
+      found_.push_back(found);
+    }
+  }
+  if (!pair.is_convex) {
+    match_memories(system, pair, old);
+  } else if (!found_.empty() && !old.empty()) {
+    found_.front().known = &old.front(); // its only region
+  }
 }
 
 void ContactForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
@@ -286,25 +299,27 @@ void ContactForces::find_regions(const BlockSystem &system, const Candidates &ca
   if (!bonds.empty()) {
     find_bonds(system, pair, touches ? overlap_.pieces() : std::span<const Piece>(), bonds);
   }
-  for (const Region &region : touches ? overlap_.regions() : std::span<const Region>()) {
-    RegionForce &force = append_force();
-    if (!measure(region, force)) {
-      drop_last_force();
+  found_.clear();
+  if (touches) {
+    find_touching(system, pair, old);
+  }
+  for (const FoundRegion &found : found_) {
+    if (found.known != nullptr && found.known->is_dilated()) { // on its own below
       continue;
     }
+    const Region &region = *found.region;
+    RegionForce &force = append_force(found.force);
     force.pair = number;
+    force.born = found.known == nullptr;
     damping_dyad_ = {};
     RegionMemory &memory = next_.regions.emplace_back();
-    if (pair.is_convex) {
-      force.born = old.empty();
-      memory = force.born ? memory : old.front();
-    } else {
-      recall(system, pair, region, old, memory, force);
-      if (memory.is_dilated()) { // on its own below
-        drop_last_force();
-        next_.regions.pop_back();
-        continue;
-      }
+    if (!force.born) {
+      memory = *found.known;
+    }
+    if (!pair.is_convex) {
+      memory.position = found.position;
+      memory.lower_stretch = region.faces.first;
+      memory.higher_stretch = region.faces.second;
     }
     const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, region);
     if (!pair.is_mixed) {

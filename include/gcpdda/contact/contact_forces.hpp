@@ -19,8 +19,8 @@
 // again. A region's spring turns with t_r, dies with the region, and gets no increment in the step of its
 // birth. On a pair with a deformable block friction acts, and du is taken, not at x_r but at the region's
 // grip, a point that is fixed in the material as long as the joint sticks (src/contact/grip.hpp). Of several
-// regions of a pair each finds its memory among those between the same stretches of the two outlines, the
-// nearest one in the lower block's axes, if it lies within reach of the old and the new extent.
+// regions of a pair each finds its memory among those between the same stretches of the two outlines that
+// lie within reach of the old and the new extent in the lower block's axes: the nearest two of all first.
 //
 // The normal dashpot is distributed: on each piece with outward normal n of its own block and u = -n_r (lower
 // block) or n_r (higher), w = max(0, u.n), the traction q = max(-s w p, (c'/2) w (v_own - v_other).u) acts
@@ -260,8 +260,10 @@ private:
   /// References to other regions hold until the next one is appended.
   RegionForce &append_force(const RegionForce &force = {});
   void drop_last_force() { --num_forces_; }
-  void recall(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-              std::span<RegionMemory> old, RegionMemory &memory, RegionForce &force) const;
+  /// Regions of the pair at hand that carry something, each with its memory.
+  void find_touching(const BlockSystem &system, const CandidatePair &pair, std::span<RegionMemory> old);
+  /// Which old region of a pair that is not convex goes on in which new one.
+  void match_memories(const BlockSystem &system, const CandidatePair &pair, std::span<RegionMemory> old);
   /// Normal force for k_n/2 = 1, direction and size of a region; false if it carries nothing.
   bool measure(const Region &region, RegionForce &force) const;
   /// The same for the pair's law, with friction and dashpots.
@@ -334,7 +336,17 @@ private:
   std::vector<RegionDyads> dyads_;       ///< of its regions, if a block deforms
   Mat2 damping_dyad_;                    ///< of the region at hand, about its origin
   std::vector<BondAtWork> bonds_;        ///< of the pair at hand
-  std::vector<double> facing_;           ///< of the pieces at hand, scratch
+  /// A region that carries something.
+  struct FoundRegion {
+    const Region *region;
+    RegionForce force;   ///< for k_n/2 = 1, without friction and dashpots
+    Vec2 position;       ///< RegionMemory::position, of a pair that is not convex
+    RegionMemory *known; ///< what goes on in it; null for a new one
+  };
+  std::vector<FoundRegion> found_; ///< of the pair at hand
+  /// A memory within reach of a region: their distance (m) and numbers.
+  std::vector<std::tuple<double, std::size_t, std::size_t>> matches_;
+  std::vector<double> facing_; ///< of the pieces at hand, scratch
   /// N opened by slip, J/m.
   struct DilationWork {
     std::uint32_t pair = 0;
