@@ -314,8 +314,9 @@ void check_against_scene(const Scene &scene, Diagnostics &faults) {
     }
   }
   for (const Monitor &monitor : scene.monitors) {
-    if (!monitor.is_point && monitor.block >= total && !scene.region.present()) {
-      faults.push_back({Severity::error, monitor.where, fmt::format("no block is named '{}'", monitor.name),
+    if (monitor.block >= total && !scene.region.present()) {
+      const std::string &name = monitor.is_point ? monitor.block_name : monitor.name;
+      faults.push_back({Severity::error, monitor.where, fmt::format("no block is named '{}'", name),
                         fmt::format("those of {} are b{} to b{}", scene.block_file.path, before, total - 1),
                         "name one of these"});
     }

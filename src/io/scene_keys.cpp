@@ -302,10 +302,10 @@ constexpr Key all_keys[] = {
   {"ensemble.correlation[].keys", Kind::pair_of_names, required, any, "", "", "[\"joint.bedding.friction_angle_deg\", \"joint.bedding.cohesion\"]", "Two keys that vary."},
   {"ensemble.correlation[].coefficient", Kind::number, required, between(-1, 1), "", "", "-0.5", "Correlation of the normal variables behind the two (Gaussian copula): that of two normal values themselves."},
 
-  {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks and points whose history is written to history/<name>.csv: either block, or name and point."},
-  {"monitor[].block", Kind::name, optional, any, "", "<exactly one of this and point>", "\"slider\"", "Name of the block, also of a generated one or one of the block file."},
+  {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks and points whose history is written to history/<name>.csv: either a block alone, or a point with its name and, if wished, the block it follows."},
+  {"monitor[].block", Kind::name, optional, any, "", "<required without point>", "\"slider\"", "Name of the block, also of a generated one or one of the block file. Beside name and point it is the block that the point follows, which must hold it."},
   {"monitor[].name", Kind::name, optional, any, "", "<required with point>", "\"roof\"", "Name of the monitored point."},
-  {"monitor[].point", Kind::vector2, optional, from_to(-1e9, 1e9), "", "<exactly one of this and block>", "[0.0, 1.0]", "[m] Point at the start; it goes with the block that holds it."},
+  {"monitor[].point", Kind::vector2, optional, from_to(-1e9, 1e9), "", "<required without block>", "[0.0, 1.0]", "[m] Point at the start; it follows the block that holds it. Where several blocks hold it, at a shared edge or vertex, it follows a mobile one, of several the first in the order of the scene, unless block names another."},
 };
 // clang-format on
 

@@ -33,13 +33,15 @@ public:
     const toml::node *block = section.given("block");
     const toml::node *name = section.given("name");
     const toml::node *point = section.given("point");
-    if (block != nullptr && (name != nullptr || point != nullptr)) {
-      fault(block->source(),
-            fmt::format("[[monitor]] gives block and {}", point != nullptr ? "point" : "name"),
-            "it is either a block or a named point", "make two monitors of it, or leave one out");
+    if (block != nullptr && (name == nullptr) != (point == nullptr)) {
+      const char *given = point != nullptr ? "point" : "name";
+      const char *missing = point != nullptr ? "name" : "point";
+      fault(block->source(), fmt::format("[[monitor]] gives block and {} without {}", given, missing),
+            "it is a block alone, or a named point with or without the block it follows",
+            fmt::format("add {}, or leave {} out", missing, given));
       return std::nullopt;
     }
-    if (block != nullptr) {
+    if (block != nullptr && name == nullptr) {
       return section.sound("block") != nullptr ? read_block(section) : std::nullopt;
     }
     if (name == nullptr && point == nullptr) {
@@ -56,8 +58,9 @@ public:
             name == nullptr ? "for example name = \"roof\"" : "for example point = [0.0, 1.0]");
       return std::nullopt;
     }
-    return section.sound("name") != nullptr && section.sound("point") != nullptr ? read_point(section)
-                                                                                 : std::nullopt;
+    const bool is_sound = section.sound("name") != nullptr && section.sound("point") != nullptr &&
+                          (block == nullptr || section.sound("block") != nullptr);
+    return is_sound ? read_point(section) : std::nullopt;
   }
 
 private:
@@ -77,16 +80,10 @@ private:
   std::optional<Monitor> read_block(const Section &section) {
     const std::string name = *section.text("block");
     const toml::source_region &where = section.given("block")->source();
-    const auto found = id_of_name_.find(name);
     Monitor monitor;
     monitor.name = name;
-    monitor.block = found != id_of_name_.end() ? found->second : find_generated_block(*scene_, name);
     monitor.where = source_.faults.origins().position(where);
-    if (monitor.block < 0 && rests_on_a_fault(name)) {
-      return std::nullopt;
-    }
-    if (monitor.block < 0) {
-      fault(where, fmt::format("no block is named '{}'", name), "", hint_for(name));
+    if (!find_block(name, where, monitor.block)) {
       return std::nullopt;
     }
     if (is_taken(name)) {
@@ -103,6 +100,16 @@ private:
       return std::nullopt;
     }
     return monitor;
+  }
+
+  /// False, and reported, where no block has that name.
+  bool find_block(const std::string &name, const toml::source_region &where, std::int64_t &block) {
+    const auto found = id_of_name_.find(name);
+    block = found != id_of_name_.end() ? found->second : find_generated_block(*scene_, name);
+    if (block < 0 && !rests_on_a_fault(name)) {
+      fault(where, fmt::format("no block is named '{}'", name), "", hint_for(name));
+    }
+    return block >= 0;
   }
 
   // A brick of a wall that cannot be built, or a block of a file without a path: reported there.
@@ -133,6 +140,12 @@ private:
     if (const auto [first, is_new] = first_of_name_.emplace(monitor.name, First{where, true}); !is_new) {
       report_shared_file(where, monitor.name, first->second.where);
       return std::nullopt;
+    }
+    if (const toml::node *block = section.given("block")) {
+      monitor.block_name = *section.text("block");
+      if (!find_block(monitor.block_name, block->source(), monitor.block)) {
+        return std::nullopt;
+      }
     }
     return monitor;
   }

@@ -12,7 +12,6 @@
 #include "gcpdda/contact/stiffness_bound.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/frequency_bound.hpp"
-#include "gcpdda/geometry/holds_point.hpp"
 #include "gcpdda/geometry/polygon.hpp"
 #include "gcpdda/io/block_file.hpp"
 #include "gcpdda/io/result_files.hpp"
@@ -201,36 +200,6 @@ void Simulation::size_up(std::span<const SceneBlock> slab) {
     contacts_ = ContactForces(contact_parameters(scene_));
   }
   sag_ = largest_sag(scene_, survey, agreed_median(communicator_, survey.widths));
-}
-
-// A point belongs to the block with the smallest id that holds it.
-void Simulation::place_monitors(std::span<const SceneBlock> slab) {
-  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
-  for (Monitor &monitor : scene_.monitors) {
-    if (!monitor.is_point) {
-      if (monitor.block >= num_blocks()) {
-        notes_.push_back({Severity::error, monitor.where, fmt::format("no block is named '{}'", monitor.name),
-                          fmt::format("the scene has {} blocks", num_blocks()), "check the name"});
-      }
-      continue;
-    }
-    std::int64_t minus_id = std::numeric_limits<std::int64_t>::min();
-    for (std::size_t k = 0; k < slab.size(); ++k) {
-      if (holds_point(slab[k].vertices, monitor.point)) {
-        minus_id = std::max(minus_id, -(first + static_cast<std::int64_t>(k)));
-      }
-    }
-    communicator_.max(std::span(&minus_id, 1));
-    if (minus_id > std::numeric_limits<std::int64_t>::min()) {
-      monitor.block = -minus_id;
-    } else {
-      notes_.push_back({Severity::error, monitor.where,
-                        fmt::format("no block holds the point ({}, {}) of monitor '{}'", monitor.point.x,
-                                    monitor.point.y, monitor.name),
-                        "a monitored point follows the block it lies in", "check 'point'"});
-    }
-  }
-  stop_on_errors(notes_);
 }
 
 // What is thinnest, what is smallest, how far the model reaches.

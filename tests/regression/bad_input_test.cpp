@@ -281,10 +281,13 @@ path = "x.h5")",
      {R"(35:9: error: no block is named 'w.1.7', blocks of 'w' are w.<row>.<column>, from w.0.0 to w.3.6)"}},
     {"MonitorBlockAndPoint", 35, R"(block = "lever"
 point = [1, 2])",
-     {R"(35:9: error: [[monitor]] gives block and point, it is either a block or a named point, make two monitors of it, or leave one out)"}},
+     {R"(35:9: error: [[monitor]] gives block and point without name, it is a block alone, or a named point with or without the block it follows, add name, or leave point out)"}},
     {"MonitorBlockAndName", 35, R"(block = "lever"
 name = "tip")",
-     {R"(35:9: error: [[monitor]] gives block and name, it is either a block or a named point, make two monitors of it, or leave one out)"}},
+     {R"(35:9: error: [[monitor]] gives block and name without point, it is a block alone, or a named point with or without the block it follows, add point, or leave name out)"}},
+    {"MonitorPointOfNoBlock", 37, R"(name = "tip"
+block = "levr")",
+     {R"(38:9: error: no block is named 'levr', did you mean 'lever'?)"}},
     {"MonitorNothing", 35, R"()",
      {R"(34:1: error: [[monitor]] gives neither block nor name and point, it is either a block or a named point, for example block = "slider")"}},
     {"MonitorPointWithoutName", 37, R"()",

@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::block_toml;
+using testing::count_of;
 using testing::file_text;
 using testing::lines_of;
 using testing::Outcome;
@@ -154,6 +155,64 @@ TEST_F(Monitors, FollowPointsOfOtherBlocks) {
   EXPECT_GT(further, -0.25 * 2.0 * 2600.0 * 9.81 / 1e8);
   for (const std::vector<double> &row : rows_of(history("on_floor"), point_header)) {
     EXPECT_EQ(std::vector<double>(row.begin() + 1, row.end()), (std::vector<double>{0.5, -1.0, 0.0, 0.0}));
+  }
+}
+
+/// A fixed floor, which comes first, and two squares side by side on it that drift away from each other. The
+/// vertex at the origin belongs to all three, (1, 0) to the floor and the right square, (3, 0) to the floor.
+std::string scene_of_shared_points(const std::string &block_of_corner) {
+  return "[run]\nduration = 0.1\ngravity = [0, 0]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600\n"
+         "[joint.default]\nnormal_stiffness = 1e8\nfriction_angle_deg = 0\n[output]\ninterval = 0.1\n" +
+         block_toml("floor", rectangle({-8.0, -2.0}, {8.0, 0.0}), "fixed = true") +
+         block_toml("left", rectangle({-1.0, 0.0}, {0.0, 1.0}), "velocity = [-1, 0, 0]") +
+         block_toml("right", rectangle({0.0, 0.0}, {1.0, 1.0}), "velocity = [1, 0, 0]") +
+         fmt::format("[[monitor]]\nname = \"corner\"\npoint = [0, 0]\n{}"
+                     "[[monitor]]\nname = \"edge\"\npoint = [1, 0]\n"
+                     "[[monitor]]\nname = \"bare\"\npoint = [3, 0]\n",
+                     block_of_corner.empty() ? "" : fmt::format("block = \"{}\"\n", block_of_corner));
+}
+
+// A fixed block does not take a point from a mobile one; of several mobile ones the first has it.
+TEST(SharedPoints, GoToAMobileBlockOrTheOneNamed) {
+  const WorkFolder folder;
+  const std::string corner =
+      "monitor 'corner' follows the mobile block 'left', 3 blocks share its point (0, 0), "
+      "set monitor.block to follow another one";
+  const std::string edge = "monitor 'edge' follows the mobile block 'right', 2 blocks share its point (1, 0)";
+  const auto moved = [&](const std::string &name) {
+    const auto rows = rows_of(folder / ("out/history/" + name + ".csv"), point_header);
+    return rows.back().at(1) - rows.front().at(1);
+  };
+  constexpr double rounding = 1e-12; // of some hundred steps of v dt
+  for (const int ranks : {0, 2, 3}) {
+    for (const auto &[block, way] : {std::pair("", -0.1), std::pair("right", 0.1), std::pair("floor", 0.0)}) {
+      folder.write("scene.toml", scene_of_shared_points(block));
+      const Outcome outcome = run_gcpdda(ranks, {"run", "scene.toml", "--out", "out", "--overwrite"}, folder);
+      ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_EQ(count_of(outcome.err, corner), *block == '\0' ? 1 : 0) << outcome.err;
+      EXPECT_EQ(count_of(outcome.err, edge), 1) << outcome.err;
+      EXPECT_EQ(count_of(outcome.err, "'bare' follows"), 0) << "one block holds it: " << outcome.err;
+      EXPECT_NEAR(moved("corner"), way, rounding) << "named: " << block;
+      EXPECT_NEAR(moved("edge"), 0.1, rounding);
+      EXPECT_EQ(moved("bare"), 0.0);
+    }
+  }
+  EXPECT_EQ(count_of(file_text(folder / "out/scene.toml"), "block = \"floor\""), 1) << "restarts need it";
+}
+
+TEST(SharedPoints, ABlockThatDoesNotHoldThePointIsAFault) {
+  const WorkFolder folder;
+  std::string text = scene_of_shared_points("right");
+  text.replace(text.find("point = [0, 0]"), 14, "point = [-3, 4]");
+  folder.write("scene.toml", text);
+  for (const int ranks : {0, 3}) {
+    const Outcome outcome = run_gcpdda(ranks, {"run", "scene.toml", "--out", "out"}, folder);
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_EQ(count_of(outcome.err, "error: block 'right' does not hold the point (-3, 4) of monitor "
+                                    "'corner', the point lies 4.24 m outside it"),
+              1)
+        << outcome.err; // 3 to the left and 3 above
+    EXPECT_FALSE(fs::exists(folder / "out/history"));
   }
 }
 

@@ -182,6 +182,13 @@ TEST(HoldsPoint, HasARelativeTolerance) {
   }
 }
 
+TEST(DistanceToBoundary, IsThatOfTheNearestEdgeOrVertex) {
+  const std::vector<Vec2> square = rectangle({0.0, 0.0}, {1.0, 1.0});
+  EXPECT_EQ(distance_to_boundary(square, {0.5, -2.0}), 2.0) << "below an edge";
+  EXPECT_EQ(distance_to_boundary(square, {4.0, 5.0}), 5.0) << "beyond a vertex";
+  EXPECT_EQ(distance_to_boundary(square, {0.75, 0.5}), 0.25) << "inside";
+}
+
 TEST(HoldsPoint, NoPolygonHoldsAPointThatIsNone) {
   EXPECT_FALSE(holds_point(notched, {infinite, 0.5}));
   EXPECT_FALSE(holds_point(notched, {std::numeric_limits<double>::quiet_NaN(), 0.5}));

@@ -129,10 +129,11 @@ struct OutputSettings {
 /// A block or a point whose history is written.
 struct Monitor {
   std::string name;        ///< file stem of its history
-  std::int64_t block = -1; ///< BlockId; of a point -1 until the block that holds it has been found
+  std::int64_t block = -1; ///< BlockId; of a point without block_name -1 until a block that holds it is found
   bool is_point = false;
   Vec2 point; ///< world coordinates at t = 0
   SourcePosition where;
+  std::string block_name = {}; ///< block that the scene names for a point; empty where it names none
 };
 
 /// Blocks that have a name together: those within an opening.

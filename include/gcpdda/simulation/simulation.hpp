@@ -258,6 +258,8 @@ private:
   void warn_of_lively_impacts();
   void take_blocks(std::vector<SceneBlock> slab);
   void place_monitors(std::span<const SceneBlock> slab);
+  void place_point(std::span<const SceneBlock> slab, Monitor &monitor);
+  void check_named_block(std::span<const SceneBlock> slab, const Monitor &monitor);
   [[nodiscard]] std::vector<std::int64_t> count_contact_work();
   void find_bound();
   [[nodiscard]] double frequency_bound_of(std::size_t row, std::span<const PointSpring> springs) const;
