@@ -102,6 +102,53 @@ TEST(StagedRun, GoesOnFromAnyStageOnAnyNumberOfRanks) {
   }
 }
 
+/// Times of a history's rows.
+std::vector<double> times_of(const fs::path &history) {
+  std::vector<std::string> lines = testing::lines_of(file_text(history));
+  std::vector<double> times;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    times.push_back(std::stod(lines[i]));
+  }
+  return times;
+}
+
+// A history row stands at the end of each stage that takes time, also where it ends between two
+// rows; none is written twice where a stage ends on a row; a restart from the middle of a stage writes the
+// same bytes. The stages end at: the settled state, + 0.04, + 0.04 s.
+TEST(StagedRun, EveryStageEndsWithAHistoryRow) {
+  const WorkFolder folder;
+  folder.write("scene.toml", scene_of_stages(stages.size()));
+  const auto run = [&](int ranks, const std::string &out, const std::string &interval) {
+    const Outcome outcome =
+        run_gcpdda(ranks,
+                   {"run", "scene.toml", "--out", out, "--set", "output.interval=0.04", "--set",
+                    "output.history_interval=" + interval, "--set", "stage.gravity.limit=2.0"},
+                   folder);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome;
+  };
+  const Outcome whole = run(0, "whole", "0.04");
+  ASSERT_EQ(count_of(whole.err, "stage 'gravity' settled"), 1) << whole.err;
+  const std::vector<double> times = times_of(folder / "whole/history/energy.csv");
+  ASSERT_GE(times.size(), 4U);
+  const double settled = times.end()[-3];
+  EXPECT_EQ(count_of(whole.err, fmt::format("stage 'gravity' settled at t = {:.9g} s", settled)), 1)
+      << settled << ": " << whole.err;
+  EXPECT_GT(std::abs(std::remainder(settled, 0.04)), 1e-6) << "the stage ends between two rows";
+  EXPECT_NEAR(times.end()[-2], settled + 0.04, 1e-12);
+  EXPECT_NEAR(times.end()[-1], settled + 0.08, 1e-12);
+  EXPECT_EQ(times.size(), 4U + static_cast<std::size_t>(settled / 0.04)) << "no row twice";
+  EXPECT_EQ(times_of(folder / "whole/history/w.1.5.csv").back(), settled) << "it is taken away then";
+  for (const int ranks : {2, 3}) {
+    const std::string name = fmt::format("on{}", ranks);
+    run(ranks, name, "0.04");
+    EXPECT_EQ(compare_runs(folder / "whole", folder / name), none);
+    fs::remove(checkpoints(folder / name).back());
+    EXPECT_EQ(run_gcpdda(5 - ranks, {"restart", name}, folder).exit_code, 0);
+    EXPECT_EQ(compare_runs(folder / "whole", folder / name), none);
+  }
+}
+
 // Exit code 7; the state is kept, and a longer limit finds the verdict. Both limits are whole numbers of
 // intervals, so that the step is the same.
 TEST(StagedRun, WithoutAVerdictEndsWithSeven) {
