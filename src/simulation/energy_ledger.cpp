@@ -19,6 +19,7 @@ struct Terms {
   ExactSum kinetic;
   ExactSum strain;
   ExactSum normal;
+  ExactSum excess;
   ExactSum stick;
   ExactSum gravity;
   ExactSum shear_work;
@@ -27,7 +28,7 @@ struct Terms {
   LinkEnergies support;
 
   void agree(const Communicator &communicator) {
-    for (ExactSum *sum : {&kinetic, &strain, &normal, &stick, &gravity, &shear_work, &damping_work,
+    for (ExactSum *sum : {&kinetic, &strain, &normal, &excess, &stick, &gravity, &shear_work, &damping_work,
                           &load_work, &support.stored, &support.dissipated}) {
       communicator.sum(sum->limbs());
     }
@@ -119,7 +120,9 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
   return sum + half_stiffness * overlap_energy(first, second) * energy_share(overlap, is_fresh);
 }
 
-void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
+/// Potential of the contact pressure of each candidate pair, J/m; zero where the pair counts on another rank.
+std::vector<double> normal_energies(const Simulation &simulation) {
+  std::vector<double> found(simulation.candidates().pairs.size(), 0.0);
   const BlockSystem &blocks = simulation.blocks();
   PairEnergies energies;
   std::array<TrialOutline, 2> outlines;
@@ -147,18 +150,29 @@ void add_normal(const Simulation &simulation, double share, ExactSum &sum) {
     const std::int32_t law = has_plain && pair.is_mixed ? history.plain[k].law : pair.law;
     const bool has_one_law = has_plain || !pair.is_mixed;
     if (is_known && (has_one_law || energy == 0.0)) {
-      sum.add(share * half_stiffness_of(law) * energy);
+      found[k] = half_stiffness_of(law) * energy;
       continue;
     }
     const BlockView first = view_of(blocks, a, outlines[0]);
     const BlockView second = view_of(blocks, b, outlines[1]);
     if (is_dilated) {
-      sum.add(share * dilated_energy(simulation, k, first, second));
+      found[k] = dilated_energy(simulation, k, first, second);
     } else {
       const double half_stiffness =
           has_one_law ? half_stiffness_of(law) : mean_stiffness(simulation, k, first, second);
-      sum.add(share * half_stiffness * (is_known ? energy : overlap_energy(first, second)));
+      found[k] = half_stiffness * (is_known ? energy : overlap_energy(first, second));
     }
+  }
+  return found;
+}
+
+/// The mean of both configurations, and what it adds to the energy that the steps keep (EnergyRow::excess).
+void add_normal(std::span<const double> before, std::span<const double> after, Terms &terms) {
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    terms.normal.add(0.5 * before[k]);
+    terms.normal.add(0.5 * after[k]);
+    const double step = std::sqrt(std::max(0.0, after[k])) - std::sqrt(std::max(0.0, before[k]));
+    terms.excess.add(0.5 * step * step);
   }
 }
 
@@ -261,7 +275,9 @@ Terms initial_terms(const Simulation &simulation) {
                                      deformable ? blocks.deformation_of(row).rate : Mat2{}));
   }
   add_strain(blocks, Moment::now, terms.strain);
-  add_normal(simulation, 1.0, terms.normal);
+  for (const double energy : normal_energies(simulation)) {
+    terms.normal.add(energy);
+  }
   add_stick(simulation, terms.stick);
   simulation.bolts().add_energies(1.0, terms.support);
   return terms;
@@ -271,6 +287,7 @@ Terms current_terms(Simulation &simulation) {
   Terms terms;
   const double time_step = simulation.plan().time_step;
   std::optional<ComingConfiguration> coming;
+  std::vector<double> coming_normal;
   simulation.look_ahead([&](const BlockSystem &blocks) {
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
       const BlockLedger &ledger = blocks.ledger[row];
@@ -284,13 +301,13 @@ Terms current_terms(Simulation &simulation) {
       terms.load_work.add(ledger.load + half.load + anchor_half_work(blocks, row));
     }
     add_strain(blocks, Moment::middle, terms.strain);
-    add_normal(simulation, 0.5, terms.normal);
+    coming_normal = normal_energies(simulation);
     add_bonds(simulation, terms.stick);
     simulation.bolts().add_energies_at(blocks, 0.5, terms.support);
     coming.emplace(blocks);
   });
   add_coming_stick(simulation, *coming, terms.stick);
-  add_normal(simulation, 0.5, terms.normal);
+  add_normal(normal_energies(simulation), coming_normal, terms);
   simulation.bolts().add_energies(0.5, terms.support);
   return terms;
 }
@@ -339,6 +356,7 @@ EnergyRow EnergyLedger::row(Simulation &simulation) const {
   row.kinetic = terms.kinetic.value();
   row.strain = terms.strain.value();
   row.contact_normal = terms.normal.value();
+  row.excess = terms.excess.value();
   row.contact_stick = terms.stick.value();
   row.gravity = terms.gravity.value();
   row.friction_loss = stick_at_start_ - terms.stick.value() - terms.shear_work.value();

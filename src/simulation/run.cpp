@@ -5,6 +5,7 @@
 #include "gcpdda/io/folder_lock.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/simulation/energy_ledger.hpp"
+#include "gcpdda/simulation/impact_watch.hpp"
 #include "gcpdda/simulation/results.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 #include "gcpdda/simulation/stop_signal.hpp"
@@ -112,6 +113,7 @@ private:
            !simulation_.stop_agreed()) {
       simulation_.begin_next_stage();
       ledger_->step_over(simulation_);
+      impacts_.forget();
       tell_of_bolts();
       if (simulation_.stage_is_over()) {
         log_stage();
@@ -263,12 +265,20 @@ private:
     const bool output_due = failed || ended || plan.output_due(step);
     const bool history_due = failed || ended || plan.history_due(step);
     if (!output_due && !history_due) {
+      if (impacts_.lacks_reference(simulation_)) {
+        const auto scope = simulation_.phases().measure(Phase::output);
+        impacts_.look(simulation_, ledger_->row(simulation_));
+        simulation_.forget_contact_digest();
+      }
       return;
     }
     const auto scope = simulation_.phases().measure(Phase::output);
     const double cpu_start = cpu_seconds();
     if (history_due && !failed) {          // the energies of a broken state say nothing
       energy_ = ledger_->row(simulation_); // first: frames take what it has seen of the contacts
+      if (const auto gain = impacts_.look(simulation_, energy_)) {
+        log_->diagnostic(warning_of(simulation_, *gain));
+      }
     }
     if (output_due) {
       const int index = num_frames_++;
@@ -458,6 +468,7 @@ private:
   std::optional<FrameWriter> frames_;
   std::optional<EnergyLedger> ledger_;
   std::optional<CheckpointWriter> checkpoints_;
+  ImpactWatch impacts_;
   EnergyRow energy_;
   int num_frames_ = 0;
   std::size_t num_notes_ = 0; ///< that have been told

@@ -190,6 +190,7 @@ struct EnergyRow {
   double max_speed = 0.0;
   double support = 0.0; ///< this and the next in scenes with bolts only
   double support_loss = 0.0;
+  double excess = 0.0; ///< at least so much is in contact_normal only because it is a mean; not written
 };
 
 /// One row of history/bolts.csv: largest values over the joints that one bolt crosses.

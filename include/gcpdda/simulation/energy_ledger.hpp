@@ -12,7 +12,9 @@
 //
 // contact_normal is the true potential of the contact pressure, (k_n/2) int_S (d_A + d_B) dA, not an
 // accumulated work: the residual shows what the time steps made of it, O(dt^2), plus the offset of O(dt^2)
-// between t_n and the middle. friction_loss is the work against friction
+// between t_n and the middle. The leapfrog of a linear spring keeps k d_n d_{n+1}/2, and the mean of both
+// energies is larger by k (d_{n+1} - d_n)^2/4 = (sqrt U_{n+1} - sqrt U_n)^2/2: the row's `excess`, by which
+// the residual is too large while contacts close or open. friction_loss is the work against friction
 // and bonds that is not stored in stick springs and bonds: what a broken bond held is in it. Bolts enter like
 // contact pressure, by their potential (support) and by what yielding and rupture have taken (support_loss),
 // as the means of both trial configurations.

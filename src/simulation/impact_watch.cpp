@@ -1,0 +1,182 @@
+#include "gcpdda/simulation/impact_watch.hpp"
+
+#include "gcpdda/base/exact_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+namespace gcpdda {
+
+namespace {
+
+/// Of impacts with less than this share of the largest kinetic energy so far nothing is told.
+constexpr double dust = 1e-3;
+/// A row is sharp if its residual is known to this share of the energies at hand.
+constexpr double sharp = 0.1 * ImpactWatch::worth_telling;
+constexpr int most_waits = 20;     ///< for a sharp row, where impacts follow each other without a pause
+constexpr double rounding = 1e-11; ///< of a residual, as a share of the terms in it
+
+/// A block that has changed its rank between two looks, as either of the ranks knows it.
+struct Migrant {
+  std::int64_t id = 0;
+  RigidDof velocity;
+  double mass = 0.0; ///< zero from the rank it has left
+  double inertia = 0.0;
+};
+
+double turned_energy(double mass, double inertia, const RigidDof &before, const RigidDof &after) {
+  const RigidDof change = after - before;
+  return 0.125 * (mass * dot(change.u, change.u) + inertia * change.r * change.r);
+}
+
+double size_of_terms(const EnergyRow &row) {
+  return row.kinetic + row.strain + row.contact_normal + row.contact_stick + std::abs(row.gravity) +
+         std::abs(row.friction_loss) + std::abs(row.damping_loss) + std::abs(row.boundary_work) +
+         row.support + std::abs(row.support_loss);
+}
+
+} // namespace
+
+// The row at t = 0 is not in the middle of two configurations; on the way to rest speeds and their energies
+// are not physical.
+bool ImpactWatch::sees(const Simulation &simulation) {
+  const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
+  return simulation.step_count() > 0 && stage.kind != StageKind::settle;
+}
+
+// Those that have changed ranks meet at the rank whose slab has their id.
+double ImpactWatch::turned_since_last_look(const Simulation &simulation) const {
+  const BlockSystem &blocks = simulation.blocks();
+  const Communicator &world = simulation.communicator();
+  ExactSum energy;
+  std::vector<std::vector<Migrant>> migrants(static_cast<std::size_t>(world.size()));
+  const auto send = [&](const Migrant &migrant) {
+    migrants[static_cast<std::size_t>(slab_owner(simulation.num_blocks(), world.size(), migrant.id))]
+        .push_back(migrant);
+  };
+  auto before = seen_.begin();
+  const auto send_those_below = [&](std::int64_t id) {
+    for (; before != seen_.end() && before->id.value < id; ++before) {
+      send({before->id.value, before->velocity, 0.0, 0.0});
+    }
+  };
+  for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+    const BlockProperties &block = blocks.properties[row];
+    if (block.keeps_its_velocity()) {
+      continue;
+    }
+    send_those_below(block.id.value);
+    if (before != seen_.end() && before->id == block.id) {
+      energy.add(turned_energy(block.mass, block.inertia, before->velocity, blocks.velocity[row]));
+      ++before;
+    } else {
+      send({block.id.value, blocks.velocity[row], block.mass, block.inertia});
+    }
+  }
+  send_those_below(simulation.num_blocks());
+  std::vector<Migrant> met;
+  for (const std::vector<Migrant> &from_rank : world.all_to_all(std::move(migrants))) {
+    met.insert(met.end(), from_rank.begin(), from_rank.end());
+  }
+  std::sort(met.begin(), met.end(), [](const Migrant &a, const Migrant &b) {
+    return std::pair(a.id, a.mass) < std::pair(b.id, b.mass);
+  });
+  for (std::size_t k = 0; k + 1 < met.size(); ++k) {
+    if (met[k].id == met[k + 1].id) {
+      energy.add(turned_energy(met[k + 1].mass, met[k + 1].inertia, met[k].velocity, met[k + 1].velocity));
+    }
+  }
+  world.sum(energy.limbs());
+  return energy.value();
+}
+
+void ImpactWatch::note(const Simulation &simulation, const EnergyRow &row) {
+  const BlockSystem &blocks = simulation.blocks();
+  damping_loss_ = row.damping_loss;
+  seen_.clear();
+  for (std::size_t k = 0; k < blocks.num_owned; ++k) {
+    if (!blocks.properties[k].keeps_its_velocity()) {
+      seen_.push_back({blocks.properties[k].id, blocks.velocity[k]});
+    }
+  }
+}
+
+void ImpactWatch::begin_at(const Simulation &simulation, Residual residual) {
+  has_reference_ = true;
+  is_suspected_ = false;
+  waits_ = 0;
+  root_ = 0.0;
+  damped_ = 0.0;
+  time_ = simulation.time();
+  residual_ = residual;
+}
+
+std::optional<ImpactGain> ImpactWatch::look(const Simulation &simulation, const EnergyRow &row) {
+  if (has_told_ || !sees(simulation)) {
+    return std::nullopt;
+  }
+  most_kinetic_ = std::max(most_kinetic_, row.kinetic);
+  const double per_step = simulation.plan().time_step * simulation.bound().omega_max;
+  const double most_excess = std::min(row.contact_normal, 0.5 * per_step * per_step * row.kinetic);
+  const Residual now{row.residual - std::max(row.excess, most_excess), row.residual - row.excess};
+  if (!has_reference_) {
+    note(simulation, row);
+    begin_at(simulation, now);
+    return std::nullopt;
+  }
+  root_ += std::sqrt(turned_since_last_look(simulation));
+  damped_ += std::max(0.0, row.damping_loss - damping_loss_);
+  const double energy = root_ * root_ + damped_;
+  note(simulation, row);
+  const bool is_sharp = now.high - now.low <= sharp * (row.kinetic + energy);
+  if (!is_sharp && ++waits_ <= most_waits) {
+    return std::nullopt; // impacts are under way
+  }
+  const double gain = std::max(0.0, now.low - residual_.high);
+  const double loss = std::max(0.0, residual_.low - now.high);
+  const ImpactGain found{time_, simulation.time(), gain - loss, energy};
+  const double least = std::max(worth_telling * energy, rounding * size_of_terms(row));
+  if (std::abs(found.gained) <= least || energy <= dust * most_kinetic_) {
+    begin_at(simulation, now);
+    return std::nullopt;
+  }
+  const bool is_last = simulation.stage_step() == simulation.plan().num_steps;
+  if (!std::exchange(is_suspected_, true) && !is_last) {
+    return std::nullopt;
+  }
+  has_told_ = true;
+  seen_ = {};
+  return found;
+}
+
+// The change falls with the square of the step. By chance it may have been small for its step: half of what
+// is allowed is aimed at, and no more than the step at which a square on a floor without friction stays below
+// it whatever the chance (W_max^2 = 4 W^2 there, so W_max = 0.4 gives W^2/4 = 0.01).
+Diagnostic warning_of(const Simulation &simulation, const ImpactGain &gain) {
+  const double share = std::abs(gain.gained) / gain.energy;
+  const double time_step = simulation.plan().time_step;
+  const StepBound &bound = simulation.bound();
+  const double longest = std::min(time_step * std::sqrt(0.5 * ImpactWatch::worth_telling / share),
+                                  bound.omega_max > 0.0 ? 0.4 / bound.omega_max : time_step);
+  const auto two_digits = [](double value) { // rounded down
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+    return std::floor(value / unit) * unit;
+  };
+  const std::string hint = simulation.scene().run.time_step > 0.0
+                               ? fmt::format("use run.time_step = {:.2g} or less", two_digits(longest))
+                               : fmt::format("use run.safety = {:.2g} or less",
+                                             two_digits(longest * bound.omega_max / bound.limit));
+  return {
+      Severity::warning,
+      {},
+      fmt::format("impacts between t = {:.6g} and {:.6g} s {} {:.3g} J/m, {:.2g} % of their energy of {:.3g} "
+                  "J/m, by the time step alone",
+                  gain.begin, gain.end, gain.gained > 0.0 ? "gained" : "lost", std::abs(gain.gained),
+                  100.0 * share, gain.energy),
+      "contacts close and open within a step, and the error falls with its square",
+      hint};
+}
+
+} // namespace gcpdda
