@@ -59,4 +59,9 @@ double largest_sag(const Scene &scene, const SizeSurvey &survey, double median_w
   return survey.densest * norm(scene.run.gravity) * height * height * (compliance + of_rock);
 }
 
+double corner_sinking(double load, double normal_stiffness, double tilt) {
+  const double nearer_edge = 1.0 / (std::sin(tilt) + std::cos(tilt));
+  return std::sqrt(2.0 * load * std::sin(2.0 * tilt) / (normal_stiffness * (1.0 + nearer_edge)));
+}
+
 } // namespace gcpdda

@@ -1,6 +1,8 @@
 #include "gcpdda/simulation/inspect.hpp"
 
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/base/exact_sum.hpp"
+#include "gcpdda/model/stiffness.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 #include "svg.hpp"
 
@@ -84,6 +86,20 @@ struct Oddity {
   }
 };
 
+/// The heaviest mobile block; of several the first.
+struct Heaviest {
+  double weight = 0.0; ///< N/m
+  double size = 0.0;   ///< sqrt of its area, m
+  std::int64_t block = -1;
+
+  void see(const Heaviest &other) {
+    if (other.block >= 0 &&
+        (block < 0 || other.weight > weight || (other.weight == weight && other.block < block))) {
+      *this = other;
+    }
+  }
+};
+
 /// Sharpest convex corner of a row, degrees.
 double sharpest_corner(const BlockSystem &blocks, std::size_t row) {
   const auto normal = blocks.of_row(blocks.reference_normal, row);
@@ -105,6 +121,7 @@ public:
     const BlockSystem &blocks = simulation_.blocks();
     num_mobile_ = total(communicator, static_cast<std::int64_t>(blocks.num_owned));
     partition();
+    weigh();
   }
 
   std::string report() {
@@ -174,8 +191,42 @@ private:
                                         : "",
                                     law.tangential_ratio,
                                     std::atan(law.tan_friction) * 180.0 / std::numbers::pi, law.cohesion));
+      text += sinking_line(law);
     }
     return text;
+  }
+
+  /// What the weight does to a flush joint and to a corner of this law, each alone under it.
+  std::string sinking_line(const JointLaw &law) {
+    if (heaviest_.block < 0 || !(heaviest_.weight > 0.0) || !(law.normal_stiffness > 0.0)) {
+      return "";
+    }
+    constexpr double deepest = 0.25 * std::numbers::pi; // both edges at 45 degrees
+    return line("",
+                fmt::format("under {:.3g} N/m, the weight of block '{}', a flush face of {:.3g} m closes by "
+                            "{:.3g} m and a right-angled corner sinks by {:.3g} m; under all mobile blocks, "
+                            "{:.3g} N/m, a corner by {:.3g} m",
+                            heaviest_.weight, block_name(simulation_.scene(), heaviest_.block),
+                            heaviest_.size, heaviest_.weight / (law.normal_stiffness * heaviest_.size),
+                            corner_sinking(heaviest_.weight, law.normal_stiffness, deepest), weight_of_all_,
+                            corner_sinking(weight_of_all_, law.normal_stiffness, deepest)));
+  }
+
+  void weigh() {
+    const BlockSystem &blocks = simulation_.blocks();
+    const double gravity = norm(simulation_.scene().run.gravity);
+    ExactSum sum;
+    Heaviest mine;
+    for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+      const BlockProperties &block = blocks.properties[row];
+      sum.add(block.mass * gravity);
+      mine.see({block.mass * gravity, std::sqrt(block.area), block.id.value});
+    }
+    communicator_.sum(sum.limbs());
+    weight_of_all_ = sum.value();
+    for (const auto &other : communicator_.all_gather(std::vector<Heaviest>{mine})) {
+      heaviest_.see(other[0]);
+    }
   }
 
   std::string step_lines() {
@@ -434,6 +485,8 @@ private:
   DomainMap map_;
   PartitionReport partition_;
   std::int64_t num_mobile_ = 0;
+  Heaviest heaviest_;
+  double weight_of_all_ = 0.0; ///< of all mobile blocks, N/m
   std::int64_t touching_ = 0;
 };
 

@@ -215,6 +215,45 @@ TEST(InspectPlan, TellsWhatTheDampingOfAStageCosts) {
   EXPECT_EQ(word_after(by_stage, "without it the step would be "), word_after(line, " s, ")) << line;
 }
 
+// A square balanced on its corner and one flush on its face, which take up their weight as gravity rises and
+// are damped: each ends as deep as inspect says. The weight lets them swing by a few (T/ramp)^2 = (0.03/1)^2
+// of the depth, and the flush joint closes by d/(2 l) = 1e-5 more than its linear law.
+TEST(InspectPlan, TellsHowDeepACornerSinks) {
+  const WorkFolder folder;
+  const double half = std::sqrt(0.5);
+  folder.write(
+      "corner.toml",
+      "[run]\nduration = 2.0\ngravity_ramp = 1.0\nfidelity = \"rigid\"\ncontact_damping = "
+      "0.3\n[material.rock]\ndensity = 2600.0\n[joint.default]\nnormal_stiffness = 1e9\n"
+      "friction_angle_deg = 30\n[output]\ninterval = 0.1\n" +
+          block_toml("floor", rectangle({-9.0, -2.0}, {9.0, 0.0}), "fixed = true") +
+          block_toml("flush", rectangle({-3.0, 0.0}, {-2.0, 1.0})) +
+          block_toml("corner", {{2.0, 0.0}, {2.0 + half, half}, {2.0, 2.0 * half}, {2.0 - half, half}}) +
+          "[[monitor]]\nblock = \"flush\"\n[[monitor]]\nblock = \"corner\"\n");
+  const std::string told = run_gcpdda(0, {"inspect", "corner.toml"}, folder).out;
+  ASSERT_EQ(run_gcpdda(0, {"run", "corner.toml", "--out", "out"}, folder).exit_code, 0);
+  const auto sunk = [&](const std::string &block) {
+    const auto height = [](const std::string &row) {
+      const std::size_t second = row.find(',', row.find(',') + 1) + 1;
+      return std::stod(row.substr(second));
+    };
+    const std::vector<std::string> rows = lines_of(file_text(folder / ("out/history/" + block + ".csv")));
+    return height(rows.at(1)) - height(rows.back());
+  };
+  const double weight = 2600.0 * gravity;
+  EXPECT_NEAR(number(told, "under (\\S+) N/m, the weight of block '(?:flush|corner)'"), weight,
+              three_digits * weight)
+      << told;
+  EXPECT_NEAR(number(told, "closes by (\\S+) m"), weight / 1e9, three_digits * weight / 1e9);
+  EXPECT_NEAR(number(told, "closes by (\\S+) m"), sunk("flush"), three_digits * sunk("flush"));
+  const double corner = number(told, "right-angled corner sinks by (\\S+) m");
+  EXPECT_NEAR(corner, sunk("corner"), three_digits * corner);
+  EXPECT_GT(corner, 100.0 * sunk("flush"));
+  // Both blocks on one corner: the square root of twice the load.
+  EXPECT_NEAR(number(told, "N/m, a corner by (\\S+) m"), std::sqrt(2.0) * corner,
+              2.0 * three_digits * corner);
+}
+
 TEST_F(Inspect, TellsSubdomainsAndCosts) {
   EXPECT_TRUE(std::regex_search(outcome_.out, std::regex("subdomains +4 by [^:]+: [01] to [2-5] blocks each, "
                                                          "imbalance of the work [0-9.]+\n")))

@@ -5,6 +5,7 @@
 #include "support/thinning.hpp"
 
 #include "gcpdda/geometry/polygon.hpp"
+#include "gcpdda/model/stiffness.hpp"
 
 #include <gtest/gtest.h>
 
@@ -192,6 +193,21 @@ TEST(Overlap, FlushJointMatchesItsFormula) {
     EXPECT_NEAR(contact_of(block, equal).force.y, 2.0 * 1.5 * depth * (1.0 - depth / 1.5), tolerance);
     EXPECT_NEAR(contact_of(block, wide).force.x, 0.0, tolerance);
     EXPECT_NEAR(torque_about(contact_of(block, wide), {0.75, 1.0}), 0.0, 2.0 * tolerance);
+  }
+}
+
+// A right-angled corner of a block that rocks, k_n = 2: from almost flush on one face to almost on the other.
+TEST(Overlap, OfARightAngledCornerIsWhatItsSinkingSays) {
+  const Shape plane = shape_of(rectangle({-10.0, -4.0}, {10.0, 0.0}));
+  for (const double tilt : {1.0, 10.0, 30.0, 45.0, 70.0, 89.0}) {
+    const Vec2 along{std::cos(tilt * degree), std::sin(tilt * degree)};
+    for (const double depth : {1e-4, 3e-3}) {
+      const Vec2 tip{0.0, -depth};
+      const Shape block = shape_of({tip, tip + along, tip + along + perp(along), tip + perp(along)});
+      const double load = contact_of(block, plane).force.y;
+      // The cut edges are rounded by an epsilon of the block's size.
+      EXPECT_NEAR(corner_sinking(load, 2.0, tilt * degree), depth, 200.0 * epsilon) << tilt << " degrees";
+    }
   }
 }
 

@@ -43,4 +43,17 @@ void resolve_stiffness(Scene &scene, const SizeSurvey &survey, double median_siz
 /// @param median_width  b, of the surveyed blocks, m
 double largest_sag(const Scene &scene, const SizeSurvey &survey, double median_width);
 
+/// How deep a right-angled corner of a rigid block sinks into a flat face under a load (N/m) along the face's
+/// normal, m. Let its two edges stand at the angles a = tilt and 90 degrees - a to the face, and let it be h
+/// deep: the face is cut over the width w = h (cot a + tan a) = 2 h/sin 2a. On both edges the pressure is
+/// (k_n/2) times the depth, (k_n/2) h w/2 over the width; on the face it is (k_n/2) times the distance to the
+/// nearer edge, which rises from both ends to w sin a cos a/(sin a + cos a) = h/(sin a + cos a). Together
+///
+///     load = (k_n h^2/2) (1 + 1/(sin a + cos a))/sin 2a,
+///
+/// at 45 degrees k_n h^2 (1 + 1/sqrt(2))/2, where it sinks deepest: 1.08 sqrt(load/k_n). A flush joint of
+/// length l closes by load/(k_n l), which is less wherever that is thin against l.
+/// @param tilt  rad, between 0 and a right angle
+double corner_sinking(double load, double normal_stiffness, double tilt);
+
 } // namespace gcpdda
