@@ -5,6 +5,24 @@
 
 namespace gcpdda {
 
+namespace {
+
+/// What to try where blocks move too far in a step, with values that differ from those of this run.
+std::string words_on_shorter_step(const Simulation &simulation) {
+  const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
+  const double shorter = std::min(0.5 * simulation.plan().time_step, simulation.bound().time_step);
+  const std::string step = fmt::format("run.time_step = {:.2g}", shorter);
+  if (stage.kind != StageKind::settle) {
+    return step;
+  }
+  const std::string name = simulation.is_staged() ? fmt::format("in stage '{}' ", stage.name) : "";
+  return stage.kinetic_damping
+             ? fmt::format("local_damping = 0.8 {}in place of kinetic_damping, or {}", name, step)
+             : fmt::format("kinetic_damping = true {}in place of local_damping, or {}", name, step);
+}
+
+} // namespace
+
 std::string fault_message(const Simulation &simulation) {
   const Fault &fault = *simulation.fault();
   const auto name = [&](BlockId id) { return block_name(simulation.scene(), id.value); };
@@ -13,17 +31,17 @@ std::string fault_message(const Simulation &simulation) {
   case Fault::Cause::too_deep:
     return fmt::format(
         "{}: overlaps block '{}' by {:.4g} m, deeper than half the narrowest width {:.4g} m, where the "
-        "contact force reverses; try a larger joint.normal_stiffness or a smaller run.time_step",
-        where, name(fault.other), fault.value, fault.limit);
+        "contact force reverses; try a larger joint.normal_stiffness, or {}",
+        where, name(fault.other), fault.value, fault.limit, words_on_shorter_step(simulation));
   case Fault::Cause::too_fast:
     return fmt::format(
         "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "
-        "could pass through a block; try a smaller run.time_step",
-        where, fault.value, fault.limit);
+        "could pass through a block; try {}",
+        where, fault.value, fault.limit, words_on_shorter_step(simulation));
   case Fault::Cause::not_finite:
     break;
   }
-  return fmt::format("{}: its state is no longer finite; try a smaller run.time_step", where);
+  return fmt::format("{}: its state is no longer finite; try {}", where, words_on_shorter_step(simulation));
 }
 
 std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_error) {

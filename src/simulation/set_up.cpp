@@ -393,10 +393,11 @@ void Simulation::find_bound() {
                       "use run.contact_time = \"leapfrog\" for results"});
   }
   // On the way to rest nothing needs to be accurate, only stable. Under scaled masses every block swings at
-  // the bound, and a step as long keeps the pile awake.
+  // the bound, and a step as long keeps the pile awake. A safety below the default asks for a short step.
   constexpr double safety_to_settle = 0.9;
   const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
-  const bool settles = stage.kind == StageKind::settle && !stage.mass_scaling;
+  const bool settles =
+      stage.kind == StageKind::settle && !stage.mass_scaling && scene_.run.safety >= RunSettings{}.safety;
   bound_.safety = settles ? std::max(scene_.run.safety, safety_to_settle) : scene_.run.safety;
   const double locally_damped =
       stability_limit(scheme_, bound_.damping_ratio, stage.local_damping_or(scene_.run.local_damping));

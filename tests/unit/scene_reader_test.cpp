@@ -324,7 +324,7 @@ TEST(SceneReference, HasARowForEveryKey) {
   for (const char *line :
        {"\n## [run]\n", "\n## [material.NAME]\n", "\n## [[block.load]]\n",
         "\n| `safety` | number |  | `0.55` | above 0 and at most 1 | Fraction of the stability bound that "
-        "\"auto\" takes. | `safety = 0.55` |\n",
+        "\"auto\" takes. Settle stages take 0.9, unless safety is below 0.55. | `safety = 0.55` |\n",
         "\n| `density` | number | kg/m3 | required | above 0 and at most 1e+12 | Density. | `density = "
         "2600.0` "
         "|\n",

@@ -128,6 +128,18 @@ TEST(Stages, APyramidSettlesAtTheStepTheProgramTakes) {
   }
 }
 
+// Where a stage settles the step need not be accurate; a safety below the default is heeded all the same.
+TEST(Stages, ASettleStageTakesLongStepsUnlessShortOnesAreAskedFor) {
+  const std::string toml = stack(2) + "[[stage]]\nkind = \"settle\"\nlimit = 10.0\nlocal_damping = 0.0\n";
+  for (const auto &[given, taken] : {std::pair{0.25, 0.25}, {0.55, 0.9}, {0.7, 0.9}}) {
+    const Simulation simulation(Communicator::self(), scene_of(toml, {fmt::format("run.safety={}", given)}));
+    const StepBound &bound = simulation.bound();
+    EXPECT_EQ(bound.safety, taken);
+    EXPECT_EQ(bound.time_step, taken * bound.limit / bound.omega_max);
+    EXPECT_LE(simulation.plan().time_step, bound.time_step);
+  }
+}
+
 const std::string settle_kinetically = settle + "kinetic_damping = true\n";
 
 // Sudden gravity on a touching block: half a swing about the overlap that bears it, fastest in its middle.

@@ -108,5 +108,46 @@ TEST(LocalDamping, OfDeformableBlocksTakesEnergyInEveryStep) {
   }
 }
 
+double damping_work(const BlockSystem &blocks) {
+  double sum = 0.0;
+  for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+    sum += blocks.ledger[row].damping;
+  }
+  return sum;
+}
+
+// Every stop takes energy; nothing else stands in the work of damping.
+TEST(KineticDamping, OfDeformableBlocksTakesEnergyAtEveryStop) {
+  for (const char *elasticity : {"implicit", "explicit"}) {
+    for (const double youngs_modulus : {1e9, 1e10, 1e11, 1e12}) {
+      for (const double friction_deg : {0.0, 35.0}) {
+        Simulation simulation(
+            Communicator::self(),
+            scene_of(pile_toml(youngs_modulus, friction_deg, fmt::format("elasticity = \"{}\"", elasticity),
+                               "kinetic_damping = true")));
+        const std::string problem =
+            fmt::format("pile, {} elasticity, E = {:g} Pa, kinetic damping, friction {}", elasticity,
+                        youngs_modulus, friction_deg);
+        double before = 0.0;
+        double largest = -std::numeric_limits<double>::infinity();
+        int stops = 0;
+        while (!simulation.finished() && !simulation.fault()) {
+          step(simulation);
+          const double work = damping_work(simulation.blocks());
+          if (work != before) {
+            largest = std::max(largest, work - before);
+            ++stops;
+          }
+          before = work;
+        }
+        EXPECT_FALSE(simulation.fault()) << problem;
+        EXPECT_EQ(simulation.stage().verdict, Verdict::settled) << problem;
+        EXPECT_GT(stops, 3) << problem;
+        expect_below(problem + ": largest work of a stop, J/m", 0.0, largest);
+      }
+    }
+  }
+}
+
 } // namespace
 } // namespace gcpdda::testing::local_damping_test
