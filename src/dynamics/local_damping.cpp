@@ -7,7 +7,7 @@
 // only after the step; in a mode that the step does not resolve that of the step before alternates with the
 // step, v_n differs in sign from the motion over which the force does work, and up to half of |d| |dx*| is
 // gained in a step. The damping of a deformable block is therefore dry friction, found together with the
-// step. Scenes see the trial configurations x* alone (scheme.hpp). Over them a force d_n does the work
+// step. Contacts see the trial configurations x* alone (scheme.hpp). Over them a force d_n does the work
 //     d_n . (x*_{n+1} - x*_{n-1})/2 = dt d_n . w,    w = (w- + w+)/2,
 // w- and w+ the rates behind and ahead; this is the trapezoid of the energy ledger. The step is linear in a
 // force, A da' = d with the matrix A of the block's step (own mass and, implicitly, its springs), and
@@ -32,6 +32,8 @@
 // motion that it takes nothing from has z_i = 0 always: one that alternates with the step, w+ = -w-, held
 // where |w- + (dt/2) f/m| <= a (dt/2) |f|/m. With f/m = -W^2 x/dt^2, x alternating between +-dt w-/2, this is
 // |1 - W^2/4| <= a W^2/4, or W >= 2/sqrt(1 + a). Below it, the limit of rigid blocks too, all comes to rest.
+// (From W^2 = 2/(1 + a) on one more motion loses nothing, x* = 0, X, 0, -X. What lies beside it, x* = e in
+// place of 0, takes 2 a W^2 e from X in every four steps.)
 
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/dynamics/integrate.hpp"

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -317,6 +319,64 @@ TEST(LocalDamping, OfADeformableBlockIsFriction) {
                     rounding);
       }
     }
+  }
+}
+
+/// The swing of a block on a spring, W = omega dt.
+struct Swing {
+  double last = 0.0; ///< size at the end over that at the start
+  double rise = 0.0; ///< largest of w^2 + W^2 x (x + w) in a step over its value, w the way to the next x*
+};
+Swing swing_of(double w, double share, double phase) {
+  constexpr double time_step = 1e-3;
+  BlockSystem system = one_block();
+  const double spring = w * w * system.properties[0].mass / (time_step * time_step);
+  const Scheme scheme = make_scheme(SchemeKind::generalized_alpha, 0.5, ContactTime::leapfrog);
+  system.displacement[0].u.x = std::cos(phase);
+  system.velocity[0].u.x = w / time_step * std::sin(phase);
+  system.trial[0].u.x = next_trial(system, scheme, -time_step, 0).motion.u.x;
+  Swing swing;
+  double before = 0.0;
+  for (int k = 0; k < 5000; ++k) {
+    const double x = system.trial[0].u.x;
+    predict(system, scheme, time_step);
+    const double way = system.trial[0].u.x - x;
+    const double kept = way * way + w * w * x * (x + way);
+    if (k > 1) { // a_0 = 0 does not belong to the spring
+      swing.rise = std::max(swing.rise, kept / before - 1.0);
+    }
+    before = kept;
+    if (kept < 1e-200) {
+      break;
+    }
+    swing.last = std::hypot(x, way / w);
+    system.contact[0] = {{{-spring * system.trial[0].u.x, 0.0}, 0.0}, {}, {}};
+    system.deformation[0].contact = {};
+    EXPECT_FALSE(solve_and_update(system, {.local_damping = share}, scheme, time_step, Elasticity::implicit));
+  }
+  return swing;
+}
+
+// What the leapfrog keeps never rises, up to the limit of the scheme: to the rounding of its terms, which
+// near W = 2 cancel to 1 - W^2/4. At 0.9 of the limit of damped scenes all comes to rest; above that limit
+// what alternates with the step goes on.
+TEST(LocalDamping, DeformableBlocksComeToRestBelowItsLimitAndNeverGrow) {
+  const Scheme scheme = make_scheme(SchemeKind::generalized_alpha, 0.5, ContactTime::leapfrog);
+  for (const double share : {0.3, 0.8, 0.9}) {
+    const double limit = stability_limit(scheme, 0.0, share);
+    double goes_on = 0.0;
+    for (int k = 0; k < 12; ++k) {
+      for (const double w : {0.1, 0.5 * limit, 0.9 * limit, 1.05 * limit, 1.95}) {
+        const Swing swing = swing_of(w, share, 0.5 * k);
+        EXPECT_LT(swing.rise, 1e-12) << share << ' ' << w << ' ' << k;
+        if (w < limit) {
+          EXPECT_LT(swing.last, 1e-3) << share << ' ' << w << ' ' << k;
+        } else {
+          goes_on = std::max(goes_on, swing.last);
+        }
+      }
+    }
+    EXPECT_GT(goes_on, 0.1) << share;
   }
 }
 
