@@ -85,14 +85,19 @@ private:
 
   void read_velocity_table(const Section &section, SceneBlock &block) {
     section.read("velocity_table", block.velocity_table);
-    const toml::node *node = section.sound("velocity_table");
-    if (node == nullptr) {
-      return;
+    if (section.sound("velocity_table") != nullptr) {
+      expect_rising_times(section, "velocity_table", block.velocity_table);
+      block.velocity = block.velocity_table[0].velocity;
     }
-    const std::vector<VelocityRow> &rows = block.velocity_table;
+  }
+
+  /// @param rows  of that table, which is sound
+  template <class Row>
+  void expect_rising_times(const Section &section, const char *key, const std::vector<Row> &rows) {
+    const toml::array &nodes = *section.sound(key)->as_array();
     const auto time_fault = [&](std::size_t i, std::string why, std::string hint) {
-      fault((*(*node->as_array())[i].as_array())[0],
-            fmt::format("row {} of 'velocity_table' in {} has the time {}", i, section.label(), rows[i].time),
+      fault((*nodes[i].as_array())[0],
+            fmt::format("row {} of {} has the time {}", i, section.subject(key), rows[i].time),
             std::move(why), std::move(hint));
     };
     if (rows[0].time != 0.0) {
@@ -104,7 +109,6 @@ private:
                    "order the rows by time");
       }
     }
-    block.velocity = rows[0].velocity;
   }
 
   void check_prescribed(const Section &section, const SceneBlock &block) {
@@ -182,6 +186,16 @@ private:
     PointLoad load;
     section.read("point", load.point);
     section.read("force", load.force);
+    section.read("ramp", load.ramp);
+    section.read("table", load.table);
+    if (section.sound("table") != nullptr) {
+      expect_rising_times(section, "table", load.table);
+    }
+    if (const toml::node *ramp = section.given("ramp");
+        ramp != nullptr && section.given("table") != nullptr) {
+      fault(*ramp, section.label() + " has both ramp and table", "each says how its force changes with time",
+            "leave one of them out");
+    }
     if (const toml::node *point = section.sound("point"); point != nullptr && has_outline) {
       expect_in_block(*point, block, load.point, fmt::format("the point of {}", section.label()));
     }

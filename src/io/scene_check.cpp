@@ -124,7 +124,9 @@ private:
     case Kind::vector3:
       return check_array(row, node, who, 3);
     case Kind::velocity_table:
-      return check_velocity_table(row, node, who);
+      return check_time_table(row, node, who, "[t, vx, vy, omega]", 4);
+    case Kind::factor_table:
+      return check_time_table(row, node, who, "[t, factor]", 2);
     case Kind::names_or_blanks:
       return check_names_or_blanks(row, node, who);
     case Kind::points:
@@ -312,18 +314,19 @@ private:
     return sound;
   }
 
-  bool check_velocity_table(const Key &row, const toml::node &node, const std::string &who) {
+  bool check_time_table(const Key &row, const toml::node &node, const std::string &who, const char *columns,
+                        std::size_t num_columns) {
     const toml::array *rows = node.as_array();
     if (rows == nullptr) {
-      return wrong_type(row, node, who, "an array of rows [t, vx, vy, omega]");
+      return wrong_type(row, node, who, fmt::format("an array of rows {}", columns));
     }
-    if (rows->empty() || rows->size() > most_velocity_rows) {
+    if (rows->empty() || rows->size() > most_table_rows) {
       return fault(node, fmt::format("{} has {} rows", who, rows->size()),
-                   fmt::format("it must have 1 to {}", most_velocity_rows), example_of(row));
+                   fmt::format("it must have 1 to {}", most_table_rows), example_of(row));
     }
     bool sound = true;
     for (std::size_t i = 0; i < rows->size(); ++i) {
-      sound &= check_array(row, (*rows)[i], fmt::format("row {} of {}", i, who), 4);
+      sound &= check_array(row, (*rows)[i], fmt::format("row {} of {}", i, who), num_columns);
     }
     return sound;
   }

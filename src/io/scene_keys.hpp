@@ -29,6 +29,7 @@ enum class Kind {
   points,         ///< list of [x, y]
   polygon,        ///< the same, at least three
   velocity_table, ///< list of [t, vx, vy, omega]
+  factor_table,   ///< list of [t, factor]
   count,          ///< integer, or a real number that is one
   names,          ///< list of names
   assignments     ///< table of dotted paths and their values
@@ -63,7 +64,7 @@ struct Key {
 
 inline constexpr std::size_t most_blocks = 10'000; ///< and other tables of one list
 inline constexpr std::size_t most_vertices = 10'000;
-inline constexpr std::size_t most_velocity_rows = 100'000;
+inline constexpr std::size_t most_table_rows = 100'000;
 inline constexpr std::size_t longest_name = 100;
 inline constexpr std::size_t longest_text = 4096;
 /// Of inline blocks, generators and block file together: ids fit 32 bits, which METIS and VTK count with.

@@ -116,6 +116,12 @@ void add_rollers(const SceneSource &source, Scene &scene);
 /// The sides of the region where the in-situ stress, which has been read, acts from outside.
 void read_stressed_sides(const SceneSource &source, Scene &scene);
 
+/// What a stage makes of the stress on sides of the region, which has been read: it must push, and act
+/// somewhere before or after.
+/// @param where  what the stage sets of it
+void check_changed_stress(const SceneSource &source, const toml::source_region &where, const Scene &scene,
+                          const InSituStress &before);
+
 /// The viscous sides of [earthquake], the rest of which has been read.
 void read_viscous_sides(const SceneSource &source, Scene &scene);
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 
 namespace gcpdda {
 
@@ -80,6 +81,7 @@ struct Text {
 /// set. Moved values leave a copy of the tree that is no longer good: each stage takes a new one.
 void read_changes(const Text &text, Faults &faults, Scene &scene) {
   std::vector<bool> could_move;
+  InSituStress stress = scene.in_situ;
   Scene start = scene;
   hold_where_they_are(start, could_move);
   for (std::size_t last = 0; last < scene.stages.size(); ++last) {
@@ -90,12 +92,16 @@ void read_changes(const Text &text, Faults &faults, Scene &scene) {
     }
     toml::array *stages = (*root)["stage"].as_array();
     bool changes = false;
+    std::optional<toml::source_region> stress_set; // in this stage
     for (std::size_t k = 0; k <= last; ++k) {
       const toml::table *stage = (*stages)[k].as_table();
       toml::table *set = stage == nullptr ? nullptr : (*stages)[k].as_table()->get_as<toml::table>("set");
       changes = set != nullptr;
       for (auto entry = set == nullptr ? toml::table::iterator() : set->begin();
            changes && entry != set->end(); ++entry) {
+        if (k == last && sets_stress(entry->first.str())) {
+          stress_set = entry->first.source();
+        }
         apply_change(*root, entry->first, entry->second, own);
       }
     }
@@ -104,7 +110,17 @@ void read_changes(const Text &text, Faults &faults, Scene &scene) {
     }
     auto after = std::make_shared<Scene>();
     const FaultyNodes faulty = check_keys(*root, own);
-    read_parts({*root, faulty, own}, text.file, *after);
+    const SceneSource source{*root, faulty, own};
+    read_parts(source, text.file, *after);
+    if (stress_set) {
+      after->in_situ = read_in_situ(source, *after);
+      read_stressed_sides(source, *after);
+      if (after->in_situ.present) { // else it has been told
+        check_changed_stress(source, *stress_set, *after, stress);
+      }
+      stress = after->in_situ;
+      scene.stages[last].changes_stress = true;
+    }
     faults.add_new(own);
     hold_where_they_are(*after, could_move);
     scene.stages[last].after = std::move(after);

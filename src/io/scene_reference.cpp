@@ -67,6 +67,8 @@ std::string_view type_of(const Key &key) {
     return "list of at least 3 points";
   case Kind::velocity_table:
     return "list of rows of four numbers";
+  case Kind::factor_table:
+    return "list of rows of two numbers";
   case Kind::count:
     return "integer";
   case Kind::assignments:

@@ -78,6 +78,15 @@ void Section::read(std::string_view key, std::vector<VelocityRow> &value) const 
   }
 }
 
+void Section::read(std::string_view key, std::vector<LoadRow> &value) const {
+  const toml::node *node = sound(key);
+  const toml::array *rows = node == nullptr ? nullptr : node->as_array();
+  for (std::size_t i = 0; rows != nullptr && i < rows->size(); ++i) {
+    const toml::array &row = *(*rows)[i].as_array();
+    value.push_back({as_number(row[0]), as_number(row[1])});
+  }
+}
+
 void Section::read(std::string_view key, std::int64_t &value) const {
   if (const toml::node *node = sound(key)) {
     value = static_cast<std::int64_t>(as_number(*node));

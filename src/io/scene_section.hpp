@@ -49,6 +49,7 @@ public:
   void read(std::string_view key, std::array<double, 3> &value) const;
   void read(std::string_view key, std::vector<Vec2> &value) const;
   void read(std::string_view key, std::vector<VelocityRow> &value) const;
+  void read(std::string_view key, std::vector<LoadRow> &value) const;
   void read(std::string_view key, std::int64_t &value) const;
   /// The tables of a list below; none if the list as a whole is at fault.
   [[nodiscard]] std::vector<Section> list(std::string_view key) const;

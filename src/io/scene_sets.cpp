@@ -211,10 +211,26 @@ bool can_change(const Path &path) {
   if (path.front() == "bolt" || path.front() == "bolt_pattern") {
     return path.size() > 2 && is_one_of({"active"});
   }
+  if (path.front() == "in_situ") {
+    return path.size() == 1 || (path.size() == 2 && find_key("in_situ", last) != nullptr);
+  }
+  if (path.front() == "region") {
+    return path.size() == 2 && is_one_of({"stress"});
+  }
   return path.front() == "block" && path.size() > 2 && is_one_of({"fixed", "load"});
 }
 
 } // namespace
+
+bool sets_stress(std::string_view dotted) {
+  const auto path = split(trimmed(dotted));
+  return path && (path->front() == "in_situ" || path->front() == "region");
+}
+
+bool sets_load(std::string_view dotted) {
+  const auto path = split(trimmed(dotted));
+  return path && path->front() == "block" && path->back() == "load";
+}
 
 std::optional<toml::table> parse_scene(std::string_view text, Faults &faults) {
   return parse(text, nullptr, faults);
@@ -263,10 +279,11 @@ void apply_set(toml::table &root, const std::string &set, std::size_t index, Fau
 void apply_change(toml::table &root, const toml::key &dotted, toml::node &value, Faults &faults) {
   const auto path = split(trimmed(dotted.str()));
   if (!path || !can_change(*path)) {
-    faults.add(dotted.source(), fmt::format("a stage cannot set '{}'", shown(dotted.str())),
-               "it sets values of joints, materials, water and support, block.NAME.fixed, block.NAME.load, "
-               "bolt.NAME.active, bolt_pattern.NAME.active and some of [run]",
-               "for example set = { \"joint.default.friction_angle_deg\" = 25.0 }");
+    faults.add(
+        dotted.source(), fmt::format("a stage cannot set '{}'", shown(dotted.str())),
+        "it sets values of joints, materials, water and support, in_situ.KEY, region.stress, "
+        "block.NAME.fixed, block.NAME.load, bolt.NAME.active, bolt_pattern.NAME.active and some of [run]",
+        "for example set = { \"joint.default.friction_angle_deg\" = 25.0 }");
     return;
   }
   Path below = *path;
@@ -284,9 +301,13 @@ void apply_change(toml::table &root, const toml::key &dotted, toml::node &value,
       next = table->get(below.front());
     }
     if (next == nullptr || !next->is_table()) {
+      const bool is_whole = below.size() == path->size() && !is_named_list(path->front()) &&
+                            (path->front() == "in_situ" || path->front() == "region");
       faults.add(dotted.source(),
                  fmt::format("'{}' names no {} of the scene", shown(dotted.str()), path->front()),
-                 fmt::format("[{}.{}] is not there", path->front(), shown(below.front())), "check the name");
+                 is_whole ? fmt::format("[{}] is not there", path->front())
+                          : fmt::format("[{}.{}] is not there", path->front(), shown(below.front())),
+                 is_whole ? "write the table into the scene" : "check the name");
       return;
     }
     table = next->as_table();

@@ -22,4 +22,9 @@ void apply_set(toml::table &root, const std::string &set, std::size_t index, Fau
 /// @param value  moved into the tree
 void apply_change(toml::table &root, const toml::key &path, toml::node &value, Faults &faults);
 
+/// Is the path of a change that of a value by which stress acts on sides of the region, or of loads of a
+/// block?
+bool sets_stress(std::string_view path);
+bool sets_load(std::string_view path);
+
 } // namespace gcpdda::scene_text

@@ -9,7 +9,9 @@
 // Viscous sides (dynamics/viscous_sides.hpp) let waves out.
 //
 // Stress: the traction -C n of the in-situ compression C on the edges that lie on the side at t = 0. It stays
-// what it is whatever moves, as the weight of far rock does.
+// what it is whatever moves, as the weight of far rock does, until a stage changes C or the sides. C then
+// says what the far rock does: sides under stress follow it, sides that are held bear what equilibrium asks
+// of them, and what is in the blocks follows by equilibrium alone.
 
 #include "scene_parts.hpp"
 
@@ -20,6 +22,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace gcpdda::scene_text {
 
@@ -148,6 +151,34 @@ void read_stressed_sides(const SceneSource &source, Scene &scene) {
           "the one of [in_situ] does, which is missing", "for example [in_situ] with level = 100.0");
     } else {
       scene.in_situ.boundaries.push_back(boundary_along(named.side, bounding_box(scene.region.outline)));
+    }
+  }
+}
+
+// C is linear along a side and its least principal value concave in it: the least one is at an end.
+void check_changed_stress(const SceneSource &source, const toml::source_region &where, const Scene &scene,
+                          const InSituStress &before) {
+  const InSituStress &stress = scene.in_situ;
+  if (stress.boundaries.empty() && before.boundaries.empty()) {
+    source.faults.add(
+        where, "the change of stress acts on nothing",
+        "it acts on the sides of [region] that are under stress, and blocks follow by equilibrium",
+        "name sides in region.stress, for example stress = [\"top\"]");
+    return;
+  }
+  const Aabb box = bounding_box(scene.region.outline);
+  for (const Boundary &side : stress.boundaries) {
+    for (const Vec2 corner : {box.low, Vec2{box.high.x, box.low.y}, box.high, Vec2{box.low.x, box.high.y}}) {
+      const PrincipalValues values = principal_values(stress.compression_at(corner));
+      constexpr double rounding = 1e-9;
+      if (side.holds(corner) && values.least < -rounding * std::abs(values.largest)) {
+        source.faults.add(where,
+                          fmt::format("the stress would pull at [{}, {}] with {:.3g} Pa", corner.x, corner.y,
+                                      -values.least),
+                          "a side of [region] under stress is only pushed",
+                          "raise in_situ.level or in_situ.vertical_stress");
+        return;
+      }
     }
   }
 }

@@ -3,6 +3,7 @@
 #include "edit_distance.hpp"
 #include "scene_outline.hpp"
 #include "scene_parts.hpp"
+#include "scene_sets.hpp"
 
 #include "gcpdda/model/generators.hpp"
 
@@ -79,6 +80,8 @@ public:
     section.read("local_damping", stage.local_damping);
     section.read("mass_scaling", stage.mass_scaling);
     section.read("relax", stage.relax);
+    section.read("ramp", stage.ramp);
+    expect_ramped(section);
     expect_end(section, stage.kind);
     if (index == 0 && (!stage.takes_steps() || section.given("set") != nullptr)) {
       fault(section.source(), section.label() + " changes the scene before anything has happened",
@@ -118,6 +121,23 @@ private:
               fmt::format("it belongs to stages of kind {}", kinds_text(belongs.kinds)), "leave it out");
       }
     }
+  }
+
+  void expect_ramped(const Section &section) {
+    const toml::node *ramp = section.given("ramp");
+    const toml::node *set = section.given("set");
+    const toml::table *changes = set == nullptr ? nullptr : set->as_table();
+    if (ramp == nullptr ||
+        (changes != nullptr && std::any_of(changes->begin(), changes->end(), [](auto entry) {
+           return sets_stress(entry.first.str()) || sets_load(entry.first.str());
+         }))) {
+      return;
+    }
+    fault(ramp->source(), section.subject("ramp") + " has no meaning",
+          "it belongs to stages that set in_situ.KEY, region.stress or block.NAME.load: everything else "
+          "changes "
+          "at once",
+          "leave it out");
   }
 
   void expect_end(const Section &section, StageKind kind) {

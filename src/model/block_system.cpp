@@ -46,7 +46,7 @@ void append_deformation(BlockSystem &system, const Moments &moments, const Mater
 
 void append_attachments(BlockSystem &system, const SceneBlock &block, Vec2 centroid) {
   for (const PointLoad &load : block.loads) {
-    system.load.push_back({load.point - centroid, load.force});
+    system.load.push_back({load.point - centroid, load.force, load.course});
   }
   for (const Vec2 point : block.fixed_points) {
     system.anchor.push_back({point - centroid, 0.0, {}});

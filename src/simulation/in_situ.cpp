@@ -25,27 +25,6 @@ struct Swollen {
 
 } // namespace
 
-// Linear along an edge, and so at its ends: what does the same work on any motion that is linear there.
-void Simulation::load_sides(std::span<SceneBlock> slab) const {
-  const InSituStress &stress = scene_.in_situ;
-  for (SceneBlock &block : slab) {
-    const std::size_t count = block.vertices.size();
-    for (std::size_t k = 0; k < count && !block.fixed && !stress.boundaries.empty(); ++k) {
-      const Vec2 a = block.vertices[k];
-      const Vec2 b = block.vertices[(k + 1) % count];
-      if (!stress.acts_on(a, b)) {
-        continue;
-      }
-      const Vec2 along = b - a;
-      const Vec2 outwards{along.y, -along.x}; // times the length
-      const Vec2 at_a = -1.0 / 6.0 * stress.compression_at(a)(outwards);
-      const Vec2 at_b = -1.0 / 6.0 * stress.compression_at(b)(outwards);
-      block.loads.push_back({a, 2.0 * at_a + at_b});
-      block.loads.push_back({b, at_a + 2.0 * at_b});
-    }
-  }
-}
-
 void Simulation::press() {
   stress_rows();
   SwellReport report;

@@ -212,7 +212,8 @@ AppliedForces Simulation::gather_block(std::size_t row, const BodyForces &body, 
     applied.load += stage_.unloading.empty() ? RigidDof{} : unloading_of(block.id).rigid;
     for (const MaterialLoad &load : blocks_.loads_of(row)) {
       const Vec2 arm = Rotation::of(blocks_.trial[row].r)(load.point);
-      applied.load += {load.force, cross(arm, load.force)};
+      const Vec2 at_point = force_of(load);
+      applied.load += {at_point, cross(arm, at_point)};
     }
     applied.load += {water.force, water.torque()};
     applied.load.r = is_deformable ? 0.0 : applied.load.r;
@@ -231,7 +232,7 @@ void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   if (blocks_.applied_to(row) != nullptr) {
     d.load_force = unloading_of(blocks_.properties[row].id).gradient + water.dyad * transposed(to_reference);
     for (const MaterialLoad &load : blocks_.loads_of(row)) {
-      d.load_force += outer(load.force, load.point);
+      d.load_force += outer(force_of(load), load.point);
     }
     d.contact.force += d.load_force;
   }

@@ -96,6 +96,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
     stages_.resize(1);
     stages_.front().duration = scene_.run.duration;
   }
+  list_courses();
   plan_all_stages();
   stop_on_errors(notes_);
   distribute(restart_from);

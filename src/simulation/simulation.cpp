@@ -38,11 +38,7 @@ bool Simulation::counts_here(const CandidatePair &pair) const {
 }
 
 Vec2 Simulation::gravity() const {
-  if (load_time_ >= scene_.run.gravity_ramp) {
-    return scene_.run.gravity;
-  }
-  const double share = load_time_ / scene_.run.gravity_ramp;
-  return (share * share * (3.0 - 2.0 * share)) * scene_.run.gravity;
+  return Rise{0.0, scene_.run.gravity_ramp}.at(load_time_) * scene_.run.gravity;
 }
 
 // Each block to the rank that owns its centroid, who is seen by whom, which pairs may touch: on a finished

@@ -51,24 +51,6 @@ void rebuild(BlockSystem &system, const std::function<bool(std::size_t)> &stays,
   system = std::move(next);
 }
 
-void replace_loads(BlockSystem &system, std::size_t row, const std::vector<PointLoad> &loads) {
-  std::vector<MaterialLoad> own;
-  for (const PointLoad &load : loads) {
-    own.push_back({load.point - system.properties[row].centroid, load.force});
-  }
-  const auto begin = system.load.begin() + system.load_begin[row];
-  const auto place = system.load.erase(begin, system.load.begin() + system.load_begin[row + 1]);
-  system.load.insert(place, own.begin(), own.end());
-  const std::int64_t before = system.load_begin[row + 1] - system.load_begin[row];
-  system.load_begin.lengthen(row, std::ssize(own) - before);
-}
-
-bool same_loads(const std::vector<PointLoad> &a, const std::vector<PointLoad> &b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const PointLoad &x, const PointLoad &y) {
-    return x.point == y.point && x.force == y.force;
-  });
-}
-
 void hold(BlockSystem &system, std::size_t row) {
   system.properties[row].mass = std::numeric_limits<double>::infinity();
   system.properties[row].inertia = std::numeric_limits<double>::infinity();
@@ -146,6 +128,7 @@ void Simulation::unscale_masses() {
 
 void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, const RunFacts &facts) {
   scene_ = start;
+  list_courses();
   blocks_ = rows;
   stage_ = {};
   const StageState saved = to_state({facts.stage_counts, facts.stage_numbers});
@@ -153,9 +136,7 @@ void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, 
     throw FileError("its stage is not in the scene");
   }
   for (std::int64_t k = 0; k <= saved.index; ++k) {
-    if (const auto &after = stages_[static_cast<std::size_t>(k)].after) {
-      adopt(*after);
-    }
+    adopt(stages_[static_cast<std::size_t>(k)], start_of_stage(k, saved));
   }
   remove_blocks(saved.removed);
   stage_ = saved;
@@ -169,7 +150,12 @@ bool Simulation::is_removed(std::int64_t block) const {
 }
 
 // Laws keep their order and number, and so do materials and blocks: the scene's reader has seen to that.
-void Simulation::adopt(const Scene &after) {
+void Simulation::adopt(const Stage &stage, double begin) {
+  if (!stage.after) {
+    return;
+  }
+  const Scene &after = *stage.after;
+  const Rise change{begin, stage.ramp};
   const std::vector<JointLaw> laws = std::exchange(scene_.joints, after.joints).laws;
   for (std::size_t i = 0; i < laws.size(); ++i) {
     JointLaw &law = scene_.joints.laws[i];
@@ -184,13 +170,18 @@ void Simulation::adopt(const Scene &after) {
   scene_.supports = after.supports;
   scene_.bolts = after.bolts;
   adopt_materials(std::exchange(scene_.materials, after.materials));
+  if (stage.changes_stress) {
+    change_side_stress(change);
+  }
+  std::vector<SceneBlock> blocks = after.blocks;
   for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
     const auto id = static_cast<std::int64_t>(i);
+    blocks[i].loads = loads_after(scene_.blocks[i].loads, after.blocks[i].loads, change);
     if (!is_removed(id)) {
-      adopt_block(id, scene_.blocks[i], after.blocks[i]);
+      adopt_block(id, scene_.blocks[i], blocks[i]);
     }
   }
-  scene_.blocks = after.blocks;
+  scene_.blocks = std::move(blocks);
 }
 
 // Those that are in place now and were not are put in where the blocks are; those that are no longer, and all
@@ -249,9 +240,7 @@ void Simulation::adopt_block(std::int64_t id, const SceneBlock &before, const Sc
   } else if (before.driven && !after.driven) {
     let_go(blocks_, *row, scene_.materials[static_cast<std::size_t>(after.material)].density);
   }
-  if (!same_loads(before.loads, after.loads)) {
-    replace_loads(blocks_, *row, after.loads);
-  }
+  adopt_loads(*row, before.loads, after.loads);
 }
 
 // It belongs to nobody yet: the owner of its slab takes it, and the next refresh brings it where it lies.

@@ -141,7 +141,7 @@ void Simulation::look_at_stage() {
   const bool unloads = std::any_of(stage_.unloading.begin(), stage_.unloading.end(), [&](const Unloading &u) {
     return std::isfinite(u.duration) && time() < u.begin + u.duration;
   });
-  if (unloads || time() < scene_.run.gravity_ramp) { // the loads are not there yet
+  if (unloads || time() < scene_.run.gravity_ramp || loads_are_changing()) { // the loads are not there yet
     stage_.verdict = Verdict::undecided;
   }
   stage_.end_time = time();
@@ -305,9 +305,7 @@ void Simulation::begin_next_stage() {
   }
   bolts_.share(communicator_);
   const std::vector<Bolt> bolts_before = scene_.bolts;
-  if (stage.after) {
-    adopt(*stage.after);
-  }
+  adopt(stage, time());
   change_bolts(bolts_before);
   scale_masses();
   find_bound();

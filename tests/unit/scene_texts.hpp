@@ -246,6 +246,8 @@ inline void expect_same(const Scene &a, const Scene &b) {
     for (std::size_t k = 0; k < a.blocks[i].loads.size(); ++k) {
       EXPECT_EQ(a.blocks[i].loads[k].point, b.blocks[i].loads[k].point);
       EXPECT_EQ(a.blocks[i].loads[k].force, b.blocks[i].loads[k].force);
+      EXPECT_EQ(a.blocks[i].loads[k].ramp, b.blocks[i].loads[k].ramp);
+      EXPECT_EQ(a.blocks[i].loads[k].table, b.blocks[i].loads[k].table);
     }
   }
   const auto whole = [](const std::string &path) { // the resolved text names it by its absolute path

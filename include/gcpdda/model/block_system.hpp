@@ -107,8 +107,9 @@ struct DeformedEdge {
 
 /// A dead load at a material point.
 struct MaterialLoad {
-  Vec2 point; ///< X, reference axes, m
-  Vec2 force; ///< N per metre
+  Vec2 point;              ///< X, reference axes, m
+  Vec2 force;              ///< N per metre
+  std::int64_t course = 0; ///< number of the LoadCourse that multiplies it, 0 of a constant one
 };
 
 /// A material point held by a stiff spring, taken implicitly.

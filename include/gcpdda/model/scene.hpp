@@ -6,6 +6,7 @@
 #include "gcpdda/model/ensemble.hpp"
 #include "gcpdda/model/in_situ.hpp"
 #include "gcpdda/model/joint_law.hpp"
+#include "gcpdda/model/load_course.hpp"
 #include "gcpdda/model/rock_region.hpp"
 #include "gcpdda/model/stage.hpp"
 #include "gcpdda/model/support.hpp"
@@ -63,10 +64,13 @@ struct RunSettings {
   Elasticity elasticity = Elasticity::implicit;
 };
 
-/// A constant force (N per metre) at a material point (world coordinates at t = 0).
+/// A force (N per metre) at a material point (world coordinates at t = 0).
 struct PointLoad {
   Vec2 point;
   Vec2 force;
+  double ramp = 0.0;            ///< s over which it rises smoothly from 0
+  std::vector<LoadRow> table{}; ///< of a force that changes, instead of a ramp
+  std::int64_t course = 0;      ///< of a run: number of its LoadCourse, 0 of a constant force
 };
 
 /// A row of a velocity table; linear to the next row, the last velocity stays.

@@ -54,7 +54,9 @@ struct Stage {
   bool mass_scaling = false;
   bool kinetic_damping = false; ///< velocities are set to zero whenever the kinetic energy has passed a peak
   BlockSelection excavated;
-  double relax = 0.0; ///< s over which the forces of excavated blocks fall to zero
+  double relax = 0.0;          ///< s over which the forces of excavated blocks fall to zero
+  double ramp = 0.0;           ///< s over which loads and stress that the stage changes do so
+  bool changes_stress = false; ///< on sides of the region: to that of `after`
   /// The scene from here on where the stage changes it; without stages of its own.
   std::shared_ptr<const Scene> after;
   SourcePosition where;

@@ -235,7 +235,7 @@ private:
   void book_stop();
   void mark_stage();
   void evaluate_still();
-  void adopt(const Scene &after);
+  void adopt(const Stage &stage, double begin);
   void change_bolts(const std::vector<Bolt> &before);
   void adopt_materials(const std::vector<Material> &before);
   void adopt_block(std::int64_t id, const SceneBlock &before, const SceneBlock &after);
@@ -245,6 +245,18 @@ private:
   void unload(const std::vector<std::int64_t> &removed, double duration);
   void remove_blocks(const std::vector<std::int64_t> &ids);
   [[nodiscard]] Unloading unloading_of(BlockId block) const;
+  // Forces that change with time, see loads.cpp.
+  void list_courses();
+  std::int64_t new_course(LoadCourse course);
+  void load_sides(std::span<SceneBlock> slab) const;
+  [[nodiscard]] static double start_of_stage(std::int64_t stage, const StageState &state);
+  void change_side_stress(const Rise &change);
+  std::vector<PointLoad> loads_after(std::vector<PointLoad> acting, std::vector<PointLoad> listed,
+                                     const Rise &change);
+  void adopt_loads(std::size_t row, const std::vector<PointLoad> &before,
+                   const std::vector<PointLoad> &after);
+  [[nodiscard]] bool loads_are_changing() const;
+  [[nodiscard]] Vec2 force_of(const MaterialLoad &load) const;
   void distribute(const std::filesystem::path &restart_from);
   void identify(std::span<const SceneBlock> slab);
   void go_on();
@@ -277,7 +289,6 @@ private:
   void check_bonds();
   void check_initial_overlaps();
   void find_initial_friction();
-  void load_sides(std::span<SceneBlock> slab) const;
   void press();
   void stress_rows();
   void tell_of_swelling(const SwellReport &mine);
@@ -353,6 +364,8 @@ private:
   std::vector<PrescribedRow> prescribed_rows_;
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
+  std::vector<LoadCourse> courses_;         ///< what loads are multiplied by; 0: the constant one
+  std::vector<InSituStress> side_stresses_; ///< on sides of the region: at the start, then those of stages
   GroundMotion ground_;
   FidelityReport fidelity_;
   Scheme scheme_;

@@ -1,0 +1,181 @@
+// Forces of a Simulation that change in the course of time (model/load_course.hpp): point loads and the
+// stress on sides of the region.
+//
+// A material load names its course by a number; course 0 is the constant one. The list of courses is made
+// from the scene and the times at which its stages began, the same on every rank, and stands in no
+// checkpoint: a restart makes it again. First come those of the stress on sides, where a stage changes it: an
+// edge on such a side has the forces of every stress that it will be under from the start on, and the course
+// of each says when it acts. Those of point loads follow. A row's point loads stand before those of its
+// sides, in the order of SceneBlock::loads.
+
+#include "gcpdda/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+namespace gcpdda {
+
+namespace {
+
+bool same_load(const PointLoad &a, const PointLoad &b) {
+  return a.point == b.point && a.force == b.force && a.ramp == b.ramp && a.table == b.table;
+}
+
+bool is_constant(const PointLoad &load) {
+  return load.ramp == 0.0 && load.table.empty();
+}
+
+void replace_loads(BlockSystem &system, std::size_t row, std::size_t num_before,
+                   const std::vector<PointLoad> &loads) {
+  std::vector<MaterialLoad> own;
+  for (const PointLoad &load : loads) {
+    own.push_back({load.point - system.properties[row].centroid, load.force, load.course});
+  }
+  const auto begin = system.load.begin() + system.load_begin[row];
+  const auto place = system.load.erase(begin, begin + static_cast<std::ptrdiff_t>(num_before));
+  system.load.insert(place, own.begin(), own.end());
+  system.load_begin.lengthen(row, std::ssize(own) - static_cast<std::ptrdiff_t>(num_before));
+}
+
+} // namespace
+
+// Those of the start.
+void Simulation::list_courses() {
+  courses_.assign(1, LoadCourse{});
+  side_stresses_.assign(1, scene_.in_situ);
+  for (const Stage &stage : stages_) {
+    if (stage.changes_stress) {
+      side_stresses_.push_back(stage.after->in_situ);
+    }
+  }
+  if (side_stresses_.size() > 1) {
+    courses_.resize(1 + side_stresses_.size());
+    for (std::size_t k = 2; k < courses_.size(); ++k) {
+      courses_[k].in.begin = std::numeric_limits<double>::infinity();
+    }
+  }
+  for (SceneBlock &block : scene_.blocks) {
+    for (PointLoad &load : block.loads) {
+      load.course = is_constant(load) ? 0 : new_course({0.0, load.ramp, load.table});
+    }
+  }
+}
+
+std::int64_t Simulation::new_course(LoadCourse course) {
+  courses_.push_back(std::move(course));
+  return std::ssize(courses_) - 1;
+}
+
+Vec2 Simulation::force_of(const MaterialLoad &load) const {
+  return load.course == 0 ? load.force
+                          : courses_[static_cast<std::size_t>(load.course)].factor(load_time_) * load.force;
+}
+
+// Linear along an edge, and so at its ends: what does the same work on any motion that is linear there.
+void Simulation::load_sides(std::span<SceneBlock> slab) const {
+  for (std::size_t number = 0; number < side_stresses_.size(); ++number) {
+    const InSituStress &stress = side_stresses_[number];
+    const std::int64_t course = side_stresses_.size() > 1 ? static_cast<std::int64_t>(1 + number) : 0;
+    for (SceneBlock &block : slab) {
+      const std::size_t count = block.vertices.size();
+      for (std::size_t k = 0; k < count && !block.fixed && !stress.boundaries.empty(); ++k) {
+        const Vec2 a = block.vertices[k];
+        const Vec2 b = block.vertices[(k + 1) % count];
+        if (!stress.acts_on(a, b)) {
+          continue;
+        }
+        const Vec2 along = b - a;
+        const Vec2 outwards{along.y, -along.x}; // times the length
+        const Vec2 at_a = -1.0 / 6.0 * stress.compression_at(a)(outwards);
+        const Vec2 at_b = -1.0 / 6.0 * stress.compression_at(b)(outwards);
+        block.loads.push_back({.point = a, .force = 2.0 * at_a + at_b, .course = course});
+        block.loads.push_back({.point = b, .force = at_a + 2.0 * at_b, .course = course});
+      }
+    }
+  }
+}
+
+// As a rank knows it without a look at the blocks.
+double Simulation::start_of_stage(std::int64_t stage, const StageState &state) {
+  return stage == 0             ? 0.0
+         : stage == state.index ? state.start_time
+                                : state.results[static_cast<std::size_t>(stage - 1)].time;
+}
+
+// The next stress on sides comes in, those before go.
+void Simulation::change_side_stress(const Rise &change) {
+  std::size_t next = 2;
+  while (std::isfinite(courses_[next].in.begin)) {
+    ++next;
+  }
+  courses_[next].in = change;
+  for (std::size_t k = 1; k < next; ++k) {
+    courses_[k].out.push_back(change);
+  }
+}
+
+/// What acts on a block once a stage has changed its loads.
+///
+/// @param acting  before; numbered
+/// @param listed  in the scene of the stage
+std::vector<PointLoad> Simulation::loads_after(std::vector<PointLoad> acting, std::vector<PointLoad> listed,
+                                               const Rise &change) {
+  const auto is_going = [&](const PointLoad &load) {
+    return !courses_[static_cast<std::size_t>(load.course)].out.empty();
+  };
+  const auto first_going = std::stable_partition(acting.begin(), acting.end(), std::not_fn(is_going));
+  if (std::equal(acting.begin(), first_going, listed.begin(), listed.end(), same_load)) {
+    return acting;
+  }
+  for (PointLoad &load : listed) {
+    const bool is_plain = is_constant(load) && change.duration == 0.0;
+    load.course = is_plain ? 0 : new_course({change.begin, load.ramp, load.table, change});
+  }
+  for (PointLoad &load : acting) {
+    if (change.duration == 0.0 ||
+        (is_going(load) && courses_[static_cast<std::size_t>(load.course)].end() <= change.begin)) {
+      continue;
+    }
+    if (load.course == 0) {
+      load.course = new_course({});
+    }
+    courses_[static_cast<std::size_t>(load.course)].out.push_back(change);
+    listed.push_back(load);
+  }
+  return listed;
+}
+
+void Simulation::adopt_loads(std::size_t row, const std::vector<PointLoad> &before,
+                             const std::vector<PointLoad> &after) {
+  const auto same = [](const PointLoad &a, const PointLoad &b) {
+    return same_load(a, b) && a.course == b.course;
+  };
+  if (!std::equal(before.begin(), before.end(), after.begin(), after.end(), same)) {
+    replace_loads(blocks_, row, before.size(), after);
+  }
+}
+
+// Of forces that act on blocks that are still there.
+bool Simulation::loads_are_changing() const {
+  const auto is_changing = [&](std::size_t course) { return time() < courses_[course].end(); };
+  for (std::size_t k = 1; side_stresses_.size() > 1 && k <= side_stresses_.size(); ++k) {
+    if (courses_[k].in.begin <= time() && is_changing(k)) {
+      return true;
+    }
+  }
+  for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
+    const std::vector<PointLoad> &loads = scene_.blocks[i].loads;
+    if (!loads.empty() && !is_removed(static_cast<std::int64_t>(i)) &&
+        std::any_of(loads.begin(), loads.end(), [&](const PointLoad &load) {
+          return is_changing(static_cast<std::size_t>(load.course));
+        })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace gcpdda
