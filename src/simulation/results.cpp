@@ -63,13 +63,28 @@ BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 sta
   return row;
 }
 
+/// (1/area) int sym(x f) of a rigid row's contacts and loads: on an edge under load half of it is the load's.
+std::array<double, 3> mean_rigid_stress(const Simulation &simulation, std::size_t index) {
+  const BlockSystem &blocks = simulation.blocks();
+  std::array<double, 3> stress = simulation.contact_digest().mean_stress(blocks, index);
+  const Rotation turn = Rotation::of(blocks.trial[index].r);
+  const double area = blocks.properties[index].area;
+  for (const MaterialLoad &load : blocks.loads_of(index)) {
+    const Mat2 dyad = outer(turn(load.point), simulation.force_of(load));
+    stress[0] += dyad.xx / area;
+    stress[1] += dyad.yy / area;
+    stress[2] += 0.5 * (dyad.xy + dyad.yx) / area;
+  }
+  return stress;
+}
+
 FrameRow mobile_row(const Simulation &simulation, std::size_t index) {
   const BlockSystem &blocks = simulation.blocks();
   const ContactDigest &contacts = simulation.contact_digest();
   FrameRow row = row_of(blocks, index);
   row.stress = blocks.is_deformable(index)
                    ? mean_cauchy_stress(blocks.deformation_of(index), blocks.properties[index].area)
-                   : contacts.mean_stress(blocks, index);
+                   : mean_rigid_stress(simulation, index);
   const RigidDof &force = contacts.on_rows[index].force;
   row.contact_force = {force.u.x, force.u.y, force.r};
   return row;

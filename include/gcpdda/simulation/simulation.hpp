@@ -181,6 +181,8 @@ public:
   /// Motion against the ground since the stage began in which it shakes, or since t = 0 in a scene without
   /// stages; nothing in other stages. Collective.
   [[nodiscard]] std::optional<FarthestBlock> permanent_displacement() const;
+  /// What a load of a row was in the last evaluation, N per metre.
+  [[nodiscard]] Vec2 force_of(const MaterialLoad &load) const;
   /// This rank writes what is known of the pair: one rank for each pair.
   [[nodiscard]] bool counts_here(const CandidatePair &pair) const;
   [[nodiscard]] std::int64_t num_blocks() const { return gcpdda::num_blocks(scene_); }
@@ -256,7 +258,6 @@ private:
   void adopt_loads(std::size_t row, const std::vector<PointLoad> &before,
                    const std::vector<PointLoad> &after);
   [[nodiscard]] bool loads_are_changing() const;
-  [[nodiscard]] Vec2 force_of(const MaterialLoad &load) const;
   void distribute(const std::filesystem::path &restart_from);
   void identify(std::span<const SceneBlock> slab);
   void go_on();
