@@ -421,7 +421,7 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
       {"[[block]]",
        {"name", "material", "vertices", "edge_joints", "velocity", "fixed", "fidelity", "fixed_points",
         "prescribed_velocity", "velocity_table", "load"}},
-      {"[[block.load]]", {"point", "force"}},
+      {"[[block.load]]", {"point", "force", "ramp", "table"}},
       {"[[wall]]", {"name", "material", "origin", "rows", "columns", "block_size", "bond", "gap"}},
       {"[[pyramid]]", {"name", "material", "origin", "rows", "block_size", "gap"}},
       {"[blocks]", {"file"}},

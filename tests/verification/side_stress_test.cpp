@@ -27,14 +27,13 @@ struct Region {
   double friction_deg = 30.0;
   std::string in_situ;
   std::string stages;
-  std::string run_keys{};
+  std::string outline = "[[0, 0], [10, 0], [10, 10], [0, 10]]";
 
   [[nodiscard]] Simulation simulation() const {
     Scene scene =
         scene_of(fmt::format(R"([run]
 gravity = [0.0, 0.0]
 fidelity = "{}"
-{}
 [material.rock]
 density = 2600.0
 youngs_modulus = 20e9
@@ -46,10 +45,10 @@ friction_angle_deg = {}
 interval = 0.01
 [region]
 material = "rock"
-polygon = [[0, 0], [10, 0], [10, 10], [0, 10]]
+polygon = {}
 {}{}[in_situ]
 {}{})",
-                             fidelity, run_keys, stiffness, friction_deg, sides, cuts, in_situ, stages));
+                             fidelity, stiffness, friction_deg, outline, sides, cuts, in_situ, stages));
     scene.region_blocks = std::make_shared<RegionCutter>(scene, 40);
     return {Communicator::self(), std::move(scene)};
   }
@@ -161,6 +160,32 @@ TEST(SideStress, TheEndDoesNotDependOnTheWayWhereNothingSlips) {
   // Five joints close by 2 MPa/k_n; the tolerance of a verdict is 1e-5 of the force.
   expect_value("side stress doubled: largest displacement, m", 5.0 * 2e6 / stiffness, largest, 0.02);
   expect_below("side stress doubled: slowly and at once apart over that", 1e-4, apart / largest);
+}
+
+// A block that is not cut from the region but lies on its upper side: 2 MPa on 5 m, and what a stage adds.
+// The stress may change in the same stage, within the same time. Round-off.
+TEST(SideStress, StaysOnABlockWhoseLoadsAStageSets) {
+  const Region region{.sides = "roller = [\"bottom\", \"left\"]\nstress = [\"top\", \"right\"]\n",
+                      .cuts = block_toml("cap", rectangle({0.0, 8.0}, {5.0, 10.0})),
+                      .in_situ = "principal_stresses = [1e6, 2e6]\n",
+                      .stages = "[[stage]]\nkind = \"run\"\nduration = 0.01\n"
+                                "[[stage]]\nkind = \"run\"\nduration = 0.02\nramp = 0.01\n"
+                                "set = { \"block.cap.load\" = [ { point = [2, 9], force = [1e5, 2e5] } ], "
+                                "\"in_situ.principal_stresses\" = [1e6, 3e6] }\n",
+                      .outline = "[[0, 0], [10, 0], [10, 10], [5, 10], [5, 8], [0, 8]]"};
+  Simulation simulation = region.simulation();
+  const auto load = [&] { return applied_forces(simulation.blocks(), 0).load.u; };
+  EXPECT_LE(norm(load() - Vec2{0.0, -1e7}), 1e-15 * 1e7);
+  while (!simulation.finished()) {
+    if (simulation.stage_is_over()) {
+      simulation.end_stage();
+      simulation.begin_next_stage();
+      EXPECT_LE(norm(load() - Vec2{0.0, -1e7}), 1e-15 * 1e7) << "when the change begins";
+      continue;
+    }
+    step(simulation);
+  }
+  EXPECT_LE(norm(load() - Vec2{1e5, 2e5 - 1.5e7}), 1e-15 * 1.5e7);
 }
 
 /// A square cut by one joint at 30 degrees, on a fixed base; isotropic stress, then twice the vertical one.

@@ -31,7 +31,7 @@ struct InSituStress {
   Mat2 growth;                      ///< by depth, Pa/m; 0 of a stress that is the same everywhere
   Vec2 down;                        ///< d; 0 without growth
   double level = 0.0;               ///< height above [0, 0] against gravity, m
-  std::vector<Boundary> boundaries; ///< where it acts on the region from outside
+  std::vector<Boundary> boundaries; ///< where it acts on the region from outside, also after the start
   SourcePosition where;             ///< of its table
 
   /// Does it act from outside on an edge between these points at t = 0?
