@@ -33,6 +33,9 @@ void Simulation::go_on() {
   if (!stage_.ended) {
     step_count_ += step_to_go_on_from(plan_, facts.time - stage_.start_time, facts.time_step, notes_);
   }
+  load_time_ = stage_step() == 0
+                   ? time()
+                   : stage_.start_time + plan_.time(stage_step() - 1) + scheme_.load_time * plan_.time_step;
   counters_.contact_steps = communicator_.is_root() ? facts.contact_steps : 0;
   counters_.max_overlap = facts.max_overlap;
   counters_.max_overlap_share = facts.max_overlap_share;

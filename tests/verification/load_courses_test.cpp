@@ -153,6 +153,27 @@ TEST(LoadCourse, ASuddenLoadMakesAJointSlipForGoodAndARampDoesNot) {
   }
 }
 
+// A load that has not come yet is waited for; one that a stage has taken away, or whose block has gone, is
+// not.
+TEST(LoadCourse, NoVerdictFallsBeforeTheLoadHasCome) {
+  const std::string settle = "[[stage]]\nkind = \"settle\"\nlimit = 5.0\n";
+  const std::string late = load_toml({0.5, 0.5}, {0.0, -1e3}, "table = [[0, 0], [1.0, 0], [1.1, 1]]");
+  const auto settled_after = [&](const std::string &change) {
+    Simulation simulation(Communicator::self(),
+                          scene_of(without_duration(head({.friction_deg = 30.0, .interval = 0.1})) +
+                                   block_toml("floor", rectangle({-9.0, -2.0}, {9.0, 0.0}), "fixed = true") +
+                                   block_toml("stone", rectangle({0.0, 0.0}, {1.0, 1.0}), late) +
+                                   block_toml("other", rectangle({3.0, 0.0}, {4.0, 1.0})) + change + settle));
+    run_stages(simulation, step);
+    EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled);
+    return simulation.time();
+  };
+  EXPECT_GE(settled_after(""), 1.1);
+  const std::string run = "[[stage]]\nkind = \"run\"\nduration = 0.1\n";
+  EXPECT_LT(settled_after(run + "[[stage]]\nkind = \"change\"\nset = { \"block.stone.load\" = [] }\n"), 1.0);
+  EXPECT_LT(settled_after(run + "[[stage]]\nkind = \"excavate\"\nblocks = [\"stone\"]\n"), 1.0);
+}
+
 /// What acts on block 0 in the load's evaluation of the step just taken.
 void expect_load(const Simulation &simulation, Vec2 expected, Vec2 scale) {
   const Vec2 got = applied_forces(simulation.blocks(), 0).load.u;

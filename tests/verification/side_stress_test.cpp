@@ -162,6 +162,24 @@ TEST(SideStress, TheEndDoesNotDependOnTheWayWhereNothingSlips) {
   expect_below("side stress doubled: slowly and at once apart over that", 1e-4, apart / largest);
 }
 
+// So small and slow a change is at rest on its way by every other measure of a verdict.
+TEST(SideStress, NoVerdictFallsWhileItChanges) {
+  const Region region{.sides = "roller = [\"bottom\", \"left\"]\nstress = [\"top\", \"right\"]\n",
+                      .cuts = grid,
+                      .in_situ = "principal_stresses = [1e6, 2e6]\n",
+                      .stages = settle +
+                                "[[stage]]\nkind = \"change\"\nramp = 0.4\n"
+                                "set = { \"in_situ.principal_stresses\" = [1e6, 2.00001e6] }\n" +
+                                settle};
+  Simulation simulation = region.simulation();
+  run_stages(simulation, step);
+  const std::vector<StageResult> results = simulation.stage_results();
+  ASSERT_EQ(results.size(), 3U);
+  EXPECT_LT(results[0].time, 0.2);
+  EXPECT_EQ(results[2].verdict, Verdict::settled);
+  EXPECT_GE(results[2].time - results[1].time, 0.4);
+}
+
 // A block that is not cut from the region but lies on its upper side: 2 MPa on 5 m, and what a stage adds.
 // The stress may change in the same stage, within the same time. Round-off.
 TEST(SideStress, StaysOnABlockWhoseLoadsAStageSets) {
