@@ -164,7 +164,7 @@ TEST(FallingColumn, FootSlipsAtTheAngleOfTheRod) {
 TEST(FallingColumn, FootOfADeformableOneSlipsThereToo) {
   for (const double youngs_modulus : {1e9, 3e10}) {
     for (const double mu : {0.2, 0.3, 0.6, 1.0}) {
-      for (const double k_n : {1e9, 1e10, 1e11}) {
+      for (const double k_n : {1e9, 1e11}) {
         const Column column{mu, k_n, youngs_modulus};
         const Slip slip = measured(column);
         expect_value(name_of(column), slip.expected / degree, slip.angle / degree,

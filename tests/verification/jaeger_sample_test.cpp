@@ -153,6 +153,7 @@ std::string name_of(const Sample &sample) {
 }
 
 TEST(JaegerSample, SlipsAtTheStrengthOfItsJoint) {
+  double worst = 0.0;
   for (const double youngs_modulus : {0.0, 1e9, 1e10}) {
     for (const double cohesion : {0.0, 2e4}) {
       for (const double degrees : {40.0, 50.0, 60.0, 75.0}) {
@@ -160,10 +161,11 @@ TEST(JaegerSample, SlipsAtTheStrengthOfItsJoint) {
         const Course course = pressed(sample, 1.5 * sample.strength());
         expect_value(name_of(sample) + ": stress at which it begins to slip, Pa", sample.strength(),
                      course.first, 5e-4);
-        expect_value(name_of(sample) + ": stress that slip holds, Pa", sample.strength(), course.last, 5e-4);
+        worst = std::max(worst, std::abs(course.last / sample.strength() - 1.0));
       }
     }
   }
+  expect_below("C8 samples with a joint: largest error of the stress that slip holds", 5e-4, worst);
 }
 
 TEST(JaegerSample, NeverSlipsOnAJointFlatterThanFriction) {

@@ -25,6 +25,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <memory>
@@ -143,6 +144,7 @@ std::vector<double> transmitted(const Bar &bar, const std::vector<double> &frequ
 }
 
 TEST(JointTransmission, OfAPlaneWaveByFrequency) {
+  double worst = 0.0;
   for (const Bar &kind : {Bar{1e9, 0.0}, Bar{1e9, 1e9}, Bar{1e10, 1e9}}) {
     for (const double softness : {1.0, 5.0, 17.0}) {
       Bar bar = kind;
@@ -154,16 +156,17 @@ TEST(JointTransmission, OfAPlaneWaveByFrequency) {
       }
       const std::vector<double> got = transmitted(bar, frequencies);
       for (std::size_t k = 0; k < got.size(); ++k) {
-        const std::string name = fmt::format(
-            "C10 wave through a joint, omega Z/k = {:.1f}, {}: |T| of the ", numbers[k] * softness,
-            bar.youngs_modulus > 0.0
-                ? fmt::format("deformable, k_n h/E = {}", bar.joint_stiffness / bar.youngs_modulus)
-                : "rigid");
-        expect_value(name + "chain", bar.of_chain(frequencies[k]), got[k], 2e-4);
-        expect_value(name + "bar", bar.of_bar(frequencies[k]), got[k], numbers[k] * numbers[k] / 8.0);
+        const std::string name =
+            fmt::format("C10 wave through a joint, omega Z/k = {:.1f}, {}: |T|", numbers[k] * softness,
+                        bar.youngs_modulus > 0.0 ? fmt::format("deformable, k_n h/E = {}",
+                                                               bar.joint_stiffness / bar.youngs_modulus)
+                                                 : "rigid");
+        worst = std::max(worst, std::abs(got[k] / bar.of_chain(frequencies[k]) - 1.0));
+        expect_value(name, bar.of_bar(frequencies[k]), got[k], numbers[k] * numbers[k] / 8.0);
       }
     }
   }
+  expect_below("C10 waves through a joint: largest error against the chain of slabs", 2e-4, worst);
 }
 
 } // namespace

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace gcpdda::testing::movable_wedge_test {
@@ -72,7 +73,8 @@ struct Pair {
   }
 };
 
-void expect_accelerations(const Pair &pair, double tolerance) {
+/// @return what the momenta along the floor leave, over that of the block
+double check_accelerations(const Pair &pair, double tolerance) {
   Simulation simulation(Communicator::self(), scene_of(pair.toml()));
   run_until(simulation, from);
   const double since = simulation.time();
@@ -91,24 +93,24 @@ void expect_accelerations(const Pair &pair, double tolerance) {
                tolerance);
   const double along = dot(of_block - of_wedge, {std::cos(slope), -std::sin(slope)});
   expect_value(name + "of the block against it, m/s2", pair.block_acceleration(slope), along, tolerance);
-  expect_below(
-      name + "sum of the momenta over one of them", 1e-11,
-      std::abs(wedge_mass * velocity_of(simulation, 0).u.x + pair.mass() * velocity_of(simulation, 1).u.x) /
-          (pair.mass() * velocity_of(simulation, 1).u.x));
+  const double of_block_alone = pair.mass() * velocity_of(simulation, 1).u.x;
+  return std::abs(wedge_mass * velocity_of(simulation, 0).u.x / of_block_alone + 1.0);
 }
 
 TEST(MovableWedge, BothAccelerateAsMomentumHasIt) {
-  for (const double mu : {0.0, 0.1, 0.3}) {
-    for (const double thickness : {0.4, 1.2}) {
-      for (const double normal_stiffness : {1e9, 1e10}) {
-        for (const double stiff : {0.0, 1.0, 30.0}) { // E/k_n, m; 0: rigid
-          const Pair pair{mu, thickness, normal_stiffness, stiff * normal_stiffness};
-          const double overlaps = 5e-6 * (1e9 / normal_stiffness);
-          expect_accelerations(pair, stiff > 0.0 ? overlaps + 1e5 / pair.youngs_modulus : overlaps);
-        }
+  double unbalanced = 0.0;
+  for (const double mu : {0.0, 0.3}) {
+    for (const double stiff : {0.0, 1.0, 30.0}) { // E/k_n, m; 0: rigid
+      for (const Pair &drawn : {Pair{mu, 0.4, 1e9}, Pair{mu, 1.2, 1e9}, Pair{mu, 1.2, 1e10}}) {
+        Pair pair = drawn;
+        pair.youngs_modulus = stiff * pair.normal_stiffness;
+        const double overlaps = 5e-6 * (1e9 / pair.normal_stiffness);
+        const double strain = stiff > 0.0 ? 1e5 / pair.youngs_modulus : 0.0;
+        unbalanced = std::max(unbalanced, check_accelerations(pair, overlaps + strain));
       }
     }
   }
+  expect_below("B10 blocks on a wedge: sum of the momenta over that of the block", 1e-12, unbalanced);
 }
 
 } // namespace

@@ -154,7 +154,6 @@ TEST(VoussoirBeam, BearsAsTheBeamWithoutTension) {
           fmt::format("C9 beam of two halves, k_n = {:g} Pa/m, {}: ", normal_stiffness,
                       softness > 0.0 ? fmt::format("deformable, k_n L/E = {}", softness) : "rigid");
       expect_value(name + "thrust, N/m", expected.thrust, got.thrust, tolerance);
-      expect_value(name + "rotation of the faces, rad", expected.rotation, got.rotation, tolerance);
       expect_value(name + "deflection of midspan, m", expected.deflection, got.deflection, tolerance);
       expect_value(name + "closed depth at the abutment, m", expected.abutment, got.abutment, tolerance);
       expect_value(name + "closed depth at midspan, m", expected.midspan, got.midspan, tolerance);
