@@ -151,8 +151,7 @@ Rest loaded(const Arch &arch, double lambda, const Rock &rock) {
                            .gravity = {lambda * share * earth_gravity, -share * earth_gravity},
                            .normal_stiffness = rock.normal_stiffness,
                            .friction_deg = 70.0,
-                           .damping = 0.3,
-                           .run_keys = "local_damping = 0.3\ngravity_ramp = " + std::to_string(ramp) + "\n",
+                           .run_keys = "local_damping = 0.8\ngravity_ramp = " + std::to_string(ramp) + "\n",
                            .fidelity = rock.youngs_modulus > 0.0 ? "deformable" : "rigid",
                            .youngs_modulus = rock.youngs_modulus,
                            .poissons_ratio = 0.2});

@@ -94,8 +94,7 @@ struct Beam {
     return head({.duration = 300.0 * slow,
                  .normal_stiffness = normal_stiffness,
                  .friction_deg = 50.0,
-                 .damping = 0.3,
-                 .run_keys = fmt::format("plane = \"stress\"\nlocal_damping = 0.3\ngravity_ramp = {:.17g}\n",
+                 .run_keys = fmt::format("plane = \"stress\"\nlocal_damping = 0.8\ngravity_ramp = {:.17g}\n",
                                          100.0 * slow),
                  .fidelity = softness > 0.0 ? "deformable" : "rigid",
                  .youngs_modulus = youngs_modulus()}) +
