@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# study.sh verify|stability|accuracy|fidelity|speed|scaling|all [--quick]: one of the studies, or the first four; tables and
+# study.sh verify|stability|accuracy|fidelity|flutter|speed|scaling|all [--quick]: one of the studies, or the first five; tables and
 # charts go to run/results/studies. --quick: fewer points, never fewer problems. speed and scaling want a quiet machine.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/set_up.sh"
 
-studies=(verify stability accuracy fidelity)
+studies=(verify stability accuracy fidelity flutter)
 case "${1:-}" in
   all) ;;
-  verify | stability | accuracy | fidelity | speed | scaling) studies=("$1") ;;
+  verify | stability | accuracy | fidelity | flutter | speed | scaling) studies=("$1") ;;
   *)
     sed -n '2,3s/^# //p' "${BASH_SOURCE[0]}" >&2
     exit 2

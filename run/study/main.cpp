@@ -13,12 +13,12 @@
 int main(int argc, char **argv) {
   using namespace gcpdda::study;
   const std::map<std::string, void (*)(const Options &)> studies{
-      {"stability", stability}, {"accuracy", accuracy}, {"fidelity", fidelity}};
+      {"stability", stability}, {"accuracy", accuracy}, {"fidelity", fidelity}, {"flutter", flutter}};
   const gcpdda::MpiScope mpi(argc, argv);
   try {
     const bool quick = argc == 4 && std::string(argv[3]) == "--quick";
     if (argc != (quick ? 4 : 3) || !studies.contains(argv[1])) {
-      std::cerr << "usage: gcpdda-study stability|accuracy|fidelity FOLDER [--quick]\n";
+      std::cerr << "usage: gcpdda-study stability|accuracy|fidelity|flutter FOLDER [--quick]\n";
       return 2;
     }
     const Options options{argv[2], quick};

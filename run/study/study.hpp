@@ -57,5 +57,6 @@ double median(std::vector<double> values);
 void stability(const Options &options);
 void accuracy(const Options &options);
 void fidelity(const Options &options);
+void flutter(const Options &options);
 
 } // namespace gcpdda::study

@@ -215,6 +215,9 @@ Eigen::VectorXd BaseState::gradient_of(std::size_t row, Vec2 direction, Vec2 alo
 }
 
 Eigen::VectorXd BaseState::motion_at(std::size_t row, Vec2 x, Vec2 direction) const {
+  if (system_.is_fixed(row)) {
+    return Eigen::VectorXd::Zero(num_unknowns());
+  }
   Eigen::VectorXd by =
       gradient_of(row, direction, x - (system_.properties[row].centroid + base_[row].motion.u));
   const double by_mass = 1.0 / std::sqrt(system_.properties[row].mass);

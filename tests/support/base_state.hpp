@@ -38,6 +38,9 @@ public:
   explicit BaseState(const Simulation &simulation);
 
   [[nodiscard]] const BlockSystem &system() const { return system_; }
+  [[nodiscard]] const CandidatePair &pair_of(const RegionForce &region) const {
+    return candidates_.pairs[region.pair];
+  }
   [[nodiscard]] Eigen::Index num_unknowns() const { return begin_.back(); }
   [[nodiscard]] Eigen::Index unknown_of(std::size_t row) const { return begin_[row]; }
 
@@ -70,7 +73,8 @@ public:
 
   /// The unknowns' values in a motion of one row without turning (m).
   [[nodiscard]] Eigen::VectorXd motion_of(std::size_t row, Vec2 shift) const;
-  /// How the material point of a block that now is at x moves along a direction, by unknown.
+  /// How the material point of a block that now is at x moves along a direction, by unknown; nothing of a
+  /// fixed block.
   [[nodiscard]] Eigen::VectorXd motion_at(std::size_t row, Vec2 x, Vec2 direction) const;
   /// How the gradient dF F^-1 of a block moves: direction . dF F^-1 along, by unknown.
   [[nodiscard]] Eigen::VectorXd gradient_of(std::size_t row, Vec2 direction, Vec2 along) const;
