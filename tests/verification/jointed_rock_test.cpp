@@ -123,7 +123,7 @@ template <class Next> double growth_of(int count, Next &&next) {
 
 // What sets blocks moving is the small part of the stress that the ends of joints do not bear
 // (contact/in_situ.hpp). It spreads over the modes, which beat: that changes the largest kinetic energy of a
-// fifth of the run by less than a factor of two. Flutter multiplied it by up to 1e8.
+// fifth of the run by less than a factor of two. Flutter multiplied it by 5e7.
 TEST(JointedRock, RestsWhateverItsStiffnessAndTheUseOfFriction) {
   double worst_growth = 0.0;
   std::ptrdiff_t num_re_entrant = 0;
