@@ -148,7 +148,7 @@ TEST(JointedRock, RestsWhateverItsStiffnessAndTheUseOfFriction) {
     worst_run = std::max(worst_run, run);
   }
   EXPECT_GT(num_re_entrant, 0);
-  const std::string masses = fmt::format("C7 {} jointed rock masses: ", num_masses);
+  const std::string masses = fmt::format("C12 {} jointed rock masses: ", num_masses);
   expect_below(masses + "largest growth rate of a mode over omega_max", 1e-7, worst_growth);
   expect_below(masses + "kinetic energy at the end of a run over that at its start", 2.0, worst_run);
 }
@@ -226,7 +226,7 @@ TEST(JointedRock, JointsBornGapingRestToo) {
       }
     }
   }
-  expect_below("C7 72 disturbed joints that gape: kinetic energy at the end of a run over that at its start",
+  expect_below("C12 72 disturbed joints that gape: kinetic energy at the end of a run over that at its start",
                2.0, worst);
 }
 
