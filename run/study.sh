@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# study.sh verify|stability|accuracy|fidelity|flutter|speed|scaling|all [--quick]: one of the studies, or the first five; tables and
-# charts go to run/results/studies. --quick: fewer points, never fewer problems. speed and scaling want a quiet machine.
+# study.sh verify|stability|accuracy|fidelity|flutter|scenes|stiffness|speed|scaling|all [--quick]: one of the studies, or the
+# first five; tables and charts go to run/results/studies. --quick: fewer points. speed and scaling want a quiet machine.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/set_up.sh"
@@ -8,7 +8,7 @@ source "$here/set_up.sh"
 studies=(verify stability accuracy fidelity flutter)
 case "${1:-}" in
   all) ;;
-  verify | stability | accuracy | fidelity | flutter | speed | scaling) studies=("$1") ;;
+  verify | stability | accuracy | fidelity | flutter | scenes | stiffness | speed | scaling) studies=("$1") ;;
   *)
     sed -n '2,3s/^# //p' "${BASH_SOURCE[0]}" >&2
     exit 2
@@ -30,6 +30,10 @@ run_study() {
   elif [ "$study" = scaling ]; then
     "$here/study/scaling.py" "$build" "$results" $quick
     "$here/study/plot_scaling.py" "$results"
+  elif [ "$study" = scenes ]; then
+    "$here/study/scenes.py" "$build" "$results" $quick
+  elif [ "$study" = stiffness ]; then
+    "$here/study/fos_stiffness.py" "$build" "$results" $quick
   elif [ "$study" = speed ]; then
     "$here/study/speed.py" "$build" "$results" $quick
   else

@@ -156,7 +156,7 @@ def draw(ax, points, radial, hoop, k0, half):
 def deformable(gcpdda, out, quick):
     """Convergence with the size of the blocks, and a picture of the finest at two ratios of stress."""
     half = 9.0 if quick else 15.0
-    sizes = (1.0, 0.75) if quick else (1.0, 0.75, 0.5, 0.375)
+    sizes = (1.0, 0.75) if quick else (1.0, 0.75, 0.5)
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), sharey=True)
     rows = []
     for k0, ax in ((1.0, axes[0]), (0.5, axes[1])):
