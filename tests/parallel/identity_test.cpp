@@ -213,6 +213,17 @@ TEST(Identity, OfAMixedWall) {
   }
 }
 
+// The same, with what local damping takes within the step of a deformable block.
+TEST(Identity, OfAMixedWallThatIsDamped) {
+  const TwoRuns runs(testing::scene_of(testing::mixed_wall_toml(24, 14, 0.04), {"run.local_damping=0.3"}));
+  EXPECT_GE(runs.counted("refreshes"), 1);
+  EXPECT_GE(runs.counted("contacts"), 300);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("migrations"), 1);
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+}
+
 // Blocks go, those around are unloaded slowly, parameters change, and a verdict ends the run: all in flight,
 // so that blocks of every kind cross the ranks meanwhile. Frames lose rows from one to the next.
 TEST(Identity, OfAMixedWallInStages) {

@@ -161,7 +161,7 @@ force = [0])",
 point = [2, 2]
 force = [0, 1]
 moment = 3)",
-     {R"(23:1: error: unknown key 'moment' in load 0 of block 'lever', known here: point force)"}},
+     {R"(23:1: error: unknown key 'moment' in load 0 of block 'lever', known here: point force ramp table)"}},
     {"LoadAsTable", 19, R"(vertices = [[1, 1], [4, 1], [4, 4], [3, 4], [3, 2], [1, 2]]
 [block.load]
 point = [2, 2]

@@ -81,7 +81,7 @@ dip_deg = 90
 spacing = 2.5
 )";
 
-const std::string settle = "[[stage]]\nkind = \"settle\"\nlimit = 2.0\nkinetic_damping = true\n";
+const std::string settle = "[[stage]]\nkind = \"settle\"\nlimit = 2.0\n";
 
 // 1 and 2 MPa on rock in a corner of rollers; then the vertical stress is doubled, and then one that is half
 // way there the horizontal one too. What stays is the force that a joint loses at its ends, where overlaps of
