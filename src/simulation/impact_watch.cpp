@@ -13,6 +13,9 @@ namespace {
 
 /// Of impacts with less than this share of the largest kinetic energy so far nothing is told.
 constexpr double dust = 1e-3;
+/// Nor of those with less than this share of the stored energy: blocks at rest still tremble by about 1e-3 of
+/// what their joints have closed by, and a trembling contact is no impact.
+constexpr double trembling = 1e-6;
 /// A row is sharp if its residual is known to this share of the energies at hand.
 constexpr double sharp = 0.1 * ImpactWatch::worth_telling;
 constexpr int most_waits = 20;     ///< for a sharp row, where impacts follow each other without a pause
@@ -138,7 +141,8 @@ std::optional<ImpactGain> ImpactWatch::look(const Simulation &simulation, const 
   const double loss = std::max(0.0, residual_.low - now.high);
   const ImpactGain found{time_, simulation.time(), gain - loss, energy};
   const double least = std::max(worth_telling * energy, rounding * size_of_terms(row));
-  if (std::abs(found.gained) <= least || energy <= dust * most_kinetic_) {
+  const double stored = row.strain + row.contact_normal + row.contact_stick;
+  if (std::abs(found.gained) <= least || energy <= std::max(dust * most_kinetic_, trembling * stored)) {
     begin_at(simulation, now);
     return std::nullopt;
   }

@@ -175,5 +175,18 @@ TEST(Impacts, AreNotToldWhereThereAreNone) {
   }
 }
 
+// A slope that has settled and goes on without damping: its contacts tremble by a thousandth of what they
+// have closed by.
+TEST(Impacts, AreNotToldOfRockAtRest) {
+  const WorkFolder folder;
+  std::string slope = testing::shipped_toml("deformable_slope");
+  slope.resize(slope.find("[fos]"));
+  folder.write("slope.toml", slope + "[[stage]]\nkind = \"run\"\nduration = 2.0\n"
+                                     "set = { \"run.contact_damping\" = 0.0 }\n");
+  const Outcome outcome = run_gcpdda(0, {"run", "slope.toml", "--out", "out"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_FALSE(told_by(outcome));
+}
+
 } // namespace
 } // namespace gcpdda::impacts_test
