@@ -28,7 +28,8 @@ import numpy
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 MODULI = {"rigid": None, "5 GPa": 5e9, "30 GPa": 30e9, "300 GPa": 300e9}
 SHORTER = {  # settings that leave a scene of 10^5 blocks its kind
-    "slope_large": ["region.slope.bench=[{height=20, face_angle_deg=72}]"],
+    "slope_large": ["region.slope.bench=[{height=20, face_angle_deg=72}]", "region.slope.toe_length=10",
+                    "region.slope.crest_length=25", "region.slope.depth=6"],
     "tunnel_large": ["region.polygon=[[-31, -30], [31, -30], [31, 30], [-31, 30]]",
                      'opening=[{name="tunnel", shape="horseshoe", centre=[0, 0], width=10, height=10}]'],
 }
