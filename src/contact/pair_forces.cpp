@@ -101,10 +101,11 @@ void ContactForces::match_memories(const BlockSystem &system, const CandidatePai
   }
   std::sort(matches_.begin(), matches_.end());
   for (const auto &[distance, k, m] : matches_) {
+    RegionMemory *const nearest = &old[m];
     const bool is_taken = std::any_of(found_.begin(), found_.end(),
-                                      [&](const FoundRegion &found) { return found.known == &old[m]; });
+                                      [nearest](const FoundRegion &found) { return found.known == nearest; });
     if (found_[k].known == nullptr && !is_taken) {
-      found_[k].known = &old[m];
+      found_[k].known = nearest;
     }
   }
 }
