@@ -18,8 +18,8 @@ constexpr double dust = 1e-3;
 constexpr double trembling = 1e-6;
 /// A row is sharp if its residual is known to this share of the energies at hand.
 constexpr double sharp = 0.1 * ImpactWatch::worth_telling;
-constexpr int most_waits = 20;     ///< for a sharp row, where impacts follow each other without a pause
-constexpr double rounding = 1e-11; ///< of a residual, as a share of the terms in it
+constexpr int most_waits = 20; ///< for a sharp row, where impacts follow each other without a pause
+constexpr double rounding_of_residual = 1e-11; ///< its error, as a share of the terms in it
 
 /// A block that has changed its rank between two looks, as either of the ranks knows it.
 struct Migrant {
@@ -140,7 +140,7 @@ std::optional<ImpactGain> ImpactWatch::look(const Simulation &simulation, const 
   const double gain = std::max(0.0, now.low - residual_.high);
   const double loss = std::max(0.0, residual_.low - now.high);
   const ImpactGain found{time_, simulation.time(), gain - loss, energy};
-  const double least = std::max(worth_telling * energy, rounding * size_of_terms(row));
+  const double least = std::max(worth_telling * energy, rounding_of_residual * size_of_terms(row));
   const double stored = row.strain + row.contact_normal + row.contact_stick;
   if (std::abs(found.gained) <= least || energy <= std::max(dust * most_kinetic_, trembling * stored)) {
     begin_at(simulation, now);
