@@ -29,18 +29,17 @@
 //    what the spring stands for. Else s goes on, cut to the extent where its point has parted; that is kept,
 //    so that a point moves in but not out again.
 // 2. F_t += k_t du.t with du at x_r + s t.
-// 3. Where F_t is cut at the cap, s moves on to m, by all of it when the joint has slipped by the whole
-// stretch
-//    cap/k_t of its spring: with a share (|F_t| - cap)/cap of the way. So it follows the overlap along a
-//    sliding block, at any time step.
+// 3. Where F_t is cut at the cap, s goes the share (|F_t| - cap)/cap of the way to m: all of it once the
+//    joint has slipped by the whole stretch cap/k_t of its spring. So it follows the overlap along a sliding
+//    block, at any time step.
 // Where none of these moves it X_g keeps its bits, and s is read from it: an evaluation that is repeated with
 // the memory it left behind finds the same grip.
 //
 // Thus a small swing of a joint that sticks moves the grip at most once, and cannot be driven by it. In the
-// middle k_t l b b^T <= k_t int b b^T ds: the bound on the time step (method of frequency_bound.hpp) covers
+// middle k_t l b b^T <= k_t int b b^T ds: the bound on the time step (frequency_bound.hpp) covers
 // friction, which it would not at a point that wanders.
 //
-// The same lines for SIMD lanes are in LaneRegions::add_friction (lane_region.hpp).
+// LaneGrip (lane_grip.hpp) is the same in SIMD lanes.
 
 #include "gcpdda/contact/contact_forces.hpp"
 
