@@ -54,6 +54,21 @@ double facing_of(const Piece &piece, bool is_lower, Vec2 normal) {
   return is_lower ? -dot(normal, piece.normal) : dot(normal, piece.normal);
 }
 
+void take(const std::optional<Grip> &grip, RegionMemory &memory, RegionForce &force) {
+  if (grip) {
+    memory.grip = grip->reference();
+    force.grip = grip->point();
+  }
+}
+
+/// Where a region has no shear.
+void take_middle(std::optional<Grip> &grip, RegionMemory &memory, RegionForce &force) {
+  if (grip) {
+    grip->move_to_middle();
+    take(grip, memory, force);
+  }
+}
+
 } // namespace
 
 bool ContactForces::measure(const Region &region, RegionForce &force) const {
@@ -126,31 +141,31 @@ void ContactForces::find_touching(const BlockSystem &system, const CandidatePair
   }
 }
 
+// What the spring has beyond its cap is slip.
+void ContactForces::slip(const BlockSystem &system, const CandidatePair &pair, const JointLaw &law,
+                         double stiffness, RegionMemory &memory, const RegionForce &force) {
+  const double slip_before = memory.slip;
+  memory.slip += (std::abs(memory.shear) - force.cap) / stiffness;
+  memory.shear = std::copysign(force.cap, memory.shear);
+  memory.state = ContactState::slip;
+  if (law.dilates()) {
+    dilate(system, pair, slip_before, force, memory);
+  }
+}
+
 void ContactForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
                                  const RelativeVelocity &velocity, const BondShare &bonds,
                                  RegionMemory &memory, RegionForce &force) {
   const double extent = force.extent_end - force.extent_begin;
-  std::optional<Grip> grip;
+  std::optional<Grip> grip; // none between rigid blocks
   if (has_grip(system, pair)) {
     grip.emplace(system, pair, force, memory.grip, force.born, memory.longest);
   }
-  const auto take_grip = [&] {
-    if (grip) {
-      memory.grip = grip->reference();
-      force.grip = grip->point();
-    }
-  };
-  const auto take_middle = [&] {
-    if (grip) {
-      grip->move_to_middle();
-      take_grip();
-    }
-  };
   memory.longest = std::max(memory.longest, extent);
   if (bonds.holds) {
     memory.shear = 0.0;
     memory.state = ContactState::stick;
-    take_middle();
+    take_middle(grip, memory, force);
     return;
   }
   const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
@@ -161,10 +176,10 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   memory.state = force.cap > 0.0 ? ContactState::stick : ContactState::slip;
   if (force.cap <= 0.0) {
     memory.shear = 0.0;
-    take_middle();
+    take_middle(grip, memory, force);
     return;
   }
-  take_grip();
+  take(grip, memory, force);
   const Vec2 tangent = perp(force.normal);
   const double stiffness = constants.tangential_stiffness * memory.longest;
   if (bonds.released) {
@@ -176,15 +191,9 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
   if (std::abs(memory.shear) > force.cap) {
     if (grip) {
       grip->slip(std::abs(memory.shear) - force.cap, force.cap);
-      take_grip();
+      take(grip, memory, force);
     }
-    const double slip_before = memory.slip;
-    memory.slip += (std::abs(memory.shear) - force.cap) / stiffness;
-    memory.shear = std::copysign(force.cap, memory.shear);
-    memory.state = ContactState::slip;
-    if (law.dilates()) {
-      dilate(system, pair, slip_before, force, memory);
-    }
+    slip(system, pair, law, stiffness, memory, force);
   }
   double viscous = 0.0;
   if (parameters_.has_dashpots()) {
@@ -281,6 +290,34 @@ void ContactForces::note_dyads(const BlockSystem &system, const CandidatePair &p
                     damping_dyad_ + outer(arm, force.damping_force)};
 }
 
+// Region and memory join those of the evaluation.
+void ContactForces::load_found(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                               const FoundRegion &found) {
+  const Region &region = *found.region;
+  RegionForce &force = append_force(found.force);
+  force.pair = number;
+  force.born = found.known == nullptr;
+  damping_dyad_ = {};
+  RegionMemory &memory = next_.regions.emplace_back();
+  if (!force.born) {
+    memory = *found.known;
+  }
+  if (!pair.is_convex) {
+    memory.position = found.position;
+    memory.lower_stretch = region.faces.first;
+    memory.higher_stretch = region.faces.second;
+  }
+  const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, region);
+  if (!pair.is_mixed) {
+    load_region(system, pair, region, share, memory, force);
+    return;
+  }
+  if (force.born) {
+    memory.law = law_at_birth(system, parameters_.joints, pair, overlap_.pieces(), region);
+  }
+  load_region(system, constants_of(system, parameters_, pair, memory.law), region, share, memory, force);
+}
+
 void ContactForces::find_regions(const BlockSystem &system, const Candidates &candidates,
                                  std::uint32_t number, std::span<RegionMemory> old) {
   const CandidatePair &pair = candidates.pairs[number];
@@ -308,29 +345,7 @@ void ContactForces::find_regions(const BlockSystem &system, const Candidates &ca
     if (found.known != nullptr && found.known->is_dilated()) { // on its own below
       continue;
     }
-    const Region &region = *found.region;
-    RegionForce &force = append_force(found.force);
-    force.pair = number;
-    force.born = found.known == nullptr;
-    damping_dyad_ = {};
-    RegionMemory &memory = next_.regions.emplace_back();
-    if (!force.born) {
-      memory = *found.known;
-    }
-    if (!pair.is_convex) {
-      memory.position = found.position;
-      memory.lower_stretch = region.faces.first;
-      memory.higher_stretch = region.faces.second;
-    }
-    const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, region);
-    if (!pair.is_mixed) {
-      load_region(system, pair, region, share, memory, force);
-      continue;
-    }
-    if (force.born) {
-      memory.law = law_at_birth(system, parameters_.joints, pair, overlap_.pieces(), region);
-    }
-    load_region(system, constants_of(system, parameters_, pair, memory.law), region, share, memory, force);
+    load_found(system, pair, number, found);
   }
   for (const RegionMemory &known : dilated_) {
     evaluate_dilated(system, pair, number, known);

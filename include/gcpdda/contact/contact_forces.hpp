@@ -208,6 +208,14 @@ private:
     double shear = 0.0;    ///< ... and leaves this, N/m
   };
 
+  /// A region that carries something.
+  struct FoundRegion {
+    const Region *region;
+    RegionForce force;   ///< for k_n/2 = 1, without friction and dashpots
+    Vec2 position;       ///< RegionMemory::position, of a pair that is not convex
+    RegionMemory *known; ///< what goes on in it; null for a new one
+  };
+
   /// The regions of one pair, whatever its shapes and laws, behind all others.
   /// @return how many
   std::size_t append_regions(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
@@ -218,6 +226,8 @@ private:
   void evaluate_birth(const BlockSystem &system, const Candidates &candidates, std::uint32_t entry);
   void find_regions(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                     std::span<RegionMemory> old);
+  void load_found(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                  const FoundRegion &found);
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
   void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
@@ -290,6 +300,8 @@ private:
               const RegionForce &force, RegionMemory &memory);
   void add_friction(const BlockSystem &system, const CandidatePair &pair, const RelativeVelocity &velocity,
                     const BondShare &bonds, RegionMemory &memory, RegionForce &force);
+  void slip(const BlockSystem &system, const CandidatePair &pair, const JointLaw &law, double stiffness,
+            RegionMemory &memory, const RegionForce &force);
   void add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity, const Region &region,
                           RegionForce &force);
   void add_shear(RegionForce &force, double elastic, double viscous);
@@ -336,14 +348,7 @@ private:
   std::vector<RegionDyads> dyads_;       ///< of its regions, if a block deforms
   Mat2 damping_dyad_;                    ///< of the region at hand, about its origin
   std::vector<BondAtWork> bonds_;        ///< of the pair at hand
-  /// A region that carries something.
-  struct FoundRegion {
-    const Region *region;
-    RegionForce force;   ///< for k_n/2 = 1, without friction and dashpots
-    Vec2 position;       ///< RegionMemory::position, of a pair that is not convex
-    RegionMemory *known; ///< what goes on in it; null for a new one
-  };
-  std::vector<FoundRegion> found_; ///< of the pair at hand
+  std::vector<FoundRegion> found_;       ///< of the pair at hand
   /// A memory within reach of a region: their distance (m) and numbers.
   std::vector<std::tuple<double, std::size_t, std::size_t>> matches_;
   std::vector<double> facing_; ///< of the pieces at hand, scratch
