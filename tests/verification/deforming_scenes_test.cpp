@@ -4,6 +4,7 @@
 #include "problem.hpp"
 
 #include "gcpdda/blockgen/region_cutter.hpp"
+#include "support/thinning.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -58,7 +59,8 @@ class DeformingScenes : public ::testing::TestWithParam<Case> {};
 TEST_P(DeformingScenes, EndAsRigidOnesDo) {
   const Case &c = GetParam();
   const std::vector<Verdict> rigid = verdicts(c, {"run.fidelity=rigid"});
-  for (const double modulus : {5e9, 30e9, 300e9}) {
+  const std::vector<double> moduli = thinning > 1 ? std::vector{5e9} : std::vector{5e9, 30e9, 300e9};
+  for (const double modulus : moduli) {
     EXPECT_EQ(verdicts(c, deforming(c.name, modulus)), rigid) << c.name << ", E = " << modulus << " Pa";
   }
 }
