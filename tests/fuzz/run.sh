@@ -24,7 +24,7 @@ mkdir -p "$build/findings"
   sed -n 's/^## \(\[.*\]\)$/"\\x0A\1\\x0A"/p' "$top/run/scene_keys.md"
 } >"$build/scene.dict"
 declare -A options=(
-  [scene_fuzz]="-max_len=10000 -dict=$build/scene.dict $here/corpus/scene $top/run/scenes"
+  [scene_fuzz]="-max_len=10000 -malloc_limit_mb=256 -dict=$build/scene.dict $here/corpus/scene $top/run/scenes"
   [block_file_fuzz]="-max_len=300 -len_control=0"
 )
 fuzz() {
@@ -32,7 +32,7 @@ fuzz() {
   mkdir -p "$corpus"
   # shellcheck disable=SC2086
   if ! "$build/$target" "$corpus" ${options[$target]} -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
-    -malloc_limit_mb=256 -artifact_prefix="$build/findings/$target-" >"$log" 2>&1; then
+    -artifact_prefix="$build/findings/$target-" >"$log" 2>&1; then
     grep -av '^#' "$log" | tail -n 60
     echo "$target found something: $build/$target FILE runs the input again (FILE: see 'Test unit written to')"
     return 1
