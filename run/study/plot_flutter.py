@@ -77,7 +77,7 @@ def draw_damping(axes, table):
     axes.plot(dampings, worst, "k--s", mfc="none", label="grip, all angles")
     axes.set_xlabel("damping ratio of the joints")
     axes.set_ylabel(r"largest growth on the map, $\sigma/\omega_j$")
-    axes.set_title("Dashpots of the joints do not stop it", fontsize=10)
+    axes.set_title("Dashpots of the joints do not stop the growth", fontsize=10)
     axes.legend(fontsize=8)
 
 
@@ -112,8 +112,8 @@ def main():
     grip.set_ylabel(r"$k_n L/E$")
     draw_comparison(figure.add_subplot(bottom[1]), runs)
     draw_damping(figure.add_subplot(bottom[2]), table)
-    figure.suptitle("Growth of small motions of a column of two deformable blocks between fixed plates; all joints stick under shear "
-                    "$T$ (positive: as under compression along the column); " + r"$\omega_j=\sqrt{k_n/(\varrho L)}$", fontsize=11)
+    figure.suptitle("Column of two deformable blocks between fixed plates, all joints stick under shear $T$ (positive: as under "
+                    "compression along the column); " + r"$\omega_j=\sqrt{k_n/(\varrho L)}$", fontsize=11)
     figure.savefig(folder / "flutter.png", dpi=110)
 
 

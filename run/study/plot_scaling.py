@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt
 import numpy
 
 COLOURS = {"wall": "tab:blue", "pyramid": "tab:orange", "pile": "tab:green", "slope": "tab:red"}
+MODELS = {"wall": "wall", "pyramid": "pyramid", "pile": "falling pile", "slope": "long slope"}
 STYLES = ((1e4, "o", "-"), (5e4, "D", "-."), (5e5, "s", "--"), (float("inf"), "^", ":"))
 
 
@@ -21,16 +22,17 @@ def read(path):
         return list(csv.DictReader(file))
 
 
-def curves(axes, rows, quantity, shift=0.0):
+def curves(axes, rows, quantity, scale, shift):
     """One curve for each problem and size, over the ranks."""
     for problem, blocks in dict.fromkeys((row["problem"], row["blocks"]) for row in rows):
         mine = [row for row in rows if (row["problem"], row["blocks"]) == (problem, blocks) and int(row["ranks"]) > 1]
         mine.sort(key=lambda row: int(row["ranks"]))
         marker, line = next(style[1:] for style in STYLES if float(blocks) < style[0])
-        axes.plot([int(row["ranks"]) for row in mine], [float(row[quantity]) - shift for row in mine], marker=marker,
-                  linestyle=line, color=COLOURS[problem], label=f"{problem}, {int(blocks):,} blocks")
+        axes.plot([int(row["ranks"]) for row in mine], [scale * (float(row[quantity]) - shift) for row in mine], marker=marker,
+                  linestyle=line, color=COLOURS[problem], label=f"{MODELS[problem]}, {int(blocks):,} blocks")
     axes.set_xscale("log", base=2)
-    axes.set_xlabel("ranks")
+    axes.xaxis.set_major_formatter("{x:.0f}")
+    axes.set_xlabel("number of ranks")
     axes.grid(True, alpha=0.3)
 
 
@@ -38,35 +40,38 @@ def main():
     folder = Path(sys.argv[1])
     counts = read(folder / "scaling.csv")
     times = read(folder / "scaling_times.csv")
-    figure, grid = plt.subplots(2, 3, figsize=(16.0, 9.0))
-    for axes, quantity, shift, title in (
-        (grid[0][0], "work_ratio", 1.0, "excess of the busiest rank's counted work over its share"),
-        (grid[0][1], "imbalance", 1.0, "imbalance of counted work, max/mean - 1"),
-        (grid[0][2], "ghosts_per_rank", 0.0, "ghosts a rank at the end"),
-        (grid[1][0], "bytes_per_rank_and_step", 0.0, "bytes a rank and step"),
-        (grid[1][1], "messages_per_rank_and_step", 0.0, "messages a rank and step"),
+    figure, grid = plt.subplots(2, 3, figsize=(13.0, 8.6))
+    for axes, quantity, scale, shift, title, label in (
+        (grid[0][0], "work_ratio", 100.0, 1.0, "Work of the busiest rank", "counted work beyond its share, %"),
+        (grid[0][1], "imbalance", 100.0, 1.0, "Imbalance", "busiest rank beyond the mean, %"),
+        (grid[0][2], "ghosts_per_rank", 1.0, 0.0, "Ghosts", "blocks a rank sees of other ranks"),
+        (grid[1][0], "bytes_per_rank_and_step", 1e-3, 0.0, "Bytes sent", "kB a rank and step"),
+        (grid[1][1], "messages_per_rank_and_step", 1.0, 0.0, "Messages sent", "messages a rank and step"),
     ):
-        curves(axes, counts, quantity, shift)
-        axes.set_title(title, fontsize=10)
+        curves(axes, counts, quantity, scale, shift)
+        axes.set_title(title, fontsize=11)
+        axes.set_ylabel(label)
         if quantity.startswith(("ghosts", "bytes")):
             axes.set_yscale("log")
         else:
             axes.set_ylim(bottom=0.0)
-    grid[1][0].legend(fontsize=7, loc="upper right", ncols=2)
-    grid[1][0].set_ylim(top=1e7)
+    handles, labels = grid[1][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=5, fontsize=9, frameon=False)
     axes = grid[1][2]
     place = numpy.arange(len(times))
-    for offset, (quantity, label, colour) in enumerate((("efficiency", "efficiency on 2 ranks", "tab:blue"),
+    for offset, (quantity, label, colour) in enumerate((("efficiency", "efficiency", "tab:blue"),
                                                         ("ceiling", "two half-size runs at once", "0.6"),
                                                         ("communication", "share of communication", "tab:red"))):
         axes.bar(place + 0.27 * (offset - 1), [float(row[quantity]) for row in times], 0.25, label=label, color=colour)
-    axes.set_xticks(place, [f"{row['problem']}\n{int(row['blocks']):,}" for row in times], fontsize=7)
-    axes.set_title(f"2 ranks, medians of {times[0]['rounds']}", fontsize=10)
-    axes.set_ylim(top=1.5)
-    axes.legend(fontsize=7)
-    figure.tight_layout()
+    axes.set_xticks(place, [f"{MODELS[row['problem']]}, {int(row['blocks']):,}" for row in times], fontsize=8, rotation=35,
+                    ha="right", rotation_mode="anchor")
+    axes.set_title(f"Wall time on 2 ranks, medians of {times[0]['rounds']} rounds", fontsize=11)
+    axes.set_ylabel("efficiency, share")
+    axes.set_ylim(top=1.6)
+    axes.legend(fontsize=9)
+    figure.tight_layout(rect=(0, 0.08, 1, 1))
     for suffix in ("png", "svg"):
-        figure.savefig(folder / f"scaling.{suffix}", dpi=150)
+        figure.savefig(folder / f"scaling.{suffix}", dpi=120)
 
 
 if __name__ == "__main__":

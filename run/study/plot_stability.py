@@ -57,10 +57,11 @@ def draw_growth(axes, growth):
         axes.plot(w, [float(row["measured"]) - 1.0 for row in curve], "o", color=colour, ms=4, mfc="none")
     axes.set_xscale("log")
     axes.set_yscale("symlog", linthresh=1e-5)
+    axes.set_yticks([-1e-1, -1e-3, -1e-5, 0.0, 1e-5, 1e-3, 1e-1, 10.0])
     axes.axhline(0.0, color="0.7", lw=0.8, zorder=0)
     axes.set_xlabel(r"$W=\omega\,\Delta t$")
     axes.set_ylabel("growth of the amplitude per step - 1")
-    axes.set_title(f"Contact oscillation, r = {RADIUS}\nlines: theory, rings: runs", fontsize=10)
+    axes.set_title(f"Contact oscillation, spectral radius {RADIUS}\n(lines: theory, rings: runs)", fontsize=10)
     axes.legend(fontsize=8, loc="upper left")
 
 
@@ -83,7 +84,7 @@ def draw_map(axes, limits):
     axes.set_xlim(stiffness[0], stiffness[-1])
     axes.set_xlabel(r"joint stiffness $k_n$, Pa/m")
     axes.set_ylabel(r"time step $\Delta t$, s")
-    axes.set_title("Largest stable step of a unit square\n(2600 kg/m$^3$), stable below each line; rings: runs", fontsize=10)
+    axes.set_title("Largest stable step of a unit square\n(2600 kg/m$^3$): stable below its line; rings: runs", fontsize=10)
     axes.legend(fontsize=8, loc="lower left")
 
 
@@ -112,7 +113,7 @@ def draw_chains(axes, chains):
 
 
 def draw_stability(folder):
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(15, 5))
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.7))
     draw_growth(left, rows(folder / "growth.csv"))
     draw_map(middle, rows(folder / "limits.csv"))
     draw_chains(right, rows(folder / "chain_limits.csv"))
@@ -126,12 +127,18 @@ def draw_restitution(axes, table):
         mean = [float(row["mean"]) for row in found]
         spread = [[m - float(row["lowest"]) for m, row in zip(mean, found)],
                   [float(row["highest"]) - m for m, row in zip(mean, found)]]
-        axes.errorbar(w, mean, spread, fmt="o", color=colour, mfc="none", capsize=3, label=f"{contact_time}, runs")
-        axes.plot(w, [float(row["predicted"]) for row in found], color=colour, label="predicted")
+        axes.errorbar(w, mean, spread, fmt="o", color=colour, mfc="none", capsize=3, label=f"{contact_time}: runs")
+        axes.plot(w, [float(row["predicted"]) for row in found], color=colour, label=f"{contact_time}: predicted")
     axes.set_xscale("log")
     axes.set_xlabel(r"$W=\omega\,\Delta t$")
-    axes.set_ylabel("speed after / speed before")
-    axes.set_title("One elastic rebound", fontsize=10)
+    axes.set_ylabel("speed after over speed before")
+    axes.set_title("One elastic rebound: time of the contact force", fontsize=10)
+
+
+VARIANTS = {"trial configurations": "trial configurations (program)", "longest": "largest so far (program)",
+            "current": "current length", "scaled": "current length, force scaled with it",
+            "distributed": "distributed (program)", "piece normals": "along normals of the pieces",
+            "resultant": "at the resultant"}
 
 
 def draw_problem(axes, table, problem, title, label, log_y=True):
@@ -139,7 +146,7 @@ def draw_problem(axes, table, problem, title, label, log_y=True):
     for i, variant in enumerate(variants):
         found = of(table, problem=problem, variant=variant)
         axes.plot([int(row["step"]) for row in found], [float(row["value"]) for row in found],
-                  color=f"C{(0, 3, 1)[i]}", label=variant, lw=1.2)
+                  color=f"C{(0, 3, 1)[i]}", linestyle=("-", "--", ":")[i], label=VARIANTS.get(variant, variant), lw=1.6)
     if log_y:
         axes.set_yscale("log")
     axes.set_xlabel("step")
@@ -153,24 +160,25 @@ def draw_paths(axes, table):
         found = of(table, path=path, variant=variant)
         axes.loglog([int(row["steps"]) for row in found], [float(row["net_over_total"]) for row in found],
                     next(styles), ms=4, mfc="none", label=f"{path}: {variant}")
+    axes.set_ylim(bottom=1e-13)
     axes.set_xlabel("steps of the path")
-    axes.set_ylabel("net work / total work")
-    axes.set_title("Closed paths in contact\n(flat face and corner: block strained by 3 %)", fontsize=10)
+    axes.set_ylabel("net work over total work")
+    axes.set_title("Closed paths in contact: potentials\n(flat face and corner: block strained by 3 %)", fontsize=10)
 
 
 def draw_rejected(folder):
-    figure, axes = plt.subplots(2, 3, figsize=(15, 9))
+    figure, axes = plt.subplots(2, 3, figsize=(13, 8.2))
     friction = rows(folder / "friction_variants.csv")
     draw_restitution(axes[0][0], rows(folder / "restitution.csv"))
-    energy = "energy / energy supplied"
-    draw_problem(axes[0][1], friction, "sticking", "Sticking square: spring stretched by", energy)
+    energy = "energy over energy supplied"
+    draw_problem(axes[0][1], friction, "sticking", "Sticking square: the spring is stretched by", energy)
     draw_problem(axes[0][2], friction, "sheared and rocking",
-                 "Rocking square under shear:\nlength in the spring's stiffness", energy)
-    draw_problem(axes[1][0], friction, "rocking", "Rocking square: dashpot", energy)
-    draw_problem(axes[1][1], friction, "sliding", "Sliding square, 30/15 degrees: dashpot", "error of the path")
+                 "Rocking square under shear:\njoint length in the tangential stiffness", energy)
+    draw_problem(axes[1][0], friction, "rocking", "Rocking square: three dashpots", energy)
+    draw_problem(axes[1][1], friction, "sliding", "Sliding square, 30/15 degrees: three dashpots", "relative error of the path")
     draw_paths(axes[1][2], rows(folder / "closed_paths.csv"))
     for cell in axes.flat:
-        cell.legend(fontsize=7)
+        cell.legend(fontsize=8)
     save(figure, folder, "rejected_variants")
 
 
