@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # study.sh verify|stability|accuracy|fidelity|flutter|scenes|stiffness|speed|scaling|all [--quick]: one of the studies, or the
-# first five; tables and charts go to run/results/studies. --quick: fewer points. speed and scaling want a quiet machine.
+# first five; tables, charts and pages go to run/results/studies. --quick: fewer points, into run/results/studies_quick,
+# without pages. speed and scaling need a quiet machine.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/set_up.sh"
@@ -10,7 +11,7 @@ case "${1:-}" in
   all) ;;
   verify | stability | accuracy | fidelity | flutter | scenes | stiffness | speed | scaling) studies=("$1") ;;
   *)
-    sed -n '2,3s/^# //p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,4s/^# //p' "${BASH_SOURCE[0]}" >&2
     exit 2
     ;;
 esac
@@ -36,10 +37,12 @@ run_study() {
     "$here/study/fos_stiffness.py" "$build" "$results" $quick
   elif [ "$study" = speed ]; then
     "$here/study/speed.py" "$build" "$results" $quick
+    "$here/study/plot_speed.py" "$results"
   else
     "$build/gcpdda-study" "$study" "$results" $quick
     "$here/study/plot_$study.py" "$results"
   fi
+  [ -n "$quick" ] || flock "$results/recorded.csv" "$here/study/pages.py" --record "$study"
   echo "== $study${quick:+, quick}: $((SECONDS - start)) s =="
 }
 
