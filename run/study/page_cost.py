@@ -47,6 +47,7 @@ def accuracy():
             source("accuracy", "accuracy_defaults.csv")),
         "peers": table(["problem", "gcpdda, defaults", "CPU, ms", "Box2D, least error", "CPU, ms", "Chipmunk, least error",
                         "CPU, ms"], compared, source("accuracy", "peers.csv")),
+        "measurements": measurements("accuracy"),
         "points": f"{points:,d}",
         "most": number(max(float(row["evaluations_over_fewest"]) for row in rows), 3),
     }

@@ -23,7 +23,7 @@ SizeSurvey survey_sizes(const Scene &scene, std::span<const SceneBlock> blocks, 
 
 /// Put a number into every law that was given as an allowed overlap e:
 ///
-///     k_n = rho g h / (e L)                                             [README, "Stiffness"]
+///     k_n = rho g h / (e L)                                             [src/README.md, 27]
 ///
 /// rho the densest material in use, g = |gravity|, h the extent of the mobile blocks along gravity, L the
 /// median of their sqrt(area). The extent is a pressure head: the deepest joint then closes by about e.
