@@ -21,11 +21,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
-CASES = {  # arguments, limit equilibrium, and what that is of
-    "plane_failure": ([], 1.9534, "tan(phi)/tan(th) + c l/(W sin(th))"),
-    "slope_jointed": (["--families", "bedding", "--from", "0.9", "--to", "1.3"], 1.076, "plane through the toe; benches fail first"),
+CASES = {  # arguments, limit equilibrium, and title of the panel
+    "plane_failure": ([], 1.9534, "Plane failure\n(dashed: limit equilibrium of the block)"),
+    "slope_jointed": (["--families", "bedding", "--from", "0.9", "--to", "1.3"], 1.076,
+                      "Jointed slope; its benches fail first\n(dashed: plane through the toe)"),
     "goodman_bray": (["--from", "0.95", "--to", "1.2", "--tolerance", "0.005", "--set", "fos.limit=20"], 1.0682,
-                     "tan(40)/0.7855, Wyllie and Mah"),
+                     "Toppling slope of Goodman and Bray\n(dashed: limit equilibrium)"),
 }
 MODULI = [1e9, 3e9, 10e9, 30e9, 100e9, 1e12]
 LONG = {"slope_jointed": [1e9, 10e9, 100e9]}  # each search takes a minute or two of CPU time
@@ -62,9 +63,9 @@ def draw(rows, path):
         middle = CASES[name][1]
         axis.set_ylim(min(middle * 0.9, min(r["holds"] for r in own) * 0.99), max(middle * 1.1, max(r["fails"] for r in own) * 1.01))
         axis.set_xlabel("Young's modulus of the blocks, GPa")
-        axis.set_title(f"{name}\ndashed: {CASES[name][2]}", fontsize=9)
+        axis.set_title(CASES[name][2], fontsize=10)
         axis.grid(alpha=0.3)
-    axes[0][0].set_ylabel("factor of safety: holds to fails")
+    axes[0][0].set_ylabel("factor of safety, from holds to fails")
     figure.tight_layout()
     figure.savefig(path, dpi=110)
 
