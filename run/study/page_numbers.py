@@ -1,6 +1,6 @@
 """The ten numbers of README.md, from the committed tables."""
 
-from page_tables import number, of, read, table
+from page_tables import count, number, of, read, table
 from page_blocks import flutter, soak
 from page_checks import holds
 
@@ -15,14 +15,13 @@ def bracket(scene):
 
 
 def numbers():
-    checks, cost, steps, times = (read(f"{name}.csv") for name in ("verification", "speed", "speed_steps", "scaling_times"))
+    checks, cost, times = (read(f"{name}.csv") for name in ("verification", "speed", "scaling_times"))
     slope, error, _ = soak()
     states = flutter()
     rigid = next(r for r in cost if (r["blocks"], r["kind"], r["steps"], r["allowed_overlap"]) == ("5050", "rigid", "2000", "0.001"))
     deformable = next(r for r in cost if r["kind"] == "deformable")
     largest = cost[-1]
     efficiency = [float(row["efficiency"]) for row in times if float(row["contacts_per_block"]) > 1.0]
-    settled = of(steps, blocks="5050", contact_damping="0.05")[0]
     lines = [
         ["problems with a known answer: checks within their tolerance", f"{sum(map(holds, checks))} of {len(checks)}", "verify"],
         ["block sliding on a slope of 30 degrees, friction 15: error of its acceleration",
@@ -36,10 +35,8 @@ def numbers():
         ["factor of safety, toppling slope of Goodman and Bray (limit equilibrium 1.0682)", bracket("goodman_bray"), "stiffness"],
         ["CPU time of a touching contact and step, 5,050 squares at rest: rigid, deformable",
          f"{number(rigid['ns_per_contact_and_step'], 2)} ns, {number(deformable['ns_per_contact_and_step'], 3)} ns", "speed"],
-        ["the same among 998,991 squares, and memory of a block",
+        [f"the same among {count(largest['blocks'])} squares, and memory of a block",
          f"{number(largest['ns_per_contact_and_step'], 2)} ns, {number(largest['peak_memory_per_block_bytes'], 3)} bytes", "speed"],
-        ["simulated time per CPU time, 5,050 squares at rest, longest stable step",
-         number(settled["simulated_s_per_cpu_s"], 2), "speed"],
         ["parallel efficiency on 2 ranks, 5,000 to 100,000 touching blocks",
          f"{min(efficiency):.2f} to {max(efficiency):.2f}", "scaling"],
     ]

@@ -149,6 +149,8 @@ def draw_problem(axes, table, problem, title, label, log_y=True):
                   color=f"C{(0, 3, 1)[i]}", linestyle=("-", "--", ":")[i], label=VARIANTS.get(variant, variant), lw=1.6)
     if log_y:
         axes.set_yscale("log")
+    if problem == "sheared and rocking":
+        axes.set_ylim(top=20.0)  # room for the legend
     axes.set_xlabel("step")
     axes.set_ylabel(label)
     axes.set_title(title, fontsize=10)
