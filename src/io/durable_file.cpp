@@ -75,7 +75,7 @@ std::filesystem::path unfinished_name(const std::filesystem::path &path) {
   return path.string() + ".tmp";
 }
 
-// Keeping the size, the call does not look at the limit for files.
+// The limit is looked at first: a file that grows beyond it ends the process by a signal.
 void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t end) {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
@@ -83,8 +83,13 @@ void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t
     fail("find space for", unfinished_name(path), std::strerror(EFBIG));
   }
   if (begin < end) {
-    call_on(unfinished_name(path), O_WRONLY, "find space on the disk for", {EOPNOTSUPP, ENOSYS, EINVAL},
-            [&](int descriptor) { return ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, begin, end - begin); });
+    call_on(unfinished_name(path), O_WRONLY, "find space on the disk for", {}, [&](int descriptor) {
+      if (::fallocate(descriptor, 0, begin, end - begin) == 0) {
+        return 0;
+      }
+      const bool cannot = errno == EOPNOTSUPP || errno == ENOSYS || errno == EINVAL;
+      return cannot ? ::ftruncate(descriptor, end) : -1; // some file systems only know how long a file is
+    });
   }
 }
 

@@ -10,8 +10,8 @@ namespace gcpdda {
 std::filesystem::path unfinished_name(const std::filesystem::path &path);
 
 /// Takes bytes [begin, end) of the unfinished file from the disk, so that writing them cannot fail for want
-/// of space. Does nothing where the file system cannot promise this. Throws FileError when the space is not
-/// there.
+/// of space, where the file system can promise this. The file ends at `end` afterwards, and reads as zeros
+/// where nothing has been written. Throws FileError when the space is not there.
 void reserve(const std::filesystem::path &path, std::int64_t begin, std::int64_t end);
 
 /// What has been written to the unfinished file so far begins to go to the disk, so that publish() need not

@@ -13,8 +13,11 @@ namespace gcpdda {
 
 namespace {
 
-/// Behind the last dataset, for what HDF5 has to say of it and of the next one.
-constexpr std::int64_t room_for_metadata = 16384;
+// HDF5 takes blocks of 2 KiB for its own data and for short datasets, and leaves of each less than what comes
+// next. These are bounds, several times what it needs: bytes for all groups, links and attributes of a file,
+// and what a dataset takes besides its rows.
+constexpr std::int64_t room_for_file = 16384;
+constexpr std::int64_t room_for_dataset = 4096;
 
 bool close_failed = false;
 
@@ -133,17 +136,16 @@ void CollectiveFile::group(const std::string &name) {
 // Open MPI's collective write returns success when the disk is full (4.1, fcoll/vulcan): the file would be
 // published with holes. And where HDF5 cannot write its own data on one rank, the others wait for it, in
 // closing the file too. So the place of every byte is taken before anything asks for it.
-void CollectiveFile::reserve_space(std::int64_t size) {
+//
+// The file is that long from then on, too, until HDF5 cuts it at its end in closing. MPI-IO writes pieces
+// with gaps between them, such as HDF5's own data, as one stretch: what it reads from the file with the
+// pieces put in. Behind the end it reads nothing, and the gaps would take what its buffer holds, memory of
+// the program (Open MPI 4.1 fbtl/posix and ROMIO). Within the file they take zeros.
+void CollectiveFile::reserve_space(std::int64_t rows_size) {
+  const std::int64_t before =
+      std::exchange(reserved_, std::max(reserved_, room_for_file) + rows_size + room_for_dataset);
   if (communicator_.is_root()) {
-    reserve(path_, taken_, taken_ + size + room_for_metadata);
-  }
-}
-
-void CollectiveFile::note_taken(const hdf5::Dataset &dataset) {
-  const haddr_t begin = H5Dget_offset(dataset.get());
-  if (begin != HADDR_UNDEF) { // without rows, without place
-    const auto end = static_cast<std::int64_t>(begin + H5Dget_storage_size(dataset.get()));
-    taken_ = std::max(taken_, end + room_for_metadata);
+    reserve(path_, before, reserved_);
   }
 }
 
@@ -158,7 +160,6 @@ CollectiveFile::Table CollectiveFile::make_table(const std::string &name, std::i
     table.dataset = hdf5::Dataset(hdf5::checked(H5Dcreate2(file_.get(), name.c_str(), file_type, space.get(),
                                                            H5P_DEFAULT, creation.get(), H5P_DEFAULT),
                                                 "write " + file_name(path_, name)));
-    note_taken(table.dataset);
   });
   return table;
 }

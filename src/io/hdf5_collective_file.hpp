@@ -98,17 +98,16 @@ private:
                    hid_t memory_type);
   void write_rows(const Table &table, std::int64_t first, hsize_t count, const void *values);
   void agree_on_writes();
-  /// For one more dataset.
-  void reserve_space(std::int64_t size);
-  void note_taken(const hdf5::Dataset &dataset);
+  /// For one more dataset whose rows take so many bytes. Not collective.
+  void reserve_space(std::int64_t rows_size);
   void write_attribute(const std::string &object, const std::string &name, hid_t space, Values value);
 
   const hdf5::QuietErrors quiet_;
   const Communicator communicator_;
   const std::filesystem::path path_;
   hdf5::File file_;
-  std::int64_t taken_ = 0;   ///< no byte of the file stands behind these
-  std::string failed_write_; ///< the first one of this rank
+  std::int64_t reserved_ = 0; ///< bytes of the file on the disk; it takes no more
+  std::string failed_write_;  ///< the first one of this rank
   bool is_complete_ = false;
   bool all_writes_collective_ = true;
 };
