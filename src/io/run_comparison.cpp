@@ -130,11 +130,17 @@ void Comparison::compare_contents(const fs::path &name, const hdf5::Content &a, 
 }
 
 void Comparison::compare_hdf5(const fs::path &name) {
+  const std::size_t before = differences_.size();
   const hdf5::File a = hdf5::open_to_read(a_ / name);
   const hdf5::File b = hdf5::open_to_read(b_ / name);
   for (const std::string &path :
        names_in_both(name.string() + ": ", hdf5::list_contents(a), hdf5::list_contents(b))) {
     compare_contents(name, hdf5::read_content(a, path), hdf5::read_content(b, path));
+  }
+  if (differences_.size() == before) {
+    if (const std::ptrdiff_t byte = first_difference(bytes_of(a_ / name), bytes_of(b_ / name)); byte >= 0) {
+      add(fmt::format("{}: the contents are equal, the file differs from byte {} on", name.string(), byte));
+    }
   }
 }
 

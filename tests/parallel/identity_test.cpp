@@ -1,6 +1,7 @@
 // One rank and many write the same bytes. Each test also proves that there was something to get wrong: blocks
 // in contact across ranks, blocks that changed their rank, neighbourhoods made anew.
 
+#include "gcpdda/io/checkpoint.hpp"
 #include "gcpdda/io/run_comparison.hpp"
 #include "gcpdda/model/contact_history.hpp"
 #include "gcpdda/simulation/restart.hpp"
@@ -98,6 +99,10 @@ private:
   void compare() const {
     for (const std::string &difference : compare_runs(together(), alone())) {
       ADD_FAILURE() << difference;
+    }
+    for (const fs::path &checkpoint : checkpoint_files(alone())) {
+      const fs::path other = together() / checkpoint.lexically_relative(alone());
+      EXPECT_TRUE(testing::file_text(checkpoint) == testing::file_text(other)) << checkpoint.filename();
     }
     // These facts of the summary do not depend on the ranks either.
     for (const char *fact :

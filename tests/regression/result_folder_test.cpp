@@ -23,6 +23,7 @@ using testing::file_text;
 using testing::lines_of;
 using testing::Outcome;
 using testing::run_gcpdda;
+using testing::run_program;
 using testing::summary_number;
 using testing::summary_text;
 using testing::WorkFolder;
@@ -257,6 +258,59 @@ TEST(Identity, OfRunsStartedByMpirun) {
   EXPECT_GE(summary_number(folder / "on3", "cross_rank_contacts"), 1);
   EXPECT_GE(summary_number(folder / "on3", "migrations"), 1);
   EXPECT_GE(summary_number(folder / "on3", "refreshes"), 1);
+}
+
+/// Every kind of file: frames of blocks, contacts and bolts, two topologies, histories, indices, checkpoints.
+std::string scene_of_all_files() {
+  std::string toml = testing::head_scene(1e8, 1e-3, 0.032);
+  toml.erase(toml.find("duration"), std::string("duration = 0.032\n").size());
+  toml.insert(toml.find("interval ="), "checkpoint_interval = 0.016\n");
+  for (int k = 0; k < 8; ++k) {
+    toml += testing::block_toml(fmt::format("tower{}", k),
+                                testing::rectangle({3.0 * k, 0.0}, {3.0 * k + 1.0, 2.0}));
+  }
+  return toml + "[support.cable]\nkind = \"anchored\"\naxial_stiffness = 1e7\n"
+                "[[bolt]]\nname = \"b\"\nsupport = \"cable\"\nfrom = [0.5, 0.5]\nto = [0.5, -1.5]\n"
+                "[[monitor]]\nblock = \"tower0\"\n"
+                "[[stage]]\nkind = \"run\"\nduration = 0.008\n"
+                "[[stage]]\nkind = \"excavate\"\nblocks = [\"tower3\"]\n"
+                "[[stage]]\nkind = \"run\"\nduration = 0.008\n";
+}
+
+// The C library fills memory that is allocated, and memory that is freed, with the two bytes that the
+// variable gives: where any of it reached a file, the files would differ. What is exempt is measured, or is
+// about ranks.
+TEST(Identity, OfEveryByteWhateverMemoryHolds) {
+  const WorkFolder folder;
+  folder.write("scene.toml", scene_of_all_files());
+  const auto run = [&](int ranks, int pattern) {
+    const std::string out = fmt::format("on{}", ranks);
+    const Outcome outcome = run_program(testing::gcpdda_words(ranks, {"run", "scene.toml", "--out", out}),
+                                        folder.path(), {fmt::format("MALLOC_PERTURB_={}", pattern)});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return folder / out;
+  };
+  const auto is_exempt = [](const std::string &name) {
+    return name == "summary.json" || name == "run.log" || name.starts_with("decomposition");
+  };
+  const fs::path alone = run(1, 90);
+  std::vector<std::string> files = testing::listing(alone);
+  std::erase_if(files, is_exempt);
+  for (const char *name : {"frames/bolts_000002.hdf", "frames/contacts_000002.hdf",
+                           "frames/topology_000002.h5", "checkpoints/checkpoint_000000016.h5"}) {
+    EXPECT_EQ(std::count(files.begin(), files.end(), name), 1) << name;
+  }
+  for (const auto &[ranks, pattern] : {std::pair(3, 165), std::pair(13, 7)}) {
+    const fs::path together = run(ranks, pattern);
+    std::vector<std::string> of_these = testing::listing(together);
+    std::erase_if(of_these, is_exempt);
+    EXPECT_EQ(of_these, files);
+    for (const std::string &name : files) {
+      if (fs::is_regular_file(alone / name)) {
+        EXPECT_TRUE(file_text(alone / name) == file_text(together / name)) << name << " on " << ranks;
+      }
+    }
+  }
 }
 
 } // namespace

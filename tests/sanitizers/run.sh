@@ -15,4 +15,4 @@ build_targets "${@/%/_tests}"
 # sees the libraries of MPI, whose leaks are theirs.
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=0}
 export LSAN_OPTIONS=suppressions=$here/leaks.txt:print_suppressions=0 UBSAN_OPTIONS=print_stacktrace=1
-ctest --test-dir "$build" --output-on-failure -j 2 -E 'parallel_[247]' -L "^($(IFS='|' && echo "$*"))\$"
+ctest --test-dir "$build" --output-on-failure -j 2 -E 'parallel_[257]' -L "^($(IFS='|' && echo "$*"))\$"

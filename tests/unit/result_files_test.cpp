@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 
@@ -224,6 +225,21 @@ TEST_F(Comparison, FindsOneBitOfADataset) {
 TEST_F(Comparison, FindsAnAttribute) {
   flip_bit(b_ / "frames/frame_000001.hdf", time_of_1);
   expect_difference("frame_000001.hdf: /VTKHDF@time");
+}
+
+// HDF5 leaves gaps between what it holds; the longest run of zeros lies in one.
+TEST_F(Comparison, FindsAByteThatIsNoContent) {
+  std::string bytes = read_text(b_ / "frames/contacts_000001.hdf");
+  std::string zeros(64, '\0');
+  while (bytes.find(zeros + zeros) != std::string::npos) {
+    zeros += zeros;
+  }
+  ASSERT_GE(zeros.size(), 512U);
+  const std::size_t where = bytes.find(zeros) + zeros.size() / 2;
+  bytes[where] = '\1';
+  write_text(b_ / "frames/contacts_000001.hdf", bytes);
+  expect_difference(
+      fmt::format("contacts_000001.hdf: the contents are equal, the file differs from byte {} on", where));
 }
 
 TEST_F(Comparison, FindsAShape) {
