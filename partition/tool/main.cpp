@@ -3,17 +3,18 @@
 
 #include "gcpdda/base/check.hpp"
 #include "gcpdda/base/diagnostic.hpp"
+#include "gcpdda/base/input_file.hpp"
 #include "gcpdda/partition/domain_map.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <iostream>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -32,6 +33,7 @@ struct Number {
 };
 
 constexpr std::string_view separators = " \t,;\r";
+constexpr std::int64_t longest_file = 1 << 30; // bytes
 
 Number parse(std::string_view word, const SourcePosition &where) {
   std::int64_t value = 0;
@@ -110,21 +112,16 @@ Work work_in(const std::string &text, const std::string &file) {
 }
 
 std::string read_all(const std::string &path) {
-  std::ostringstream text;
   if (path == "-") {
+    std::ostringstream text;
     text << std::cin.rdbuf();
     return text.str();
   }
-  std::ifstream file(path);
-  // Reading tells what opening does not: a folder opens but cannot be read.
-  if (!file || file.peek() == std::ifstream::traits_type::eof()) {
-    if (!file.eof()) {
-      throw FileError(path + ": cannot be read");
-    }
-    return {};
+  InputFile file = read_input_file(path, longest_file);
+  if (!file.trouble.empty()) {
+    throw FileError(path + ": cannot be read, " + file.trouble);
   }
-  text << file.rdbuf();
-  return text.str();
+  return std::move(file.text);
 }
 
 void print_owners(const DomainMap &map) {

@@ -28,6 +28,8 @@ namespace gcpdda {
 
 namespace {
 
+constexpr std::int64_t longest_map = 256 << 20; // bytes
+
 std::int64_t agreed_sum(const Communicator &world, std::int64_t value) {
   world.sum(std::span(&value, 1));
   return value;
@@ -276,7 +278,8 @@ void prepare_region(const Communicator &world, Scene &scene) {
   }
   Diagnostics faults;
   for (JointMap &map : scene.region.maps) {
-    JointMapReading reading = read_joint_map(read_on_root(world, map.path, "the joint map"), map.path);
+    JointMapReading reading =
+        read_joint_map(read_on_root(world, map.path, "the joint map", longest_map), map.path);
     map.lines = std::move(reading.lines);
     faults.insert(faults.end(), reading.faults.begin(), reading.faults.end());
   }

@@ -46,6 +46,12 @@ struct Arguments {
 };
 
 constexpr int most_subdomains = 1 << 20;
+constexpr std::int64_t longest_scene = 64 << 20; // bytes; more than 10^4 inline blocks take
+
+std::string read_scene_on_root(const Communicator &world, const std::string &path,
+                               const std::string &who = "the scene") {
+  return read_on_root(world, path, who, longest_scene);
+}
 
 void print(const Communicator &world, const Diagnostics &diagnostics) {
   if (world.is_root()) {
@@ -89,7 +95,7 @@ int with_scene(const Communicator &world, const Arguments &arguments, const std:
 }
 
 template <class Work> int with_scene(const Communicator &world, const Arguments &arguments, Work &&work) {
-  return with_scene(world, arguments, read_on_root(world, arguments.scene, "the scene"), work);
+  return with_scene(world, arguments, read_scene_on_root(world, arguments.scene), work);
 }
 
 std::filesystem::path result_folder(const Arguments &arguments, const std::string &stem) {
@@ -113,8 +119,7 @@ int restart(const Communicator &world, Arguments arguments) {
   arguments.scene = scene.string();
   Arguments unchanged = arguments;
   unchanged.sets.clear();
-  const SceneReading before =
-      read_scene(read_on_root(world, arguments.scene, "the scene"), arguments.scene, {});
+  const SceneReading before = read_scene(read_scene_on_root(world, arguments.scene), arguments.scene, {});
   return with_scene(world, has_errors(before.diagnostics) ? unchanged : arguments, [&](const Scene &after) {
     return restart_scene(world, before.scene, after, arguments.directory);
   });
@@ -124,7 +129,7 @@ int restart(const Communicator &world, Arguments arguments) {
 /// @return what strengths were divided by then
 double factor_of_settled(const Communicator &world, const std::string &folder, const Scene &scene) {
   const std::string path = (std::filesystem::path(folder) / "scene.toml").string();
-  const std::string text = read_on_root(world, path, "the scene of the settled state");
+  const std::string text = read_scene_on_root(world, path, "the scene of the settled state");
   std::istringstream before(settling_part(text));
   std::istringstream now(settling_part(scene.resolved));
   std::string was;
@@ -182,7 +187,7 @@ int ensemble(const Communicator &world, Arguments arguments) {
   if (!arguments.count.empty()) {
     arguments.sets.push_back("ensemble.count=" + arguments.count);
   }
-  const std::string text = read_on_root(world, arguments.scene, "the scene");
+  const std::string text = read_scene_on_root(world, arguments.scene);
   return with_scene(world, arguments, text, [&](const Scene &scene) {
     const auto member_scene = [&](const Communicator &group, const std::vector<double> &values) {
       std::vector<std::string> sets = arguments.sets;

@@ -1,28 +1,23 @@
 #include "root_file.hpp"
 
 #include "gcpdda/base/check.hpp"
+#include "gcpdda/base/input_file.hpp"
 
-#include <filesystem>
 #include <fstream>
-#include <sstream>
-#include <system_error>
+#include <utility>
 
 namespace gcpdda {
 
-std::string read_on_root(const Communicator &world, const std::string &path, const std::string &who) {
+std::string read_on_root(const Communicator &world, const std::string &path, const std::string &who,
+                         std::int64_t most_bytes) {
   std::string text;
   std::string trouble;
   if (world.is_root()) {
-    std::error_code ignored;
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path, ignored)) {
-      trouble =
-          path + ": error: cannot open " + who + ", no such file or no right to read it, check the path";
-    } else {
-      std::ostringstream content;
-      content << file.rdbuf();
-      text = content.str();
+    InputFile file = read_input_file(path, most_bytes);
+    if (!file.trouble.empty()) {
+      trouble = path + ": error: cannot open " + who + ", " + file.trouble + ", check the path";
     }
+    text = std::move(file.text);
   }
   world.broadcast(trouble);
   if (!trouble.empty()) {

@@ -2,13 +2,16 @@
 
 #include "gcpdda/parallel/communicator.hpp"
 
+#include <cstdint>
 #include <string>
 
 namespace gcpdda {
 
 /// Text of a file that the root reads, on all ranks. Collective; throws FileError on all ranks.
 /// @param who  what the message calls it: "the scene"
-std::string read_on_root(const Communicator &world, const std::string &path, const std::string &who);
+/// @param most_bytes  a longer file is refused
+std::string read_on_root(const Communicator &world, const std::string &path, const std::string &who,
+                         std::int64_t most_bytes);
 
 /// The root writes a text. Collective; throws FileError on all ranks.
 void write_on_root(const Communicator &world, const std::string &path, const std::string &text,

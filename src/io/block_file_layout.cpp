@@ -4,12 +4,12 @@
 #include "hdf5_input.hpp"
 #include "scene_faults.hpp"
 
+#include "gcpdda/base/input_file.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <string>
@@ -61,12 +61,14 @@ private:
 
   bool open() {
     const std::string &path = block_file_->path;
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored) || !std::ifstream(path)) {
-      overview_.faults.push_back({Severity::error, block_file_->where,
-                                  fmt::format("cannot open the block file '{}'", path),
-                                  "no such file or no right to read it",
-                                  "check the path, which starts from the folder of the scene"});
+    if (const InputFile file = look_at_input_file(path); !file.trouble.empty()) {
+      const Diagnostic cannot_open{Severity::error, block_file_->where,
+                                   fmt::format("cannot open the block file '{}'", path), file.trouble,
+                                   "check the path, which starts from the folder of the scene"};
+      if (!file.is_missing) { // the scene is sound
+        throw FileError(to_string(cannot_open));
+      }
+      overview_.faults.push_back(cannot_open);
       return false;
     }
     if (H5Fis_hdf5(path.c_str()) <= 0) {

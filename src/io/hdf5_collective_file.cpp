@@ -105,8 +105,13 @@ RowRange rows_in_rank_order(const Communicator &communicator, std::int64_t count
 
 CollectiveFile::CollectiveFile(const Communicator &communicator, std::filesystem::path path)
     : communicator_(communicator), path_(std::move(path)) {
-  // MPI-IO would truncate what is there, but keep its size on some file systems.
-  on_root(communicator_, [&] { std::filesystem::remove(unfinished_name(path_)); });
+  on_root(communicator_, [&] {
+    if (std::filesystem::exists(path_) && !std::filesystem::is_regular_file(path_)) {
+      throw FileError("cannot write " + path_.string() + ": there is something of this name that is no file");
+    }
+    // MPI-IO would truncate what is there, but keep its size on some file systems.
+    std::filesystem::remove(unfinished_name(path_));
+  });
   on_all_ranks(communicator_, [&] {
     const hdf5::Properties access = parallel_access(communicator_);
     file_ = hdf5::File(

@@ -2,6 +2,8 @@
 
 #include "hdf5_collective_file.hpp"
 
+#include "gcpdda/base/input_file.hpp"
+
 #include <mpi.h>
 
 #include <algorithm>
@@ -96,7 +98,11 @@ Content describe(const std::string &path, const Dataspace &space, const Datatype
 
 } // namespace
 
+// HDF5 would wait for what a pipe gives.
 File open_to_read(const std::filesystem::path &path) {
+  if (const InputFile file = look_at_input_file(path.string()); !file.trouble.empty()) {
+    throw FileError("cannot open " + path.string() + ": " + file.trouble);
+  }
   return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open " + path.string()));
 }
 

@@ -1,22 +1,22 @@
 #include "gcpdda/io/record_file.hpp"
 
+#include "gcpdda/base/check.hpp"
+#include "gcpdda/base/input_file.hpp"
 #include "gcpdda/base/text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <span>
-#include <sstream>
 
 namespace gcpdda {
 
 namespace {
 
-constexpr double largest_number = 1e9; // s, m/s, m/s2
+constexpr double largest_number = 1e9;             // s, m/s, m/s2
+constexpr std::int64_t longest_record = 512 << 20; // bytes; room for the most rows
 
 class RecordReader {
 public:
@@ -109,25 +109,24 @@ Diagnostics open_record(const Communicator &communicator, Scene &scene) {
   if (!earthquake.shakes() || !earthquake.record.empty()) {
     return {};
   }
-  std::string text;
-  std::int64_t is_missing = 0;
+  InputFile file;
   if (communicator.is_root()) {
-    std::error_code ignored;
-    std::ifstream file(earthquake.file, std::ios::binary);
-    is_missing = !file || std::filesystem::is_directory(earthquake.file, ignored) ? 1 : 0;
-    std::ostringstream content;
-    if (is_missing == 0) {
-      content << file.rdbuf();
-      text = content.str();
+    file = read_input_file(earthquake.file, longest_record);
+  }
+  communicator.broadcast(file.trouble);
+  if (!file.trouble.empty()) {
+    const Diagnostic fault{Severity::error, earthquake.where,
+                           fmt::format("cannot open the record '{}'", earthquake.file), file.trouble,
+                           "its path starts from the folder of the scene"};
+    std::int64_t is_missing = file.is_missing ? 1 : 0;
+    communicator.max(std::span(&is_missing, 1));
+    if (is_missing == 0) { // the scene is sound
+      throw FileError(to_string(fault));
     }
+    return {fault};
   }
-  communicator.max(std::span(&is_missing, 1));
-  if (is_missing > 0) {
-    return {{Severity::error, earthquake.where, fmt::format("cannot open the record '{}'", earthquake.file),
-             "no such file or no right to read it", "its path starts from the folder of the scene"}};
-  }
-  communicator.broadcast(text);
-  RecordReading reading = read_record(text, earthquake.file);
+  communicator.broadcast(file.text);
+  RecordReading reading = read_record(file.text, earthquake.file);
   earthquake.record = std::move(reading.rows);
   return std::move(reading.faults);
 }

@@ -55,7 +55,7 @@ std::vector<fs::path> own_files(const fs::path &directory) {
       return;
     }
     for (const fs::directory_entry &entry : fs::directory_iterator(directory / folder)) {
-      if (!entry.is_directory() && is_own_file(folder, entry.path())) {
+      if (entry.is_regular_file() && is_own_file(folder, entry.path())) {
         found.push_back(entry.path());
       }
     }
