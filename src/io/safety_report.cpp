@@ -193,6 +193,7 @@ void prepare_safety_directory(const fs::path &directory, bool overwrite) {
                                 holds_search ? "a search for the factor of safety" : "a run",
                                 holds_search ? " or replace it with --overwrite" : ""));
   }
+  make_directory(directory);
   for (const char *name : own_names) {
     fs::remove(directory / name);
   }
@@ -203,7 +204,6 @@ void prepare_safety_directory(const fs::path &directory, bool overwrite) {
       }
     }
   }
-  make_directory(directory);
   make_directory(directory / "trials");
 }
 

@@ -271,9 +271,10 @@ int run_ensemble(const Communicator &communicator, const Scene &scene, const Mem
                        "nothing says how many members there are and what they differ in",
                        "write [ensemble] with a count, and [[ensemble.vary]]"}});
   }
-  if (scene.ensemble.measure == Measure::factor) {
-    (void)settling_scene(with_settle_stage(scene), 1.0); // refuses a scene for all members at once
-  }
+  // What is wrong with the scene itself is refused for all members at once, before there is a folder.
+  const Scene staged = with_settle_stage(scene);
+  (void)Simulation(communicator,
+                   scene.ensemble.measure == Measure::factor ? settling_scene(staged, 1.0) : staged);
   return EnsembleRun(communicator, scene, member_scene, options).run();
 }
 

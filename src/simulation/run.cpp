@@ -144,6 +144,9 @@ private:
 
   void begin_results(const Scene &scene, const RunOptions &options) {
     on_root(communicator_, [&] {
+      if (options.prepare) {
+        options.prepare();
+      }
       prepare_result_directory(directory_, options.overwrite, scene.resolved);
       histories_.emplace(directory_, scene.monitors, !scene.bolts.empty());
     });

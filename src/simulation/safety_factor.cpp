@@ -85,15 +85,19 @@ public:
   }
 
 private:
+  // A scene that is refused, or a state that cannot be taken, leaves no folder behind and removes nothing.
   int begin() {
-    if (!options_.settled.empty()) { // a state that cannot be taken leaves no folder behind
-      if (const int code = take_settled(); code != 0) {
-        return code;
-      }
+    if (options_.settled.empty()) {
+      return settle_as_it_can();
     }
-    on_root(world_, [&] { prepare_safety_directory(options_.directory, options_.overwrite); });
-    return options_.settled.empty() ? settle_as_it_can() : 0;
+    const int code = take_settled();
+    if (code == 0) {
+      on_root(world_, [&] { prepare_directory(); });
+    }
+    return code;
   }
+
+  void prepare_directory() const { prepare_safety_directory(options_.directory, options_.overwrite); }
 
   int search() {
     const std::size_t at_once = choose_groups();
@@ -122,13 +126,13 @@ private:
 
   /// With full strength, or where the blocks do not come to rest so, with the most that is tried.
   int settle_as_it_can() {
-    int code = settle(1.0, options_.overwrite);
+    int code = settle(1.0, options_.overwrite, [this] { prepare_directory(); });
     const double from = scene_.reduction.from;
     if ((code == 0 || code == 7) && !has_settled() && from < 1.0) {
       say(fmt::format("the blocks do not settle with their full strength, now with their strengths divided "
                       "by fos.from = {:g}\n",
                       from));
-      code = settle(from, true);
+      code = settle(from, true, {});
     }
     if (code == 0 && !has_settled()) {
       code = 7;
@@ -164,10 +168,10 @@ private:
   [[nodiscard]] bool has_settled() const { return report_.settled.verdict == Verdict::settled; }
 
   /// The settled state, on all ranks.
-  int settle(double factor, bool overwrite) {
-    Scene start = settling_scene(scene_, factor);
-    const RunOutcome outcome =
-        run_and_tell(world_, start, {settled_directory(), overwrite, false, {}, options_.quiet});
+  int settle(double factor, bool overwrite, const std::function<void()> &prepare) {
+    RunOptions options{settled_directory(), overwrite, false, {}, options_.quiet};
+    options.prepare = prepare;
+    const RunOutcome outcome = run_and_tell(world_, settling_scene(scene_, factor), options);
     report_.settled = trial_of(facts_of(factor, outcome, 0.0));
     report_.settled.steps = outcome.summary.steps;
     start_time_ = outcome.summary.time;

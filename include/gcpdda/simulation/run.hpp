@@ -5,6 +5,7 @@
 #include "gcpdda/parallel/communicator.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace gcpdda {
@@ -20,6 +21,8 @@ struct RunOptions {
   bool bare = false;  ///< no frames, histories and checkpoints: what the summary says is all that is wanted
   bool once = false;  ///< nobody goes on from it: no checkpoints, and a last frame where the signal stops it
   std::string progress_of = {}; ///< what lines of progress of a quiet run begin with; empty for no such lines
+  /// What else the root has to make or to remove once the scene is accepted, before the run writes anything.
+  std::function<void()> prepare = {};
 };
 
 /// How a run ended.
