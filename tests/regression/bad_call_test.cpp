@@ -129,7 +129,7 @@ const std::vector<BadCall> bad_calls{
     {"SetWithoutValue", {"run", "s.toml", "--set"}, 2, {"--set: 1 required TEXT missing", help}},
     {"OutWithoutValue", {"run", "s.toml", "--out"}, 2, {"--out: 1 required TEXT missing", help}},
     {"InspectNoScene", {"inspect", "nowhere.toml"}, 4, {"nowhere.toml" + no_scene}},
-    {"FolderAsScene", {"run", "folder"}, 4, {"folder" + no_scene}, [](const WorkFolder &folder) { std::filesystem::create_directory(folder / "folder"); }},
+    {"FolderAsScene", {"run", "folder"}, 4, {"folder: error: cannot open the scene, it is a folder and no file, check the path"}, [](const WorkFolder &folder) { std::filesystem::create_directory(folder / "folder"); }},
     {"SetOutOfRange", {"run", "s.toml", "--set", "run.duration=-1"}, 3,
      {"--set run.duration=-1: error: 'duration' in [run] is -1, it must be above 0 and at most 1e+12, for example duration = 2.0"}},
     {"SetOfWall", {"inspect", "s.toml", "--set", "wall.v.rows=5", "--set", "wall.w.rows=0.5"}, 3,
