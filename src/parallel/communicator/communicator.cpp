@@ -3,6 +3,8 @@
 
 #include "gcpdda/parallel/communicator.hpp"
 
+#include "idle_threads.hpp"
+
 #include "gcpdda/base/check.hpp"
 
 // Open MPI's and MPICH's old C++ interface would need a library of its own.
@@ -10,6 +12,7 @@
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <exception>
 #include <limits>
@@ -288,6 +291,10 @@ MpiScope::~MpiScope() {
   if (std::uncaught_exceptions() > 0) {
     abort(1); // MPI_Finalize would wait for ranks that wait for this one
   }
+  // MPI_Init leaves an event to Open MPI's own thread. MPI_Finalize of Open MPI 4 unloads the code that
+  // handles it without asking whether it has been handled: on a busy machine a short run would end in a crash
+  // (github.com/open-mpi/ompi/issues/10117). Threads that never sleep end the wait after its limit.
+  wait_for_idle_threads(std::chrono::seconds(10));
   MPI_Finalize();
 }
 

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <chrono>
+
+namespace gcpdda {
+
+/// Waits until all other threads of this process sleep, at most so long. Where the system does not tell (it
+/// has no /proc), there is no wait.
+void wait_for_idle_threads(std::chrono::seconds at_most);
+
+} // namespace gcpdda
