@@ -7,7 +7,9 @@
 #include <csignal>
 #include <fcntl.h>
 #include <fstream>
+#include <iostream>
 #include <iterator>
+#include <regex>
 #include <stdexcept>
 #include <string_view>
 #include <sys/wait.h>
@@ -65,20 +67,43 @@ std::vector<char *> pointers(std::vector<std::string> &texts) {
 
 /// Status of a child that ends in time; otherwise its whole group is killed.
 int wait_for(pid_t child) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > deadline) {
-      kill(-child, SIGKILL);
-      waitpid(child, &status, 0);
-      return 1000;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (!wait_until([&] { return waitpid(child, &status, WNOHANG) != 0; })) {
+    kill(-child, SIGKILL);
+    waitpid(child, &status, 0);
+    return 1000;
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 } // namespace
+
+bool wait_until(const std::function<bool()> &done) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(20);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+std::string own_lines(const std::string &standard_error) {
+  static const std::regex of_component(R"(\[[^\]\s]+[:/][^\]\s]+\].*|\*.*)");
+  const std::string row_of_dashes(74, '-');
+  std::vector<std::string> lines = lines_of(standard_error);
+  std::string own;
+  for (auto line = lines.begin(); line != lines.end(); ++line) {
+    const auto end = *line == row_of_dashes ? std::find(line + 1, lines.end(), row_of_dashes) : lines.end();
+    if (end != lines.end()) {
+      line = end;
+    } else if (!std::regex_match(*line, of_component)) {
+      own += *line + '\n';
+    }
+  }
+  return own;
+}
 
 WorkFolder::WorkFolder() {
   std::string name = (fs::temp_directory_path() / "gcpdda_regression_XXXXXX").string();
@@ -143,12 +168,24 @@ std::vector<pid_t> Process::children() const {
   return found;
 }
 
+void Process::wait_until(const std::function<bool()> &done) const {
+  testing::wait_until([&] {
+    siginfo_t end = {};
+    return done() || (waitid(P_PID, static_cast<id_t>(child_), &end, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+                      end.si_pid != 0);
+  });
+}
+
 Outcome Process::wait() {
   Outcome outcome;
   outcome.exit_code = wait_for(child_);
   ended_ = true;
   outcome.out = file_text(*streams_ / "out");
-  outcome.err = file_text(*streams_ / "err");
+  const std::string err = file_text(*streams_ / "err");
+  outcome.err = own_lines(err);
+  if (outcome.exit_code == 128 + SIGSEGV || outcome.exit_code == 128 + SIGABRT) { // MPI's words say where
+    std::cerr << err;
+  }
   return outcome;
 }
 

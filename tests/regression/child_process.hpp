@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <sys/types.h>
@@ -28,8 +29,16 @@ private:
 struct Outcome {
   int exit_code = -1; ///< 128 + signal when it was killed; 1000 when it did not end in time
   std::string out;
-  std::string err;
+  std::string err; ///< own_lines() of it
 };
+
+/// Standard error without what hwloc, MPI and mpirun say of the machine and of the end of a process: lines
+/// that begin with [place/component] or [host:process] or *, and paragraphs between two rows of dashes.
+std::string own_lines(const std::string &standard_error);
+
+/// Waits until it is done, for twenty minutes at most: a machine may be slow.
+/// @return whether it is done
+bool wait_until(const std::function<bool()> &done);
 
 /// A program started in a folder. It sees this process's environment without what MPI launchers left in it,
 /// plus `environment` ("NAME=value").
@@ -44,7 +53,9 @@ public:
   [[nodiscard]] pid_t id() const { return child_; }
   /// Of the processes it has started itself, mpirun's ranks say; sorted.
   [[nodiscard]] std::vector<pid_t> children() const;
-  /// To its end; after two minutes it is killed, children included.
+  /// Until it is done or the program has ended, as wait_until().
+  void wait_until(const std::function<bool()> &done) const;
+  /// To its end; one that outlasts wait_until() is killed, children included.
   Outcome wait();
 
 private:

@@ -8,11 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fmt/format.h>
-#include <thread>
 
 namespace gcpdda::cluster_job_test {
 namespace {
@@ -55,15 +53,9 @@ protected:
   testing::WorkFolder folder_;
 };
 
-void wait_for(const fs::path &file) {
-  for (int k = 0; k < 30000 && !fs::exists(file); ++k) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-}
-
 TEST_F(ClusterJob, StopsRequeuesAndGoesOn) {
   const auto first = start(0);
-  wait_for(folder_ / "out/frames/frame_000000.hdf");
+  first->wait_until([&] { return fs::exists(folder_ / "out/frames/frame_000000.hdf"); });
   kill(first->id(), SIGUSR1); // as --signal=B:USR1@300
   const Outcome stopped = first->wait();
   EXPECT_EQ(stopped.exit_code, 6) << stopped.err;

@@ -6,9 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
-#include <thread>
 
 namespace gcpdda::ensemble_test {
 namespace {
@@ -67,9 +65,7 @@ TEST(Ensemble, StopsAtTheSignalAndGoesOn) {
   const fs::path results = folder / "results/plane_ensemble";
   testing::Process process(testing::gcpdda_words(2, {"ensemble", "plane.toml", "--count", "5000"}),
                            folder.path());
-  for (int tries = 0; tries < 1000 && !fs::exists(results / "members/member_000003.csv"); ++tries) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  process.wait_until([&] { return fs::exists(results / "members/member_000003.csv"); });
   kill(process.id(), SIGUSR1);
   const Outcome stopped = process.wait();
   EXPECT_EQ(stopped.exit_code, 6) << stopped.err;

@@ -7,9 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
-#include <thread>
 
 namespace gcpdda::fos_test {
 namespace {
@@ -107,9 +105,7 @@ TEST(Fos, TellsWhatItKnowsWhereTheSignalStopsIt) {
       folder.path());
   const fs::path trial = results / ("trials/F" + more);
   const fs::path started = trial / "history/energy.csv";
-  for (int tries = 0; tries < 1000 && !fs::exists(started); ++tries) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  process.wait_until([&] { return fs::exists(started); });
   kill(process.id(), SIGUSR1);
   const Outcome stopped = process.wait();
   EXPECT_EQ(stopped.exit_code, 6) << stopped.err;

@@ -17,7 +17,6 @@
 #include <csignal>
 #include <fmt/format.h>
 #include <fstream>
-#include <functional>
 #include <hdf5.h>
 #include <random>
 #include <thread>
@@ -56,13 +55,6 @@ void set_number(const fs::path &file, const char *dataset, std::int64_t value) {
   EXPECT_GE(H5Dwrite(number, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value), 0);
   H5Dclose(number);
   H5Fclose(id);
-}
-
-void wait_until(const std::function<bool()> &done) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (!done() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
 }
 
 /// Rigid, deformable, non-convex and driven blocks with friction. One run that nobody stops and that writes
@@ -142,7 +134,7 @@ TEST_P(RestartOnOtherRanks, GivesTheSameFiles) {
 // To mpirun, which passes it on; then to one rank alone, which takes the others along.
 TEST_F(RestartOfAWall, ASignalStopsAllRanksWithACheckpoint) {
   Process both(gcpdda_words(2, run_to("signal", "0")), folder_->path());
-  wait_until([] { return fs::exists(*folder_ / "signal/frames/frame_000000.hdf"); });
+  both.wait_until([] { return fs::exists(*folder_ / "signal/frames/frame_000000.hdf"); });
   kill(both.id(), SIGUSR1);
   const Outcome stopped = both.wait();
   EXPECT_EQ(stopped.exit_code, 6) << stopped.err;
@@ -151,7 +143,7 @@ TEST_F(RestartOfAWall, ASignalStopsAllRanksWithACheckpoint) {
   EXPECT_EQ(checkpoints(*folder_ / "signal").size(), 1U);
 
   Process three(gcpdda_words(3, {"restart", "signal"}), folder_->path());
-  wait_until([] { return count_of(file_text(*folder_ / "signal/run.log"), "restart from") == 1; });
+  three.wait_until([] { return count_of(file_text(*folder_ / "signal/run.log"), "restart from") == 1; });
   const std::vector<pid_t> ranks = three.children();
   ASSERT_EQ(ranks.size(), 3U);
   kill(ranks[1], SIGUSR1);
@@ -170,7 +162,7 @@ TEST_F(RestartOfAWall, KilledAtRandomMomentsGoesOn) {
   for (int kills = 0; kills < 2; ++kills) {
     Process process(gcpdda_words(num_ranks[kills], words), folder_->path());
     const std::string log = kills == 0 ? "" : file_text(*folder_ / "killed/run.log");
-    wait_until([&] {
+    process.wait_until([&] {
       return fs::exists(*folder_ / "killed/run.log") &&
              count_of(file_text(*folder_ / "killed/run.log"), "checkpoint at t") >
                  count_of(log, "checkpoint at t");
@@ -188,7 +180,7 @@ TEST_F(RestartOfAWall, KilledAtRandomMomentsGoesOn) {
       }
     }
     EXPECT_NE(process.wait().exit_code, 0);
-    wait_until([&] {
+    testing::wait_until([&] {
       return std::all_of(ranks.begin(), ranks.end(), [](pid_t rank) { return kill(rank, 0) != 0; });
     });
     EXPECT_GE(checkpoints(*folder_ / "killed").size(), 1U);
@@ -461,7 +453,7 @@ TEST_F(Restart, FindsItsBlockFileFromAnywhereAndKnowsItAgain) {
 TEST_F(Restart, IsRefusedWhileTheRunGoesOn) {
   Process process(gcpdda_words(0, {"run", "scene.toml", "--out", "busy", "--set", "run.duration=1000"}),
                   folder_.path());
-  wait_until([&] { return fs::exists(folder_ / "busy/frames/frame_000000.hdf"); });
+  process.wait_until([&] { return fs::exists(folder_ / "busy/frames/frame_000000.hdf"); });
   for (const std::vector<std::string> &words :
        {std::vector<std::string>{"restart", "busy"}, {"run", "scene.toml", "--out", "busy", "--overwrite"}}) {
     const Outcome second = run_gcpdda(0, words, folder_);
