@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# The toppling slope of Goodman and Bray on two MPI ranks, at a friction angle where it stands and at one where it
+# demo.sh: the toppling slope of Goodman and Bray on two MPI ranks, at a friction angle where it stands and at one where it
 # topples: results, pictures, and a sentence on each.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/set_up.sh"
 
-install_packages
+if [ $# -gt 0 ]; then
+  show_help
+  case $1 in -h | --help) exit 0 ;; *) exit 2 ;; esac
+fi
+install_packages ""
 build_targets gcpdda
 
 scene=$top/run/scenes/goodman_bray.toml

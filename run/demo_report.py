@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """What happened to the slope, in plain words, from the result folders of run/demo.sh."""
+import argparse
 import json
 import pathlib
 import re
-import sys
 
 import h5py
 import numpy as np
@@ -33,6 +33,8 @@ def report(folder):
           f"largest overlap {1000 * summary['max_overlap']:.1f} mm.")
 
 
-for name in sys.argv[1:]:
-    report(pathlib.Path(name))
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("folders", nargs="+", type=pathlib.Path, metavar="DIR")
+for folder in parser.parse_args().folders:
+    report(folder)
 print("Limit equilibrium puts the border at 38.15 degrees (Goodman and Bray's method, Wyllie and Mah's geometry).")

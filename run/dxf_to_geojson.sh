@@ -3,6 +3,12 @@
 # Lines, polylines, arcs and splines (the curves as chords) of all layers or of one; units stay those of the
 # drawing, which must be m. Needs ogr2ogr (Debian package gdal-bin), which gcpdda itself does not.
 set -eu
+case ${1:-} in
+  -h | --help)
+    sed -n '2,4s/^# //p' "$0"
+    exit 0
+    ;;
+esac
 if [ $# -lt 2 ] || [ $# -gt 3 ]; then
   sed -n '2,4s/^# //p' "$0" >&2
   exit 2
@@ -13,8 +19,10 @@ if ! command -v ogr2ogr > /dev/null; then
 fi
 where="OGR_GEOMETRY LIKE '%LINESTRING%'"
 if [ $# -eq 3 ]; then
-  where="$where AND Layer = '$3'"
+  where="$where AND Layer = '$(printf '%s' "$3" | sed "s/'/''/g")'"
 fi
-rm -f "$2"
+case $1 in -*) in=./$1 ;; *) in=$1 ;; esac
+case $2 in -*) out=./$2 ;; *) out=$2 ;; esac
+rm -f "$out"
 # RFC7946=NO: coordinates are metres of the drawing, not degrees.
-ogr2ogr -f GeoJSON "$2" "$1" entities -dim XY -where "$where" -lco RFC7946=NO -lco COORDINATE_PRECISION=12
+ogr2ogr -f GeoJSON "$out" "$in" entities -dim XY -where "$where" -lco RFC7946=NO -lco COORDINATE_PRECISION=12

@@ -10,6 +10,11 @@ their own: bolts.hdf.series.
 import pathlib
 import sys
 
+# Before the modules of ParaView, which plain Python may not have.
+if len(sys.argv) not in (3, 4):
+    print(__doc__)
+    sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)
+
 # This file would hide ParaView's own module of the same name.
 sys.path = [folder for folder in sys.path if pathlib.Path(folder or ".").resolve() != pathlib.Path(__file__).resolve().parent]
 
@@ -83,6 +88,4 @@ def main(directory, picture, time=None):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (3, 4):
-        sys.exit(__doc__)
     main(*sys.argv[1:])

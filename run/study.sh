@@ -8,18 +8,22 @@ source "$here/set_up.sh"
 
 studies=(verify stability accuracy fidelity flutter)
 case "${1:-}" in
+  -h | --help)
+    show_help
+    exit 0
+    ;;
   all) ;;
   verify | stability | accuracy | fidelity | flutter | scenes | stiffness | speed | scaling) studies=("$1") ;;
   *)
-    sed -n '2,4s/^# //p' "${BASH_SOURCE[0]}" >&2
+    show_help >&2
     exit 2
     ;;
 esac
-quick=${2:-}
-[ -z "$quick" ] || [ "$quick" = --quick ] || {
-  echo "study.sh: $quick is not --quick" >&2
+quick=("${@:2}") # --quick or nothing
+if [ ${#quick[@]} -gt 0 ] && [ "${quick[*]}" != --quick ]; then
+  echo "study.sh: ${quick[*]} is not --quick" >&2
   exit 2
-}
+fi
 results=$here/results/studies${quick:+_quick}
 install_packages tests
 build_targets gcpdda gcpdda-study verification_tests
@@ -27,22 +31,22 @@ mkdir -p "$results"
 run_study() {
   local study=$1 start=$SECONDS
   if [ "$study" = verify ]; then
-    "$here/study/verify.sh" "$build" "$results" $quick
+    "$here/study/verify.sh" "$build" "$results" "${quick[@]}"
   elif [ "$study" = scaling ]; then
-    "$here/study/scaling.py" "$build" "$results" $quick
+    "$here/study/scaling.py" "$build" "$results" "${quick[@]}"
     "$here/study/plot_scaling.py" "$results"
   elif [ "$study" = scenes ]; then
-    "$here/study/scenes.py" "$build" "$results" $quick
+    "$here/study/scenes.py" "$build" "$results" "${quick[@]}"
   elif [ "$study" = stiffness ]; then
-    "$here/study/fos_stiffness.py" "$build" "$results" $quick
+    "$here/study/fos_stiffness.py" "$build" "$results" "${quick[@]}"
   elif [ "$study" = speed ]; then
-    "$here/study/speed.py" "$build" "$results" $quick
+    "$here/study/speed.py" "$build" "$results" "${quick[@]}"
     "$here/study/plot_speed.py" "$results"
   else
-    "$build/gcpdda-study" "$study" "$results" $quick
+    "$build/gcpdda-study" "$study" "$results" "${quick[@]}"
     "$here/study/plot_$study.py" "$results"
   fi
-  [ -n "$quick" ] || flock "$results/recorded.csv" "$here/study/pages.py" --record "$study"
+  [ ${#quick[@]} -gt 0 ] || flock "$results/recorded.csv" "$here/study/pages.py" --record "$study"
   echo "== $study${quick:+, quick}: $((SECONDS - start)) s =="
 }
 

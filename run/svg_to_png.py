@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Turn a picture of `gcpdda blocks --svg`, `gcpdda inspect --svg`, `gcpdda fos` or `gcpdda ensemble` into PNG: svg_to_png.py IN.svg OUT.png"""
+import argparse
 import re
-import sys
 import xml.etree.ElementTree as xml
 
 import matplotlib
@@ -54,6 +54,8 @@ def main(svg, png):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("svg", metavar="IN.svg")
+    parser.add_argument("png", metavar="OUT.png")
+    arguments = parser.parse_args()
+    main(arguments.svg, arguments.png)

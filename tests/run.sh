@@ -5,6 +5,12 @@ set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 source "$here/../run/set_up.sh"
 
+case ${1:-} in
+  -h | --help)
+    show_help
+    exit 0
+    ;;
+esac
 install_packages tests
 build_targets all
 if [ $# -gt 0 ]; then

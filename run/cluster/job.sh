@@ -10,17 +10,29 @@
 #SBATCH --output=%x_%j.log
 set -u
 
+if [ "${1:-}" = --help ] || [ "${1:-}" = -h ]; then
+  sed -n '2,/^#SBATCH/s/^# //p' "${BASH_SOURCE[0]}"
+  exit 0
+fi
 if [ $# -lt 2 ]; then
   echo "usage: sbatch job.sh SCENE.toml DIR [--set path=value ...]" >&2
   exit 2
 fi
-scene=$1
-out=$2
+# A path that begins with a dash is no option.
+case $1 in -*) scene=./$1 ;; *) scene=$1 ;; esac
+case $2 in -*) out=./$2 ;; *) out=$2 ;; esac
 shift 2
 gcpdda=${GCPDDA:-gcpdda}
 read -r -a launch <<<"${GCPDDA_LAUNCH:-srun --mpi=pmix}"
 
-if compgen -G "$out/checkpoints/checkpoint_*.h5" >/dev/null; then
+has_checkpoint() {
+  local file
+  for file in "$out"/checkpoints/checkpoint_*.h5; do # the pattern itself where no file matches
+    [ -e "$file" ] && return 0
+  done
+  return 1
+}
+if has_checkpoint; then
   command=(restart "$out")
 elif [ "${SLURM_RESTART_COUNT:-0}" -gt 0 ]; then
   command=(run "$scene" --out "$out" --overwrite "$@") # ended before its first checkpoint
@@ -29,6 +41,7 @@ else
 fi
 
 asked_to_stop=no
+# shellcheck disable=SC2317 # called by the trap
 pass_on() {
   asked_to_stop=yes
   kill -USR1 "$child" 2>/dev/null

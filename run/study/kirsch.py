@@ -21,10 +21,10 @@ sizes and k_n L/E as it ships. A plate of radius R under sigma_v = sigma_h has (
 an endless one; R is again that of a circle as large as the plate. Writes kirsch_deformable.csv and kirsch_deformable.png.
 """
 
+import argparse
 import json
 import os
 import subprocess
-import sys
 
 import h5py
 import matplotlib
@@ -186,14 +186,21 @@ def deformable(gcpdda, out, quick):
 
 
 def main():
-    gcpdda, out = sys.argv[1:3]
-    quick = "--quick" in sys.argv
-    if "--deformable" in sys.argv:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("gcpdda", metavar="GCPDDA")
+    parser.add_argument("out", metavar="OUT_DIR")
+    parser.add_argument("--quick", action="store_true")
+    kinds = parser.add_mutually_exclusive_group()
+    kinds.add_argument("--friction", action="store_true")
+    kinds.add_argument("--deformable", action="store_true")
+    arguments = parser.parse_args()
+    gcpdda, out, quick = arguments.gcpdda, arguments.out, arguments.quick
+    if arguments.deformable:
         os.makedirs(out, exist_ok=True)
         deformable(gcpdda, out, quick)
         return
     size, half = (0.6, 12.0) if quick else (0.4, 18.0)
-    strength = "friction_angle_deg = 35.0" if "--friction" in sys.argv else "friction_angle_deg = 45.0\ncohesion = 1e9"
+    strength = "friction_angle_deg = 35.0" if arguments.friction else "friction_angle_deg = 45.0\ncohesion = 1e9"
     os.makedirs(out, exist_ok=True)
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), sharey=True)
     rows = []

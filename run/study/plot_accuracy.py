@@ -4,10 +4,10 @@ against cost for each problem, over CPU time (accuracy.png, and four of the prob
 evaluations (accuracy_evaluations.png), all as .svg too, and writes all points as accuracy.json. The default is a star, the
 Pareto front a line."""
 
+import argparse
 import csv
 import json
 import math
-import sys
 from pathlib import Path
 
 import matplotlib
@@ -104,7 +104,9 @@ def draw(rows, problems, cost, label, stem, columns):
 
 
 def main():
-    folder = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    folder = parser.parse_args().folder
     rows = read(folder / "accuracy.csv")
     peers = folder / "peers.csv"
     rows += read(peers) if peers.exists() else []

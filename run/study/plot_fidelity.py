@@ -2,8 +2,8 @@
 """plot_fidelity.py FOLDER: draws FOLDER/fidelity.csv as fidelity.png and .svg: error and cost of rigid and deformable
 blocks and of what fidelity = "auto" takes, over k_n L/E, with the error that auto predicts for rigid blocks."""
 
+import argparse
 import csv
-import sys
 from pathlib import Path
 
 import matplotlib
@@ -21,7 +21,9 @@ STYLE = {
 
 
 def main():
-    folder = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    folder = parser.parse_args().folder
     with open(folder / "fidelity.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     problems = list(dict.fromkeys(row["problem"] for row in rows))

@@ -2,9 +2,9 @@
 """Chart of the flutter study. Usage: plot_flutter.py FOLDER. Reads flutter_map.csv and flutter_runs.csv, which
 `gcpdda-study flutter FOLDER` wrote, and puts flutter.png beside them."""
 
+import argparse
 import csv
 import pathlib
-import sys
 
 import matplotlib
 
@@ -82,9 +82,9 @@ def draw_damping(axes, table):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit("usage: plot_flutter.py FOLDER")
-    folder = pathlib.Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER")
+    folder = parser.parse_args().folder
     table = rows(folder / "flutter_map.csv")
     runs = rows(folder / "flutter_runs.csv")
     angles = sorted({row["joint_angle_deg"] for row in table})

@@ -2,8 +2,8 @@
 """plot_scaling.py FOLDER: draws FOLDER/scaling.csv and scaling_times.csv as scaling.png and .svg: work of the busiest
 rank, ghosts and messages over the ranks, and efficiency on two ranks beside the machine's ceiling."""
 
+import argparse
 import csv
-import sys
 from pathlib import Path
 
 import matplotlib
@@ -37,7 +37,9 @@ def curves(axes, rows, quantity, scale, shift):
 
 
 def main():
-    folder = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    folder = parser.parse_args().folder
     counts = read(folder / "scaling.csv")
     times = read(folder / "scaling_times.csv")
     figure, grid = plt.subplots(2, 3, figsize=(13.0, 8.6))

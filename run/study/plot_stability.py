@@ -3,10 +3,10 @@
 stability FOLDER` wrote and puts stability_map, rejected_variants and, where soak.csv exists, soak (PNG and
 SVG) beside them; prints boundaries.csv where it exists."""
 
+import argparse
 import csv
 import math
 import pathlib
-import sys
 
 import matplotlib
 
@@ -201,9 +201,9 @@ def print_table(table):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit("usage: plot_stability.py FOLDER")
-    folder = pathlib.Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER")
+    folder = parser.parse_args().folder
     draw_stability(folder)
     draw_rejected(folder)
     if (folder / "soak.csv").exists():

@@ -5,6 +5,7 @@ Counts (work, ghosts, messages) are exact on any machine and at any number of ra
 in rounds that alternate: one rank, two ranks, a half-size problem alone, two of them at once. The last two are the
 ceiling that the machine itself sets. Use a quiet machine.
 """
+import argparse
 import csv
 import json
 import math
@@ -12,7 +13,6 @@ import os
 import shutil
 import statistics
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -186,8 +186,12 @@ def model(counts):
 
 
 def main():
-    build, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
-    quick = sys.argv[3:] == ["--quick"]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=Path, metavar="BUILD")
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    parser.add_argument("--quick", action="store_true")
+    arguments = parser.parse_args()
+    build, folder, quick = arguments.build.resolve(), arguments.folder, arguments.quick
     folder.mkdir(parents=True, exist_ok=True)
     os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
     with tempfile.TemporaryDirectory() as scratch:

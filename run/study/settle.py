@@ -10,10 +10,10 @@ stage of a hundred times smaller tolerance leaves it, all through the quarter of
 that sways passes through its place of rest, too. Prints steps and contact evaluations of both.
 """
 
+import argparse
 import json
 import os
 import subprocess
-import sys
 
 import h5py
 import numpy
@@ -66,8 +66,13 @@ def settle(tolerance, more=""):
 
 
 def main():
-    gcpdda, out = sys.argv[1:3]
-    rows, columns = (12, 20) if "--quick" in sys.argv else (50, 100)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("gcpdda", metavar="GCPDDA")
+    parser.add_argument("out", metavar="OUT_DIR")
+    parser.add_argument("--quick", action="store_true")
+    arguments = parser.parse_args()
+    gcpdda, out = arguments.gcpdda, arguments.out
+    rows, columns = (12, 20) if arguments.quick else (50, 100)
     os.makedirs(out, exist_ok=True)
     _, rest = run(gcpdda, out, "reference", rows, columns, "", 20.0, settle(1e-7))
     largest = numpy.abs(rest[0]).max()

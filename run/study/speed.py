@@ -10,6 +10,7 @@ rest, a settle stage sets it to rest, and it goes on for 5 s with the dashpots o
 any kind, at longer and longer steps until some square has drifted by more than a micrometre. (Local damping of 0.8
 would lower what is stable by sqrt(1.8).)
 """
+import argparse
 import csv
 import json
 import math
@@ -18,7 +19,6 @@ import re
 import shutil
 import statistics
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -146,8 +146,12 @@ def write_table(path, rows):
 
 
 def main():
-    program, folder = Path(sys.argv[1]).resolve() / "gcpdda", Path(sys.argv[2])
-    quick = sys.argv[3:] == ["--quick"]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=Path, metavar="BUILD")
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    parser.add_argument("--quick", action="store_true")
+    arguments = parser.parse_args()
+    program, folder, quick = arguments.build.resolve() / "gcpdda", arguments.folder, arguments.quick
     repeats = 1 if quick else 5
     cases = [(20, 100, "rigid", 1e-3), (20, 100, "deformable", 1e-3)] if quick else [
         (20, 4000, "rigid", 1e-3), (100, 400, "rigid", 1e-3), (100, 2000, "rigid", 1e-3), (100, 2000, "deformable", 1e-3),

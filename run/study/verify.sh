@@ -3,6 +3,10 @@
 # Without --quick the long problems have their full size. Called by run/study.sh and CTest, which set the environment.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+if [ $# -lt 2 ]; then
+  sed -n '2,4s/^# //p' "${BASH_SOURCE[0]}"
+  case ${1:-} in -h | --help) exit 0 ;; *) exit 2 ;; esac
+fi
 build=$1 results=$2 quick=${3:-}
 rows=$results/verification_rows.csv
 

@@ -2,10 +2,10 @@
 """verify_table.py RESULTS: sorts RESULTS/verification_rows.csv, as the tests wrote it, by problem into
 RESULTS/verification.csv."""
 
+import argparse
 import csv
 import pathlib
 import re
-import sys
 
 
 def key(row):
@@ -15,9 +15,9 @@ def key(row):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    results = pathlib.Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", type=pathlib.Path, metavar="RESULTS")
+    results = parser.parse_args().results
     with open(results / "verification_rows.csv", newline="") as file:
         rows = sorted(csv.DictReader(file), key=key)
     with open(results / "verification.csv", "w", newline="") as file:

@@ -6,6 +6,12 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/../../run/set_up.sh"
 
+case ${1:-} in
+  -h | --help)
+    show_help
+    exit 0
+    ;;
+esac
 seconds=${1:-20}
 targets=("${@:2}")
 [ ${#targets[@]} -gt 0 ] || targets=(scene_fuzz block_file_fuzz)
@@ -20,6 +26,7 @@ mkdir -p "$build/findings"
 # A string of a dictionary has its quotes and backslashes escaped.
 {
   cat "$here/scene.dict"
+  # shellcheck disable=SC2016
   grep -o '`[^`]*`' "$top/run/scene_keys.md" | tr -d '`' | sort -u | sed 's/[\"]/\\&/g; s/.*/"&"/'
   sed -n 's/^## \(\[.*\]\)$/"\\x0A\1\\x0A"/p' "$top/run/scene_keys.md"
 } >"$build/scene.dict"

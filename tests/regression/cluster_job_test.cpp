@@ -34,11 +34,10 @@ protected:
     folder_.write("bin/" + name, "#!/bin/sh\n" + command + "\n");
     fs::permissions(folder_ / "bin" / name, fs::perms::owner_all);
   }
-  [[nodiscard]] std::unique_ptr<Process> start(int restarts) const {
-    std::vector<std::string> words{"bash", GCPDDA_SOURCE_DIR "/run/cluster/job.sh"};
-    for (const char *word : {"wall.toml", "out", "--set", "output.interval=0.01"}) {
-      words.emplace_back(word);
-    }
+  [[nodiscard]] std::unique_ptr<Process> start(int restarts, const std::string &scene = "wall.toml",
+                                               const std::string &out = "out") const {
+    const std::vector<std::string> words{
+        "bash", GCPDDA_SOURCE_DIR "/run/cluster/job.sh", scene, out, "--set", "output.interval=0.01"};
     std::vector<std::string> environment;
     environment.push_back(fmt::format("PATH={}:{}", (folder_ / "bin").string(), std::getenv("PATH")));
     environment.push_back(fmt::format("GCPDDA={}", GCPDDA_EXECUTABLE));
@@ -81,6 +80,26 @@ TEST_F(ClusterJob, WithoutACheckpointBeginsAnewOnlyWhenRequeued) {
   EXPECT_EQ(file_text(folder_ / "out/summary.json"), summary);
   EXPECT_EQ(start(1)->wait().exit_code, 0);
   EXPECT_EQ(requeued(), "");
+}
+
+// What the program is called with: pattern characters, blanks and dashes of a path mean themselves.
+TEST_F(ClusterJob, TakesPathsLiterally) {
+  stub("srun", "shift 2; printf '%s|' \"$@\" > called");
+  const auto call = [&](const std::string &scene, const std::string &out) {
+    EXPECT_EQ(start(1, scene, out)->wait().exit_code, 0);
+    return file_text(folder_ / "called");
+  };
+  const std::string sets = "|--overwrite|--set|output.interval=0.01|";
+  fs::create_directories(folder_ / "res1/checkpoints");
+  folder_.write("res1/checkpoints/checkpoint_000000004.h5", "");
+  EXPECT_EQ(call("a b.toml", "res1"), "restart|res1|");
+  EXPECT_EQ(call("a b.toml", "res[1]"), "run|a b.toml|--out|res[1]" + sets) << "res1 is another folder";
+  for (const std::string name : {"res[1]", "two words", "*", "-x", "line\nline"}) {
+    fs::create_directories(folder_ / name / "checkpoints");
+    folder_.write(name + "/checkpoints/checkpoint_000000004.h5", "");
+    EXPECT_EQ(call("a b.toml", name), "restart|" + std::string(name[0] == '-' ? "./" : "") + name + "|");
+  }
+  EXPECT_EQ(call("-s.toml", "--"), "run|./-s.toml|--out|./--" + sets);
 }
 
 TEST_F(ClusterJob, DoesNotRepeatAFailure) {

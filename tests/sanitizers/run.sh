@@ -6,6 +6,12 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/../../run/set_up.sh"
 
+case ${1:-} in
+  -h | --help)
+    show_help
+    exit 0
+    ;;
+esac
 preset=sanitize
 build=$top/build-sanitize
 [ $# -gt 0 ] || set -- unit verification regression architecture parallel
