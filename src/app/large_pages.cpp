@@ -8,8 +8,9 @@
 #define GCPDDA_HAS_FEATURE(x) 0
 #endif
 
-// The address sanitizer has an operator new of its own.
-#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !GCPDDA_HAS_FEATURE(address_sanitizer)
+// The address and thread sanitizers have an operator new of their own.
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) &&                 \
+    !GCPDDA_HAS_FEATURE(address_sanitizer) && !GCPDDA_HAS_FEATURE(thread_sanitizer)
 
 #include <cstddef>
 #include <cstdint>
