@@ -38,7 +38,7 @@ fuzz() {
   local target=$1 corpus=$build/corpus/$1 log=$build/$1.log
   mkdir -p "$corpus"
   # shellcheck disable=SC2086
-  if ! "$build/$target" "$corpus" ${options[$target]} -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+  if ! "$build/$target" "$corpus" ${options[$target]} -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2048 \
     -artifact_prefix="$build/findings/$target-" >"$log" 2>&1; then
     grep -av '^#' "$log" | tail -n 60
     echo "$target found something: $build/$target FILE runs the input again (FILE: see 'Test unit written to')"
