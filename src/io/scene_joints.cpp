@@ -184,6 +184,13 @@ private:
     read_bonds(law, values);
   }
 
+  // Another law takes the residual angle of [joint.default] only where that law gives one.
+  void note_residual_of_default(const Section &law, const JointLaw &values) {
+    if (values.name == "default") {
+      residual_given_ = law.given("residual_friction_angle_deg") != nullptr;
+    }
+  }
+
   void read_barton_bandis(const Section &law, JointLaw &values) {
     for (const char *key : {"friction_angle_deg", "tension", "residual_cohesion"}) {
       if (const toml::node *node = law.given(key)) {
@@ -202,7 +209,7 @@ private:
     values.tan_friction = residual_given_ ? values.residual_tan_friction : 0.0;
     read_angle(law, "residual_friction_angle_deg", values.tan_friction);
     values.residual_tan_friction = values.tan_friction;
-    residual_given_ = residual_given_ || law.given("residual_friction_angle_deg") != nullptr;
+    note_residual_of_default(law, values);
     values.has_bonds = false;
     values.tension = 0.0;
   }
@@ -213,9 +220,7 @@ private:
     }
     law.read("tension", values.tension);
     law.read("residual_cohesion", values.residual_cohesion);
-    if (values.name == "default") {
-      residual_given_ = law.given("residual_friction_angle_deg") != nullptr;
-    }
+    note_residual_of_default(law, values);
     if (!residual_given_) {
       values.residual_tan_friction = values.tan_friction;
     }

@@ -333,6 +333,33 @@ TEST(SceneReference, HasARowForEveryKey) {
   }
 }
 
+TEST(SceneReader, ResidualAngleOfOneLawIsNotThatOfTheNext) {
+  const Scene scene = good(R"(
+[run]
+duration = 1
+[material.rock]
+density = 2600
+[material.clay]
+density = 2000
+[joint.default]
+normal_stiffness = 1e9
+friction_angle_deg = 35
+[joint.rough]
+materials = ["rock", "clay"]
+law = "barton-bandis"
+residual_friction_angle_deg = 30
+jrc = 6
+jcs = 5e7
+[joint.smooth]
+materials = ["clay", "clay"]
+friction_angle_deg = 18
+[[block]]
+material = "rock"
+vertices = [[0, 0], [1, 0], [1, 1]]
+)");
+  EXPECT_EQ(scene.joints.laws[2].residual_tan_friction, scene.joints.laws[2].tan_friction);
+}
+
 TEST(SceneReader, MaterialsMayStandInlineAndInAnyOrder) {
   const Scene scene = good(R"(
 block = [{material = "z", vertices = [[0, 0], [1, 0], [0, 1]]}]
