@@ -213,14 +213,14 @@ private:
   }
 
   void weigh() {
-    const BlockSystem &blocks = simulation_.blocks();
     const double gravity = norm(simulation_.scene().run.gravity);
     ExactSum sum;
     Heaviest mine;
-    for (std::size_t row = 0; row < blocks.num_owned; ++row) {
-      const BlockProperties &block = blocks.properties[row];
-      sum.add(block.mass * gravity);
-      mine.see({block.mass * gravity, std::sqrt(block.area), block.id.value});
+    const BlockSystem &blocks = simulation_.blocks();
+    for (const BlockProperties &block : std::span(blocks.properties).first(blocks.num_owned)) {
+      const double weight = block.keeps_its_velocity() ? 0.0 : block.mass * gravity; // borne by its drive
+      sum.add(weight);
+      mine.see({weight, std::sqrt(block.area), block.id.value});
     }
     communicator_.sum(sum.limbs());
     weight_of_all_ = sum.value();

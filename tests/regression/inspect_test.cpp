@@ -218,6 +218,22 @@ TEST(InspectPlan, TellsWhatTheDampingOfAStageCosts) {
 // A square balanced on its corner and one flush on its face, which take up their weight as gravity rises and
 // are damped: each ends as deep as inspect says. The weight lets them swing by a few (T/ramp)^2 = (0.03/1)^2
 // of the depth, and the flush joint closes by d/(2 l) = 1e-5 more than its linear law.
+TEST(InspectPlan, LeavesOutTheWeightOfADrivenBlock) {
+  const WorkFolder folder;
+  const std::string scene = "[run]\nduration = 1.0\n[material.rock]\ndensity = 2600.0\n[joint.default]\n"
+                            "normal_stiffness = 1e9\n" +
+                            block_toml("floor", rectangle({-9.0, -2.0}, {9.0, 0.0}), "fixed = true") +
+                            block_toml("loose", rectangle({-3.0, 0.0}, {-2.0, 1.0}));
+  folder.write("driven.toml", scene + block_toml("ram", rectangle({2.0, 0.5}, {6.0, 3.5}),
+                                                 "prescribed_velocity = [-0.1, 0.0, 0.0]"));
+  const auto outcome = run_gcpdda(0, {"inspect", "driven.toml"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const double weight = 2600.0 * gravity;
+  EXPECT_NEAR(number(outcome.out, "under (\\S+) N/m, the weight of block 'loose'"), weight,
+              three_digits * weight);
+  EXPECT_NEAR(number(outcome.out, "under all mobile blocks, (\\S+) N/m"), weight, three_digits * weight);
+}
+
 TEST(InspectPlan, TellsHowDeepACornerSinks) {
   const WorkFolder folder;
   const double half = std::sqrt(0.5);
