@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Turn a picture of `gcpdda blocks --svg`, `gcpdda inspect --svg`, `gcpdda fos` or `gcpdda ensemble` into PNG: svg_to_png.py IN.svg OUT.png"""
+"""Turn a picture of `gcpdda blocks --svg`, `gcpdda inspect --svg`, `gcpdda fos` or `gcpdda ensemble` into PNG."""
 import argparse
 import re
 import xml.etree.ElementTree as xml
@@ -22,7 +22,7 @@ def colour(text):
     return tuple(hsv_to_rgb((hue, 2 * (1 - light / value) if value > 0 else 0, value)))
 
 
-def main(svg, png):
+def main(svg, png, dpi):
     root = xml.parse(svg).getroot()
     width, height = float(root.get("width")), float(root.get("height"))
     figure = plt.figure(figsize=(width / 100, height / 100), dpi=100)
@@ -50,12 +50,13 @@ def main(svg, png):
                       color=colour(element.get("fill", "black")))
     axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors="#555555", linewidths=strokes))
     axes.add_collection(LineCollection(lines, colors=colours, linewidths=0.9))
-    figure.savefig(png, dpi=70)
+    figure.savefig(png, dpi=dpi)
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("svg", metavar="IN.svg")
     parser.add_argument("png", metavar="OUT.png")
+    parser.add_argument("--dpi", type=float, default=70)
     arguments = parser.parse_args()
-    main(arguments.svg, arguments.png)
+    main(arguments.svg, arguments.png, arguments.dpi)
