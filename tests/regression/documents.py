@@ -41,12 +41,13 @@ PATIENCE = 600  # s for one command: far more than a slow machine needs
 
 
 def documents():
-    """All Markdown pages but those of build and result folders."""
+    """All Markdown pages but those of result folders, and templates in run/study, whose links are those of their copies."""
     pages = sorted(SOURCE.glob("*.md"))
     for folder in ("include", "partition", "run", "src", "tests"):
         pages += sorted((SOURCE / folder).rglob("*.md"))
-    results = SOURCE / "run" / "results"
-    return [page for page in pages if results not in page.parents or results / "studies" in page.parents]
+    results, templates = SOURCE / "run" / "results", SOURCE / "run" / "study"
+    return [page for page in pages if templates not in page.parents
+            and (results not in page.parents or results / "studies" in page.parents)]
 
 
 def prose(text):
