@@ -1,9 +1,9 @@
 #include "block_file_layout.hpp"
 
-#include "edit_distance.hpp"
 #include "hdf5_input.hpp"
 #include "scene_faults.hpp"
 
+#include "gcpdda/base/edit_distance.hpp"
 #include "gcpdda/base/input_file.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include "scene_section.hpp"
 
-#include "edit_distance.hpp"
+#include "gcpdda/base/edit_distance.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

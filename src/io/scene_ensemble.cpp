@@ -1,7 +1,8 @@
 // [ensemble]: what each of many members draws in place of the values of the scene.
 
-#include "edit_distance.hpp"
 #include "scene_parts.hpp"
+
+#include "gcpdda/base/edit_distance.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
-#include "edit_distance.hpp"
 #include "scene_parts.hpp"
+
+#include "gcpdda/base/edit_distance.hpp"
 
 #include <fmt/format.h>
 

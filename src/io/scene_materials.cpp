@@ -1,6 +1,6 @@
 #include "scene_parts.hpp"
 
-#include "edit_distance.hpp"
+#include "gcpdda/base/edit_distance.hpp"
 
 #include <fmt/format.h>
 

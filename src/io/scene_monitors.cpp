@@ -1,6 +1,6 @@
-#include "edit_distance.hpp"
 #include "scene_parts.hpp"
 
+#include "gcpdda/base/edit_distance.hpp"
 #include "gcpdda/model/generators.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,9 @@
 #include "scene_sets.hpp"
 
-#include "edit_distance.hpp"
 #include "scene_keys.hpp"
 #include "scene_section.hpp"
+
+#include "gcpdda/base/edit_distance.hpp"
 
 #include <fmt/format.h>
 

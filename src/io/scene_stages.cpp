@@ -1,10 +1,10 @@
 // [[stage]]: what happens one after the other.
 
-#include "edit_distance.hpp"
 #include "scene_outline.hpp"
 #include "scene_parts.hpp"
 #include "scene_sets.hpp"
 
+#include "gcpdda/base/edit_distance.hpp"
 #include "gcpdda/model/generators.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,8 @@
 // [support.NAME], [[bolt]] and [[bolt_pattern]].
 
-#include "edit_distance.hpp"
 #include "scene_parts.hpp"
+
+#include "gcpdda/base/edit_distance.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "gcpdda/io/scene_reader.hpp"
 
-#include "../../src/io/edit_distance.hpp"
+#include "gcpdda/base/edit_distance.hpp"
 #include "scene_texts.hpp"
 
 #include <gtest/gtest.h>

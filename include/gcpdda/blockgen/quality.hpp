@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gcpdda/base/exact_sum.hpp"
+#include "gcpdda/geometry/mean_width.hpp"
 #include "gcpdda/model/scene.hpp"
 
 #include <array>
@@ -9,9 +10,6 @@
 #include <vector>
 
 namespace gcpdda {
-
-/// Area over the longest way across (m): w of a strip w wide, half the height of a flat triangle.
-double mean_width(double area, std::span<const Vec2> vertices);
 
 /// Smallest inner angle of a polygon, degrees.
 double sharpest_corner(std::span<const Vec2> vertices);
