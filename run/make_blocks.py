@@ -60,6 +60,12 @@ def main():
     arguments.add_argument("--size", type=float, nargs=2, default=(1.0, 0.5), help="of a brick, m")
     arguments.add_argument("--overlap", type=float, default=0.0, help="of neighbouring bricks, m: joints under pressure")
     wanted = arguments.parse_args()
+    if min(wanted.rows, wanted.columns) < 1:
+        arguments.error(f"{wanted.rows} rows of {wanted.columns} blocks are none: --rows and --columns are at least 1")
+    if not (min(wanted.size) > 0.0 and max(wanted.size) < float("inf")):
+        arguments.error("--size: both sides of a brick are above 0")
+    if not 0.0 <= wanted.overlap < min(wanted.size):
+        arguments.error(f"--overlap {wanted.overlap:g} is not between 0 and the sides of a brick")
 
     fixed = []
     velocity = None

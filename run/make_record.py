@@ -6,19 +6,33 @@ a rise and a decay, without velocity or displacement at the end. The same seed m
 """
 
 import argparse
+import math
 import pathlib
 
 import numpy as np
 
+
+def above_0(text):
+    number = float(text)
+    if not 0.0 < number < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is not above 0")
+    return number
+
+
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("--duration", type=float, default=8.0, help="s")
-parser.add_argument("--interval", type=float, default=0.01, help="s, between rows")
-parser.add_argument("--peak", type=float, default=0.25, help="largest velocity, m/s")
-parser.add_argument("--frequency", type=float, default=1.5, help="Hz, where it is strongest")
+parser.add_argument("--duration", type=above_0, default=8.0, help="s")
+parser.add_argument("--interval", type=above_0, default=0.01, help="s, between rows")
+parser.add_argument("--peak", type=above_0, default=0.25, help="largest velocity, m/s")
+parser.add_argument("--frequency", type=above_0, default=1.5, help="Hz, where it is strongest")
 parser.add_argument("--vertical", type=float, default=0.5, help="vertical motion over horizontal motion")
 parser.add_argument("--seed", type=int, default=1)
 parser.add_argument("--out", type=pathlib.Path, required=True, help="FILE.csv: time, vx, vy")
 arguments = parser.parse_args()
+if not math.isfinite(arguments.vertical):
+    parser.error(f"--vertical {arguments.vertical} is no number")
+if arguments.duration < 10.0 * arguments.interval:
+    parser.error(f"--duration {arguments.duration:g} s has fewer than ten intervals of {arguments.interval:g} s, "
+                 "which make no motion: try --interval 0.01")
 
 random = np.random.default_rng(arguments.seed)
 t = np.arange(round(arguments.duration / arguments.interval) + 1) * arguments.interval

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import sys
 from pathlib import Path
 
 RESULTS = Path(__file__).resolve().parent.parent / "results" / "studies"
@@ -10,7 +11,7 @@ RESULTS = Path(__file__).resolve().parent.parent / "results" / "studies"
 def read(name):
     """Rows of a committed table."""
     with open(RESULTS / name, newline="") as file:
-        return list(csv.DictReader(file))
+        return list(csv.DictReader(file)) or sys.exit(f"{RESULTS / name} has no rows")
 
 
 def of(rows, **wanted):

@@ -6,6 +6,7 @@ Pareto front a line."""
 
 import argparse
 import csv
+import sys
 import json
 import math
 from pathlib import Path
@@ -42,7 +43,8 @@ TEXT_COLUMNS = {"problem", "compared", "factor", "value"}
 
 def read(path):
     with open(path, newline="") as file:
-        return [{k: v if k in TEXT_COLUMNS else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+        rows = [{k: v if k in TEXT_COLUMNS else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+    return rows or sys.exit(f"plot_accuracy.py: {path} has no rows")
 
 
 def front(points, cost):

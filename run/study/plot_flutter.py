@@ -5,6 +5,7 @@
 import argparse
 import csv
 import pathlib
+import sys
 
 import matplotlib
 
@@ -19,7 +20,7 @@ LEAST = 1e-3  # growth over omega where the colours begin
 def rows(path):
     with open(path, newline="") as file:
         return [{key: value if key == "acts_at" else float(value) for key, value in row.items()}
-                for row in csv.DictReader(file)]
+                for row in csv.DictReader(file)] or sys.exit(f"plot_flutter.py: {path} has no rows")
 
 
 def grid(table, angle, damping, key):

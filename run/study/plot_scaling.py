@@ -4,6 +4,7 @@ rank, ghosts and messages over the ranks, and efficiency on two ranks beside the
 
 import argparse
 import csv
+import sys
 from pathlib import Path
 
 import matplotlib
@@ -19,7 +20,8 @@ STYLES = ((1e4, "o", "-"), (5e4, "D", "-."), (5e5, "s", "--"), (float("inf"), "^
 
 def read(path):
     with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+        rows = list(csv.DictReader(file))
+    return rows or sys.exit(f"plot_scaling.py: {path} has no rows")
 
 
 def curves(axes, rows, quantity, scale, shift):

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 
 def read(path):
     with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+        return list(csv.DictReader(file)) or sys.exit(f"plot_speed.py: {path} has no rows")
 
 
 def label_blocks(axes):

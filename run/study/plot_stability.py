@@ -7,6 +7,7 @@ import argparse
 import csv
 import math
 import pathlib
+import sys
 
 import matplotlib
 
@@ -20,7 +21,7 @@ RADIUS = 0.8  # spectral radius of the curves
 
 def rows(path):
     with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+        return list(csv.DictReader(file)) or sys.exit(f"plot_stability.py: {path} has no rows")
 
 
 def save(figure, folder, name):

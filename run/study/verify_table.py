@@ -20,6 +20,8 @@ def main():
     results = parser.parse_args().results
     with open(results / "verification_rows.csv", newline="") as file:
         rows = sorted(csv.DictReader(file), key=key)
+    if not rows:
+        parser.error(f"{results / 'verification_rows.csv'} has no rows")
     with open(results / "verification.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
         writer.writeheader()

@@ -2,6 +2,7 @@
 
 #include "tile.hpp"
 
+#include "gcpdda/base/check.hpp"
 #include "gcpdda/geometry/polygon.hpp"
 
 #include <fmt/format.h>
@@ -44,6 +45,9 @@ Diagnostic sliver_fault(const RockRegion &region, Vec2 at) {
 
 RegionCutter::RegionCutter(const Scene &scene, std::int64_t blocks_per_tile)
     : region_(scene.region), around_(bounding_box(region_.outline)), origin_(origin_for(around_)) {
+  for (const JointMap &map : region_.maps) { // else it would cut nothing, without a word
+    expect(!map.lines.empty(), "a joint map has been read (read_joint_map) before it cuts");
+  }
   const double expected = expected_blocks(region_);
   const double area = signed_area(region_.outline);
   constexpr double halo_in_blocks = 3.0;

@@ -2,6 +2,8 @@
 
 #include "hdf5_collective_file.hpp"
 
+#include "gcpdda/base/check.hpp"
+
 namespace gcpdda {
 
 void write_block_file(const Communicator &communicator, const std::filesystem::path &path,
@@ -20,6 +22,11 @@ void write_block_file(const Communicator &communicator, const std::filesystem::p
   }
   const RowRange of_blocks = rows_in_rank_order(communicator, static_cast<std::int64_t>(mine.size()));
   const RowRange of_points = rows_in_rank_order(communicator, static_cast<std::int64_t>(edge_joint.size()));
+  if (of_blocks.total == 0) { // agreed on by all ranks
+    throw FileError(path.string() +
+                    ": error: there are no blocks to write, no run could read such a file, check "
+                    "what is excavated");
+  }
   std::vector<std::int64_t> offsets;
   std::int64_t offset = of_points.first;
   for (const SceneBlock &block : mine) {

@@ -1,4 +1,6 @@
+#include "gcpdda/base/check.hpp"
 #include "gcpdda/blockgen/joint_map.hpp"
+#include "gcpdda/blockgen/region_cutter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -64,6 +66,21 @@ TEST(JointMap, BrokenGeoJsonHasAPlace) {
 
 TEST(JointMap, GeoJsonWithoutLinesIsAFault) {
   EXPECT_EQ(read_joint_map(R"({"type": "Point", "coordinates": [0, 1]})", "m.geojson").faults.size(), 1U);
+}
+
+TEST(JointMap, OfOneColumnIsAFault) {
+  EXPECT_EQ(texts(read_joint_map("x\n1.5\n2.5\n", "m.csv").faults).at(0),
+            "m.csv:1:1: error: a row with 1 field, a row is trace,x,y, mend the file");
+}
+
+// What cuts nothing because nobody has read it must not pass for rock without joints.
+TEST(JointMap, IsReadBeforeItCuts) {
+  Scene scene;
+  scene.region.outline = {{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}};
+  scene.region.maps.resize(1);
+  EXPECT_THROW(RegionCutter{scene}, InternalError);
+  scene.region.maps[0].lines = {{{0.0, 1.0}, {4.0, 1.0}}};
+  EXPECT_NO_THROW(RegionCutter{scene});
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 // A step takes no memory: all it needs has been there since the last refresh, or has grown once.
 
-#include "gcpdda/blockgen/region_cutter.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 
+#include "support/cut_region.hpp"
 #include "support/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <memory>
 #include <new>
 
 #if defined(__has_feature)
@@ -110,7 +109,7 @@ void expect_no_allocations(const Scene &scene, std::size_t least_general, int gr
 // Edges have laws of their own.
 TEST(Step, OfJointedRockTakesNoMemory) {
   Scene scene = shipped_scene("jointed_bench", {"output.interval=0.5"});
-  scene.region_blocks = std::make_shared<RegionCutter>(scene);
+  prepare_region(scene);
   expect_no_allocations(scene, 50, 5);
 }
 

@@ -3,7 +3,7 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/blockgen/region_cutter.hpp"
+#include "support/cut_region.hpp"
 #include "support/thinning.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,9 +30,7 @@ std::vector<Verdict> verdicts(const Case &c, const std::vector<std::string> &mor
   Scene scene = shipped_scene(c.name, sets);
   scene.stages.resize(std::min(scene.stages.size(), c.num_stages));
   scene.monitors.clear(); // some lie outside of what is left
-  if (!scene.region.outline.empty()) {
-    scene.region_blocks = std::make_shared<RegionCutter>(scene);
-  }
+  prepare_region(scene);
   Simulation simulation(Communicator::self(), std::move(scene));
   run_stages(simulation, step);
   EXPECT_FALSE(simulation.fault().has_value()) << c.name;

@@ -3,8 +3,8 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/blockgen/region_cutter.hpp"
 #include "gcpdda/simulation/energy_ledger.hpp"
+#include "support/cut_region.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,16 +12,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 
 namespace gcpdda::testing::shipped_scenes_test {
 namespace {
 
 /// With what cuts its region, if it has one.
 Scene with_blocks(Scene scene) {
-  if (!scene.region.outline.empty()) {
-    scene.region_blocks = std::make_shared<RegionCutter>(scene);
-  }
+  prepare_region(scene);
   return scene;
 }
 
@@ -39,13 +36,14 @@ TEST(ShippedScenes, AreSound) {
                                                    "scenes");
   for (const auto &entry : scenes) {
     if (entry.path().extension() == ".toml") {
-      const Scene scene = shipped_scene(entry.path().stem());
+      Scene scene = shipped_scene(entry.path().stem());
       const bool has_region = !scene.region.outline.empty();
       EXPECT_TRUE(has_region || !scene.blocks.empty()) << entry.path();
       const std::string name = entry.path().stem();
       if (has_region && !name.ends_with("_large")) {
-        const RegionCutter cutter(scene);
-        EXPECT_GT(cutter.make(0, cutter.num_tiles()).blocks.size(), 0U) << entry.path();
+        prepare_region(scene);
+        EXPECT_GT(scene.region_blocks->make(0, scene.region_blocks->num_tiles()).blocks.size(), 0U)
+            << entry.path();
       }
       ++count;
     }
