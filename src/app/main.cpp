@@ -1,6 +1,7 @@
 // The command line: sub-commands, the MPI scope, exceptions to exit codes.
 
 #include "blocks.hpp"
+#include "condensed.hpp"
 #include "root_file.hpp"
 
 #include "gcpdda/base/check.hpp"
@@ -10,6 +11,7 @@
 #include "gcpdda/parallel/communicator.hpp"
 #include "gcpdda/simulation/ensemble.hpp"
 #include "gcpdda/simulation/inspect.hpp"
+#include "gcpdda/simulation/plausibility.hpp"
 #include "gcpdda/simulation/restart.hpp"
 #include "gcpdda/simulation/run.hpp"
 #include "gcpdda/simulation/safety_factor.hpp"
@@ -55,7 +57,7 @@ std::string read_scene_on_root(const Communicator &world, const std::string &pat
 
 void print(const Communicator &world, const Diagnostics &diagnostics) {
   if (world.is_root()) {
-    for (const Diagnostic &d : diagnostics) {
+    for (const Diagnostic &d : condensed(diagnostics)) {
       std::cerr << to_string(d) << '\n';
     }
   }
@@ -189,6 +191,7 @@ int ensemble(const Communicator &world, Arguments arguments) {
   }
   const std::string text = read_scene_on_root(world, arguments.scene);
   return with_scene(world, arguments, text, [&](const Scene &scene) {
+    print(world, implausible_values(scene)); // members are quiet
     const auto member_scene = [&](const Communicator &group, const std::vector<double> &values) {
       std::vector<std::string> sets = arguments.sets;
       for (std::size_t i = 0; i < values.size(); ++i) {
@@ -289,8 +292,9 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   blocks_command->add_option("--json", arguments.json, "write the report for programs into this file");
   const CLI::App *fos_command = add_fos(app, arguments);
   const CLI::App *ensemble_command = add_ensemble(app, arguments);
-  const CLI::App *reference_command =
-      app.add_subcommand("reference", "print all scene keys as a Markdown page");
+  CLI::App *reference_command = app.add_subcommand("reference", "print all scene keys as a Markdown page");
+  bool values = false;
+  reference_command->add_flag("--values", values, "print the plausible values and their sources instead");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError &error) {
@@ -300,7 +304,7 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   }
   if (reference_command->parsed()) {
     if (world.is_root()) {
-      std::cout << scene_reference() << std::flush;
+      std::cout << (values ? plausible_values_page() : scene_reference()) << std::flush;
     }
     return done;
   }

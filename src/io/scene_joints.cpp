@@ -80,8 +80,22 @@ private:
     } else if (law.given("materials") == nullptr && law.is_table() && !may_be_on_edges(named.name)) {
       fault(law.source(), law.subject("materials") + " is missing",
             "a law other than default is for one pair of materials, or for edges that name it",
-            "for example materials = [\"granite\", \"clay\"]");
+            hint_for_lone(named));
     }
+  }
+
+  /// A law that --set makes alone has a slip in its name, most likely.
+  [[nodiscard]] std::string hint_for_lone(const NamedSection &named) const {
+    std::vector<std::string> names;
+    for (const JointLaw &law : laws_.laws) {
+      if (law.name != named.name) {
+        names.push_back(law.name);
+      }
+    }
+    const bool is_set = named.section.source().path != nullptr;
+    const std::string near = is_set ? nearest_word(named.name, names) : "";
+    return near.empty() ? "for example materials = [\"granite\", \"clay\"]"
+                        : fmt::format("did you mean '{}'?", near);
   }
 
   /// Blocks that are not written out here may name any law.

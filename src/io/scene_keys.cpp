@@ -115,7 +115,7 @@ constexpr Key all_keys[] = {
   {"region", Kind::table, optional, any, "", "", "[region]", "Rock that joints cut into blocks, named b<id>; their ids follow those of all other blocks. gcpdda blocks cuts, checks and draws them without a run."},
   {"region.polygon", Kind::polygon, optional, from_to(-1e9, 1e9), "", "<exactly one of this and slope>", "[[0, 0], [20, 0], [20, 10], [0, 10]]", "[m] Outline of the region, either way round."},
   {"region.material", Kind::name, required, any, "", "", "\"granite\"", "One of the materials, where no layer says otherwise."},
-  {"region.min_width", Kind::number, optional, from_to(0, 1e9), "", "<1/50 of the smallest mean spacing or cell>", "0.02", "[m] A block of a smaller mean width (area over the longest way across) is a sliver."},
+  {"region.min_width", Kind::number, optional, from_to(0, 1e9), "", "<1/50 of the smallest mean spacing or cell, 1/20 with [in_situ]>", "0.02", "[m] A block of a smaller mean width (area over the longest way across) is a sliver."},
   {"region.min_area", Kind::number, optional, from_to(0, 1e18), "", "<the square of min_width>", "4e-4", "[m2] A block of a smaller area is a sliver."},
   {"region.slivers", Kind::choice, optional, any, "merge refuse keep", "<merge>", "\"refuse\"", "A sliver becomes part of the neighbour of its material and opening that shares most of its boundary, up to three times over; or it is a fault; or it stays."},
   {"region.max_blocks", Kind::count, optional, from_to(1, 2147483647), "", "<2000000>", "500000", "A scene whose joints would cut about more blocks than this is a fault."},

@@ -140,6 +140,9 @@ std::vector<Monitor> read_monitors(const SceneSource &source, const Scene &scene
 /// @param scene  with all its blocks
 std::vector<Stage> read_stages(const SceneSource &source, const Scene &scene);
 
+/// Scene::places. Blocks, monitors, stages and members of an ensemble have none: they know their own.
+std::map<std::string, SourcePosition> places_of(const SceneSource &source);
+
 /// Longest time all stages may take together, s.
 double duration_of_stages(const SceneSource &source);
 

@@ -34,6 +34,7 @@ void expect_blocks(const SceneSource &source) {
 void read_parts(const SceneSource &source, const std::string &file, Scene &scene) {
   scene.run = read_run(source);
   const Fidelity fidelity = scene.run.fidelity;
+  scene.places = places_of(source);
   Materials materials(source);
   Names names(source.faults);
   scene.materials = materials.all();

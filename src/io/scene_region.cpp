@@ -366,7 +366,8 @@ private:
       smallest = std::min({smallest, bricks.size.x, bricks.size.y});
     }
     const double root = region_.present() ? std::sqrt(signed_area(region_.outline)) : 1.0;
-    constexpr double sliver_share = 0.02;
+    // In-situ stress presses a thin block together by as much as a thick one.
+    const double sliver_share = source_.root.contains("in_situ") ? 0.05 : 0.02;
     constexpr double smallest_share = 1e-6; // where no spacing tells how large blocks are
     region_.min_width = std::isfinite(smallest) ? sliver_share * smallest : smallest_share * root;
     section.read("min_width", region_.min_width);

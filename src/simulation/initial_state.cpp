@@ -122,6 +122,7 @@ void Simulation::find_initial_state() {
   take(contacts_.evaluate(blocks_, candidates_, history_)); // ghosts are whole copies yet
   evaluate_bolts();
   check_initial_overlaps();
+  explain_slivers();
   if (scene_.run.initial_friction == InitialFriction::consistent && !scene_.in_situ.present) {
     find_initial_friction();
   } else {

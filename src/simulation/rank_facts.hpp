@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <string>
@@ -36,6 +38,26 @@ template <class T> std::int64_t total(const Communicator &communicator, T value)
   auto sum = static_cast<std::int64_t>(value);
   communicator.sum(std::span(&sum, 1));
   return sum;
+}
+
+/// The (n/2)-th of everybody's positive numbers in ascending order. Positive doubles sort like their bits, so
+/// bisecting the bits finds it exactly, whoever holds it.
+inline double agreed_median(const Communicator &communicator, std::span<const double> sizes) {
+  const std::int64_t wanted = total(communicator, sizes.size()) / 2;
+  std::uint64_t low = 0;
+  std::uint64_t high = std::bit_cast<std::uint64_t>(std::numeric_limits<double>::infinity());
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    const auto at_most = std::count_if(sizes.begin(), sizes.end(), [&](double size) {
+      return std::bit_cast<std::uint64_t>(size) <= middle;
+    });
+    if (total(communicator, at_most) > wanted) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return std::bit_cast<double>(low);
 }
 
 /// {min, mean, max} of everybody's value.

@@ -8,6 +8,7 @@
 
 #include "driven_paths.hpp"
 #include "gcpdda/base/free_memory.hpp"
+#include "rank_facts.hpp"
 
 #include "gcpdda/contact/stiffness_bound.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
@@ -19,10 +20,10 @@
 #include "gcpdda/model/stiffness.hpp"
 #include "gcpdda/parallel/migration.hpp"
 #include "gcpdda/parallel/packing.hpp"
+#include "gcpdda/simulation/plausibility.hpp"
 #include "gcpdda/simulation/region_slabs.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
@@ -51,26 +52,6 @@ std::int64_t agreed_sum(const Communicator &communicator, std::int64_t value) {
   return value;
 }
 
-/// The (n/2)-th of everybody's positive numbers in ascending order. Positive doubles sort like their bits, so
-/// bisecting the bits finds it exactly, whoever holds it.
-double agreed_median(const Communicator &communicator, std::span<const double> sizes) {
-  const std::int64_t wanted = agreed_sum(communicator, static_cast<std::int64_t>(sizes.size())) / 2;
-  std::uint64_t low = 0;
-  std::uint64_t high = std::bit_cast<std::uint64_t>(infinite);
-  while (low < high) {
-    const std::uint64_t middle = low + (high - low) / 2;
-    const auto at_most = std::count_if(sizes.begin(), sizes.end(), [&](double size) {
-      return std::bit_cast<std::uint64_t>(size) <= middle;
-    });
-    if (agreed_sum(communicator, at_most) > wanted) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  return std::bit_cast<double>(low);
-}
-
 Diagnostic on_viscous_sides(const Scene &scene, std::int64_t count) {
   return {count > 0 ? Severity::info : Severity::error, scene.earthquake.where,
           fmt::format("{} blocks have edges on viscous sides", count),
@@ -91,6 +72,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
     }
   }
   is_staged_ = !scene_.stages.empty();
+  notes_ = implausible_values(scene_);
   stages_ = std::move(scene_.stages);
   if (!is_staged_) {
     stages_.resize(1);
@@ -98,6 +80,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
   }
   list_courses();
   plan_all_stages();
+  open_earthquake();
   stop_on_errors(notes_);
   distribute(restart_from);
   restored_ ? bolts_.take_laws(scene_) : change_bolts({});
@@ -112,22 +95,25 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
     go_on();
   } else {
     find_initial_state();
+    doubt_gaps();
+    doubt_monitors();
   }
   stop_on_errors(notes_);
+  std::stable_sort(notes_.begin(), notes_.end(), // warnings in one block
+                   [](const Diagnostic &a, const Diagnostic &b) { return a.severity < b.severity; });
   give_back_free_memory();
 }
 
 // Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
 void Simulation::distribute(const std::filesystem::path &restart_from) {
   stop_on_errors(open_block_file(communicator_, scene_));
-  open_earthquake();
-  stop_on_errors(notes_);
   std::vector<SceneBlock> slab = load_slab(cut_region());
   load_sides(slab);
   note_groups(slab);
   size_up(slab);
   place_monitors(slab);
   survey(slab);
+  doubt_blocks(slab);
   std::vector<Vec2> centroids;
   for (const SceneBlock &block : slab) {
     if (!block.fixed) {

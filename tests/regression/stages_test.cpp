@@ -83,7 +83,7 @@ TEST(StagedRun, GoesOnFromAnyStageOnAnyNumberOfRanks) {
   const Outcome whole = run_gcpdda(1, {"run", "scene.toml", "--out", "whole"}, folder);
   ASSERT_EQ(whole.exit_code, 0) << whole.err;
   EXPECT_EQ(summary_text(folder / "whole", "verdict"), "\"completed\"");
-  EXPECT_EQ(count_of(whole.err, "stage 'opening'"), 1) << whole.err;
+  EXPECT_EQ(count_of(whole.err, "stage 'opening' at t = "), 1) << whole.err;
   EXPECT_EQ(count_of(whole.err, "stage 'gravity' settled"), 1) << whole.err;
   for (const std::size_t count : {2U, 3U}) {
     const std::string name = fmt::format("first{}", count);

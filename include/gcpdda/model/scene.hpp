@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -183,6 +184,9 @@ struct Scene {
   StrengthReduction reduction;
   Ensemble ensemble;
   std::string resolved; ///< the scene after --set, as TOML text
+  /// Where its values were written, by their path as with --set ("joint.default.cohesion"), but for those of
+  /// blocks, monitors and stages, which have a place of their own; empty of a scene made in code.
+  std::map<std::string, SourcePosition> places;
 };
 
 } // namespace gcpdda

@@ -269,6 +269,16 @@ private:
   void find_laws_on_edges(std::span<const SceneBlock> slab);
   void warn_of_rounding(double size, double farthest);
   void warn_of_lively_impacts();
+  // What is implausible, see doubts.cpp.
+  void doubt_blocks(std::span<const SceneBlock> slab);
+  void doubt_use(std::span<const SceneBlock> slab);
+  void doubt_holds(std::span<const SceneBlock> slab);
+  void doubt_sizes(std::span<const SceneBlock> slab);
+  void doubt_stiffness(double pressure, double size);
+  void doubt_slivers(std::span<const SceneBlock> slab);
+  void explain_slivers();
+  void doubt_gaps();
+  void doubt_monitors();
   void take_blocks(std::vector<SceneBlock> slab);
   void place_monitors(std::span<const SceneBlock> slab);
   void place_point(std::span<const SceneBlock> slab, Monitor &monitor);

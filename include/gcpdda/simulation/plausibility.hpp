@@ -1,0 +1,51 @@
+#pragma once
+
+#include "gcpdda/base/diagnostic.hpp"
+#include "gcpdda/model/scene.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gcpdda {
+
+/// A unit that people give a quantity in by mistake.
+struct UnitSlip {
+  double factor = 0.0; ///< from that unit to the one of the key
+  std::string_view unit;
+};
+
+/// What a quantity of a scene has in rock, soil, concrete, steel or masonry. Zero means that there is none
+/// and is always plausible.
+struct PlausibleRange {
+  std::string_view key; ///< path as in scene_keys.md
+  std::string_view unit;
+  double low = 0.0;
+  double high = 0.0;
+  double typical = 0.0;        ///< of two unit slips the one that comes nearer is named first
+  std::vector<UnitSlip> slips; ///< none where no unit is mistaken for the right one
+  std::string_view what;       ///< "natural and crushed rock ... have"
+  std::string_view source;
+};
+
+/// All rows, in the order of scene_keys.md.
+std::span<const PlausibleRange> plausible_ranges();
+
+/// The page run/guide/plausible_values.md (Markdown).
+std::string plausible_values_page();
+
+/// What is implausible in a scene that is valid: quantities outside the ranges above, with what was probably
+/// meant, times that lie beyond the end of the run, and parts that lie outside the region. Every warning has
+/// the place where the value was written; values that the scene does not give are not judged. A scene made in
+/// code has no places (Scene::places), and all of its values are judged. Quantities that deviate in the same
+/// way make one warning with their number.
+///
+/// A scene in normalised units has no unit slips: where |gravity| is 1 m/s2 or the density of all materials
+/// is 1, only angles and ratios are judged.
+Diagnostics implausible_values(const Scene &scene);
+
+/// The same of the size of the median mobile block, sqrt(area) in m: a warning or none.
+Diagnostics implausible_size(const Scene &scene, double size);
+
+} // namespace gcpdda

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "gcpdda/base/diagnostic.hpp"
+
+namespace gcpdda {
+
+/// The same diagnostics, but of those that differ in names and numbers alone only the first ten and one line
+/// that counts the others.
+Diagnostics condensed(const Diagnostics &all);
+
+} // namespace gcpdda

@@ -1,0 +1,156 @@
+#include "gcpdda/simulation/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr double earth_gravity = 9.81;
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+
+// Shared by several rows.
+const std::vector<UnitSlip> of_density{
+    {1e3 / earth_gravity, "kN/m3"}, {1e3, "t/m3"}, {1.0 / earth_gravity, "N/m3"}, {1e-3, "g/m3"}};
+const std::vector<UnitSlip> of_stress{{1e3, "kPa"}, {1e6, "MPa"}};
+const std::vector<UnitSlip> of_force{{1e3, "kN"}, {1e6, "MN"}};
+const std::vector<UnitSlip> of_force_per_length{{1e3, "kN/m"}, {1e6, "MN/m"}};
+const std::vector<UnitSlip> of_length{{1e-3, "mm"}, {1e-2, "cm"}};
+const std::vector<UnitSlip> of_angle{{degrees_per_radian, "radians"}};
+const std::vector<UnitSlip> of_share{{1e-2, "per cent"}};
+
+constexpr std::string_view strength_sources =
+    "Hoek & Bray (1981) table 1: 10 kPa (bentonite) to 55 MPa (granite); EN 10138: steel 1.9 GPa";
+constexpr std::string_view angle_sources = "Barton & Choubey (1977): at most 70 degrees; Hoek & Bray (1981) "
+                                           "table 1: bentonite 7, broken rock 50; Lama "
+                                           "& Vutukuri (1978)";
+constexpr std::string_view bolt_sources = "Stillborg (1994); Hoek, Kaiser & Bawden (1995)";
+
+// Bounds are rounded outwards from what the sources have: what lies beyond is another unit, not another rock.
+// clang-format off
+const std::vector<PlausibleRange> all_ranges{
+  {"run.gravity", "m/s2", 0.1, 2000, earth_gravity, {{1e-3, "mm/s2"}, {1e3, "km/s2"}}, "planets and geotechnical centrifuges have", "Taylor (1995): centrifuges up to 200 times 9.81 m/s2"},
+  {"run.rayleigh.ratio", "", 1e-4, 1, 0.05, of_share, "rock and joints lose", "Kramer (1996) chapter 6"},
+  {"run.contact_damping", "", 1e-4, 2, 0.05, of_share, "dashpots have", "Kramer (1996) chapter 6"},
+  {"material.*.density", "kg/m3", 300, 12000, 2500, of_density, "timber, soil, masonry, concrete, rock, ore, steel and lead have", "EN 1991-1-1 annex A: softwood 350, concrete 2,400, granite 2,700 to 3,000, steel 7,850, lead 11,400"},
+  {"material.*.youngs_modulus", "Pa", 5e5, 5e11, 2e10, {{1e9, "GPa"}, {1e6, "MPa"}}, "soil, masonry, concrete, rock and steel have", "Bowles (1996) table 2-8: very soft clay 2 MPa; EN 1992-1-1 table 3.1: concrete 27 to 44 GPa; EN 1993-1-1: steel 210 GPa; Lama & Vutukuri (1978)"},
+  {"joint.*.normal_stiffness", "Pa/m", 1e6, 1e14, 5e9, {{1e6, "MPa/m"}, {1e9, "GPa/m"}}, "clay-filled to tight rock joints, and what stands for a rigid contact, have", "Bandis, Lumsden & Barton (1983); Lama & Vutukuri (1978)"},
+  {"joint.*.allowed_overlap", "", 1e-8, 0.05, 1e-3, of_share, "overlaps that are small against a block have", "an overlap at rest above 5 % of a block is refused"},
+  {"joint.*.tangential_ratio", "", 1e-3, 10, 0.5, {}, "rock joints and contacts have", "Bandis, Lumsden & Barton (1983)"},
+  {"joint.*.friction_angle_deg", "degrees", 3, 80, 35, of_angle, "wet clay gouge to rough fresh joints have", angle_sources},
+  {"joint.*.cohesion", "Pa", 1e3, 2e9, 3e5, of_stress, "soil, joints, mortar, concrete, rock and steel have", strength_sources},
+  {"joint.*.tension", "Pa", 1e3, 2e9, 1e6, of_stress, "soil, mortar, concrete, rock and steel have", strength_sources},
+  {"joint.*.residual_friction_angle_deg", "degrees", 3, 80, 30, of_angle, "wet clay gouge to rough fresh joints have", angle_sources},
+  {"joint.*.residual_cohesion", "Pa", 1e3, 2e9, 3e4, of_stress, "soil, joints, mortar, concrete and rock have", strength_sources},
+  {"joint.*.dilation_angle_deg", "degrees", 0.3, 60, 8, of_angle, "rock joints have", "Barton & Choubey (1977); Wyllie & Mah (2004) chapter 4"},
+  {"joint.*.dilation_limit", "m", 1e-5, 2, 0.01, of_length, "asperities of rock joints have lengths of", "Barton & Choubey (1977)"},
+  {"joint.*.jrc", "", 0.01, 20, 8, {}, "the profiles of Barton & Choubey have", "Barton & Choubey (1977): 0 to 20"},
+  {"joint.*.jcs", "Pa", 5e5, 5e8, 5e7, of_stress, "weathered walls to fresh rock have", "Barton & Choubey (1977); Hoek & Bray (1981)"},
+  {"block.*.size", "m", 1e-3, 500, 1, of_length, "the roots of the areas of blocks are", "grains of sand to blocks of a mountain"},
+  {"block.*.velocity", "m/s", 1e-9, 300, 5, {{1e-3, "mm/s"}, {1e-2, "cm/s"}}, "falling and blasted rock has", "Wyllie & Mah (2004) chapter 12: rock fall"},
+  {"block.*.spin", "rad/s", 1e-9, 200, 3, {{1.0 / degrees_per_radian, "degrees/s"}}, "falling rock spins at", "Wyllie & Mah (2004) chapter 12: rock fall"},
+  {"wall.*.block_size", "m", 1e-3, 200, 0.5, of_length, "bricks and blocks have", "grains of sand to blocks of a mountain"},
+  {"pyramid.*.block_size", "m", 1e-3, 200, 0.5, of_length, "bricks and blocks have", "grains of sand to blocks of a mountain"},
+  {"region.size", "m", 0.02, 1e4, 50, of_length, "the root of the area of a sample or a mountain side is", "a shear box to a mountain side"},
+  {"joint_set.*.spacing", "m", 1e-3, 500, 2, of_length, "joints have", "ISRM (1978): extremely close below 0.02 m, extremely wide above 6 m"},
+  {"joint_set.*.trace_length", "m", 0.01, 5000, 10, of_length, "joints have", "ISRM (1978): persistence from below 1 m to above 20 m"},
+  {"joint_set.*.gap", "m", 1e-3, 5000, 5, of_length, "rock bridges have", "ISRM (1978)"},
+  {"opening.*.size", "m", 0.02, 300, 10, of_length, "boreholes to caverns have widths of", "Hoek & Brown (1980)"},
+  {"voronoi.*.size", "m", 1e-4, 200, 1, of_length, "grains and blocks have", "grains of sand to blocks of a mountain"},
+  {"bricks.*.block_size", "m", 1e-3, 200, 0.5, of_length, "bricks and blocks have", "grains of sand to blocks of a mountain"},
+  {"water.*.density", "kg/m3", 800, 2000, 1000, of_density, "fresh water, brine and slurry have", "fresh water 1,000, sea water 1,025, saturated brine 1,200; EN 1538: bentonite slurry"},
+  {"in_situ.stress", "Pa", 5e3, 1e9, 5e6, of_stress, "a load on the surface to the rock of the deepest mines has", "EN 1991-1-1 table 6.2: crowds 5 kPa; Brown & Hoek (1978): 27 kPa for each metre of depth"},
+  {"in_situ.k0", "", 0.05, 15, 1, of_share, "measurements have", "Brown & Hoek (1978): 0.3 + 100/depth to 0.5 + 1500/depth"},
+  {"in_situ.density", "kg/m3", 300, 12000, 2500, of_density, "soil, concrete, rock and ore have", "EN 1991-1-1 annex A"},
+  {"earthquake.p_wave_speed", "m/s", 100, 1e4, 3000, {{1e3, "km/s"}}, "soil to fresh rock has", "Lama & Vutukuri (1978); Kramer (1996)"},
+  {"earthquake.s_wave_speed", "m/s", 30, 7000, 1500, {{1e3, "km/s"}}, "soil to fresh rock has", "Lama & Vutukuri (1978); Kramer (1996)"},
+  {"support.*.axial_stiffness", "N/m", 1e5, 1e11, 5e7, of_force_per_length, "bolts and cables have", bolt_sources},
+  {"support.*.axial_rigidity", "N", 1e6, 1e11, 1e8, of_force, "bolts and cables have", "210 GPa times 5 mm2 to 0.5 m2 of steel"},
+  {"support.*.axial_yield", "N", 5e3, 1e8, 2e5, of_force, "bolts and cables have", bolt_sources},
+  {"support.*.shear_stiffness", "N/m", 1e4, 1e11, 2e7, of_force_per_length, "grouted bolts have", bolt_sources},
+  {"support.*.shear_yield", "N", 2e3, 1e8, 1e5, of_force, "grouted bolts have", bolt_sources},
+  {"support.*.rupture_strain", "", 1e-3, 0.6, 0.1, of_share, "steel and glass fibre have", "EN 10138: 0.035 for strand; Stillborg (1994)"},
+  {"support.*.pretension", "N", 1e3, 1e8, 1e5, of_force, "bolts and cables have", bolt_sources},
+  {"support.*.active_length", "m", 0.01, 5, 0.3, of_length, "about 20 diameters of a bolt are", bolt_sources},
+  {"support.*.bond_strength", "N/m", 5e3, 1e7, 3e5, of_force_per_length, "grout has", bolt_sources},
+  {"support.*.spacing", "m", 0.1, 20, 1.5, of_length, "bolts have distances of", bolt_sources},
+  {"bolt.*.length", "m", 0.1, 300, 4, of_length, "bolts and cables have", bolt_sources},
+};
+// clang-format on
+
+std::string words_on_range(const PlausibleRange &row) {
+  return fmt::format("{:g} to {:g}{}{}", row.low, row.high, row.unit.empty() ? "" : " ", row.unit);
+}
+
+constexpr std::string_view page_head = R"(# Plausible values
+
+A wrong unit rarely stops a run: it runs, and means nothing. So every run and `gcpdda inspect` begin with a warning for each
+value that neither rock, soil, concrete, steel nor masonry has, with what was probably meant; warnings never stop a run.
+`gcpdda reference --values` prints this page from the table that judges.
+
+| key | range | probably meant, if it fits | from |
+|---|---|---|---|
+)";
+
+constexpr std::string_view page_tail = R"(
+Zero means "none" and is always plausible. Values that a scene leaves to their defaults are not judged. A scene in
+normalised units has no unit slips: where gravity has the size 1, or all densities are 1, only angles and ratios are judged.
+`size` is the root of the area: of the median mobile block, of the region; of an opening it is its width. `velocity` and
+`spin` are those of `velocity`, `prescribed_velocity` and `velocity_table`; `gravity` is its size; `stress` is the larger of
+the principal values of [in_situ] at the level.
+
+Besides these values the following is warned of, each kind in one line with the number of places:
+
+| what | why |
+|---|---|
+| gravity points upwards | y is up |
+| an interval of output, history or checkpoints, a ramp or the start of an earthquake beyond the end of the run | it never comes |
+| faults, maps, openings or layers that lie outside the region | they cut nothing |
+| a joint law or material that nothing uses; the nearest name is suggested | `--set joint.defualt.cohesion=0` makes a new law |
+| gravity acts and nothing is fixed, held or driven; no block can move | everything falls; nothing happens |
+| contacts at rest overlap by more than 1 % of the median block | blocks sink into each other; names the stiffness that would do |
+| parallel edges face each other across less than 5 % of a block, and more than rounding | drawn as touching, they do not touch |
+| a monitor follows a block that a stage excavates | its history ends there |
+| blocks thinner than 1/20 of the median width under in-situ stress, and those that it presses together by more than 5 % of their width, which is refused | names the `min_width` that merges them; by default it is 1/20 of the smallest mean spacing with [in_situ] |
+| a load below 1/1000 of the weight of its block | N/m are meant, not kN/m |
+| a record of accelerations below 1 m/s2 without `scale`, or above 50 m/s2; of velocities above 5 m/s | g and cm are common units of records |
+
+## Sources
+
+- Bandis, S. C., Lumsden, A. C., Barton, N. R. (1983): Fundamentals of rock joint deformation. Int. J. Rock Mech. Min. Sci. 20, 249-268.
+- Barton, N., Choubey, V. (1977): The shear strength of rock joints in theory and practice. Rock Mech. 10, 1-54.
+- Bowles, J. E. (1996): Foundation Analysis and Design, 5th ed., McGraw-Hill.
+- Brown, E. T., Hoek, E. (1978): Trends in relationships between measured in-situ stresses and depth. Int. J. Rock Mech. Min. Sci. 15, 211-215.
+- EN 1538 (slurry walls), EN 1991-1-1 (Eurocode 1, densities and loads), EN 1992-1-1 (Eurocode 2, concrete), EN 1993-1-1 (Eurocode 3, steel), EN 10138 (prestressing steel).
+- Hoek, E., Bray, J. W. (1981): Rock Slope Engineering, 3rd ed., Institution of Mining and Metallurgy.
+- Hoek, E., Brown, E. T. (1980): Underground Excavations in Rock, Institution of Mining and Metallurgy.
+- Hoek, E., Kaiser, P. K., Bawden, W. F. (1995): Support of Underground Excavations in Hard Rock, Balkema.
+- ISRM (1978): Suggested methods for the quantitative description of discontinuities in rock masses. Int. J. Rock Mech. Min. Sci. 15, 319-368.
+- Kramer, S. L. (1996): Geotechnical Earthquake Engineering, Prentice Hall.
+- Lama, R. D., Vutukuri, V. S. (1978): Handbook on Mechanical Properties of Rocks, Trans Tech.
+- Stillborg, B. (1994): Professional Users Handbook for Rock Bolting, 2nd ed., Trans Tech.
+- Taylor, R. N. (1995): Geotechnical Centrifuge Technology, Blackie.
+- Wyllie, D. C., Mah, C. W. (2004): Rock Slope Engineering, 4th ed., Spon.
+)";
+
+} // namespace
+
+std::span<const PlausibleRange> plausible_ranges() {
+  return all_ranges;
+}
+
+std::string plausible_values_page() {
+  std::string page(page_head);
+  for (const PlausibleRange &row : all_ranges) {
+    std::string slips;
+    for (const UnitSlip &slip : row.slips) {
+      slips += fmt::format("{}{}", slips.empty() ? "" : ", ", slip.unit);
+    }
+    page += fmt::format("| `{}` | {} | {} | {} |\n", row.key, words_on_range(row), slips, row.source);
+  }
+  return page + std::string(page_tail);
+}
+
+} // namespace gcpdda
