@@ -247,29 +247,44 @@ void find_waiting(const BlockSystem &system, Candidates &candidates) {
 }
 
 /// Ids ascend with the lower blocks of pairs, which may be ghosts or fixed, and with the owned rows.
-void find_rows_of_groups(const BlockSystem &system, Candidates &candidates) {
+void find_groups(const BlockSystem &system, Candidates &candidates) {
   const std::size_t num_groups = candidates.pairs.size() / PlainPair::pairs_in_group + 1;
   const auto all = static_cast<std::uint32_t>(system.num_owned);
   const auto id_of = [&](std::uint32_t row) { return system.properties[row].id; };
-  Candidates::GroupRows rows;
-  candidates.group_rows.clear();
-  for (std::size_t group = 0; group < num_groups; ++group) {
+  PairGroup group;
+  candidates.groups.clear();
+  for (; group.number < num_groups; ++group.number) {
     const std::span<const CandidatePair> left =
-        std::span(candidates.pairs).subspan(group * PlainPair::pairs_in_group);
+        std::span(candidates.pairs).subspan(std::size_t{group.number} * PlainPair::pairs_in_group);
     const std::span<const CandidatePair> own =
         left.first(std::min<std::size_t>(left.size(), PlainPair::pairs_in_group));
     for (const CandidatePair &pair : own) {
       for (const BlockIndex row : {pair.lower, pair.higher}) {
-        rows.end = row.value < all ? std::max(rows.end, row.value + 1) : rows.end;
+        group.rows_read = row.value < all ? std::max(group.rows_read, row.value + 1) : group.rows_read;
       }
     }
     const bool is_last = own.size() == left.size();
-    while (rows.done < all && (is_last || id_of(rows.done) < id_of(left[own.size()].lower.value))) {
-      ++rows.done;
+    while (group.rows_finished < all &&
+           (is_last || id_of(group.rows_finished) < id_of(left[own.size()].lower.value))) {
+      ++group.rows_finished;
     }
-    rows.end = std::max(rows.end, rows.done); // those without a pair come along
-    candidates.group_rows.push_back(rows);
+    group.rows_read = std::max(group.rows_read, group.rows_finished); // rows without a pair come along
+    while (group.last < candidates.num_interior_plain &&
+           candidates.plain[group.last].group() == group.number) {
+      ++group.last;
+    }
+    if (group.first < group.last) {
+      candidates.groups.push_back(group);
+    }
+    group.first = group.last;
   }
+  if (candidates.groups.empty()) {
+    candidates.groups.emplace_back();
+  }
+  PairGroup &last = candidates.groups.back();
+  last.rows_read = all;
+  last.rows_finished = all;
+  last.is_last = true;
 }
 
 /// The last of all pairs is a plain one.
@@ -413,7 +428,7 @@ Candidates make_candidates(const BlockSystem &system,
     history.ranges.resize(candidates.pairs.size());
   }
   find_waiting(system, candidates);
-  find_rows_of_groups(system, candidates);
+  find_groups(system, candidates);
   return candidates;
 }
 

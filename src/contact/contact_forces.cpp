@@ -300,10 +300,8 @@ void ContactForces::close_group(const BlockSystem &system, const Candidates &can
   sums_.close_group(system, candidates, group, *batch_);
 }
 
-// Those before num_interior_plain or all others.
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
-                                         ContactHistory &history, std::size_t first, std::size_t last,
-                                         const Front &front) {
+                                         const ContactHistory &history, std::size_t first, std::size_t last) {
   const PlainScene scene{system,
                          candidates,
                          history,
@@ -311,40 +309,13 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
                          parameters_.damping_ratio,
                          parameters_.stiffness_damping,
                          false};
-  plain_memory_ = history.plain;
-  plain_grips_ = history.grips;
-  const bool are_interior = first < candidates.num_interior_plain;
-  for (std::size_t begin = first, end = first; begin < last; begin = end) {
-    const std::uint32_t group = candidates.plain[begin].group();
-    end = std::min(last, begin + PlainPair::pairs_in_group);
-    if (are_interior) {
-      const auto from = candidates.plain.begin() + static_cast<std::ptrdiff_t>(begin);
-      const auto most = static_cast<std::ptrdiff_t>(end - begin);
-      end = static_cast<std::size_t>(
-          std::partition_point(from, from + most, [&](const PlainPair &p) { return p.group() == group; }) -
-          candidates.plain.begin());
-    }
-    if (front.before) {
-      front.before(candidates.group_rows[group].end);
-    }
-    find_meeting(system, candidates, history, begin, end);
-    evaluate_known(scene);
-    evaluate_strangers(scene);
-    for (const std::uint32_t entry : births_) {
-      evaluate_birth(system, candidates, entry);
-    }
-    births_.clear();
-    if (are_interior) {
-      close_group(system, candidates, group);
-    }
-    if (front.after) {
-      front.after(candidates.group_rows[group].done);
-    }
+  find_meeting(system, candidates, history, first, last);
+  evaluate_known(scene);
+  evaluate_strangers(scene);
+  for (const std::uint32_t entry : births_) {
+    evaluate_birth(system, candidates, entry);
   }
-  const PlainBatch::Extremes seen = batch_->take_extremes();
-  report_.normals_undefined += seen.normals_undefined;
-  report_.max_overlap = std::max(report_.max_overlap, seen.max_overlap);
-  report_.max_overlap_share = std::max(report_.max_overlap_share, seen.max_overlap_share);
+  births_.clear();
 }
 
 std::size_t ContactForces::append_regions(const BlockSystem &system, const Candidates &candidates,
@@ -402,8 +373,17 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
   }
 }
 
-void ContactForces::evaluate_interior(BlockSystem &system, const Candidates &candidates,
-                                      ContactHistory &history, const Front &front) {
+ForceReport ContactForces::evaluate(BlockSystem &system, const Candidates &candidates,
+                                    ContactHistory &history) {
+  begin(system, candidates);
+  begin_rows(system, 0, system.num_owned);
+  for (const PairGroup &group : candidates.groups) {
+    evaluate_group(system, candidates, history, group);
+  }
+  return evaluate_border(system, candidates, history);
+}
+
+void ContactForces::begin(BlockSystem &system, const Candidates &candidates) {
   begin_rows(system, system.first_fixed(), system.num_rows());
   num_forces_ = 0;
   dilation_works_.clear();
@@ -416,24 +396,43 @@ void ContactForces::evaluate_interior(BlockSystem &system, const Candidates &can
   }
   sums_.start(system, candidates);
   report_ = {};
-  evaluate_plain_pairs(system, candidates, history, 0, candidates.num_interior_plain, front);
-  if (front.before) {
-    front.before(system.num_owned);
+}
+
+void ContactForces::evaluate_group(const BlockSystem &system, const Candidates &candidates,
+                                   ContactHistory &history, const PairGroup &group) {
+  plain_memory_ = history.plain;
+  plain_grips_ = history.grips;
+  if (group.first < group.last) {
+    evaluate_plain_pairs(system, candidates, history, group.first, group.last);
+    close_group(system, candidates, group.number);
   }
-  evaluate_general_pairs(system, candidates, history,
-                         std::span(candidates.general).first(candidates.num_interior_general));
+  if (group.is_last) {
+    evaluate_general_pairs(system, candidates, history,
+                           std::span(candidates.general).first(candidates.num_interior_general));
+  }
 }
 
 ForceReport ContactForces::evaluate_border(BlockSystem &system, const Candidates &candidates,
                                            ContactHistory &history) {
   begin_rows(system, system.num_owned, system.first_fixed());
-  sums_.begin_border(candidates.plain.size() - candidates.num_interior_plain);
-  evaluate_plain_pairs(system, candidates, history, candidates.num_interior_plain, candidates.plain.size());
+  const std::size_t num_plain = candidates.plain.size();
+  sums_.begin_border(num_plain - candidates.num_interior_plain);
+  plain_memory_ = history.plain;
+  plain_grips_ = history.grips;
+  for (std::size_t first = candidates.num_interior_plain; first < num_plain;
+       first += PlainPair::pairs_in_group) {
+    evaluate_plain_pairs(system, candidates, history, first,
+                         std::min<std::size_t>(num_plain, first + PlainPair::pairs_in_group));
+  }
   evaluate_general_pairs(system, candidates, history,
                          std::span(candidates.general).subspan(candidates.num_interior_general));
   std::swap(history.overlaps, next_.overlaps);
   std::swap(history.ranges, next_.ranges);
   std::swap(history.regions, next_.regions);
+  const PlainBatch::Extremes seen = batch_->take_extremes();
+  report_.normals_undefined += seen.normals_undefined;
+  report_.max_overlap = std::max(report_.max_overlap, seen.max_overlap);
+  report_.max_overlap_share = std::max(report_.max_overlap_share, seen.max_overlap_share);
   return report_;
 }
 

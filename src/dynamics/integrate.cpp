@@ -138,15 +138,13 @@ TrialConfiguration next_trial(const BlockSystem &system, const Scheme &scheme, d
   return next_trial(system, TrialFactors(scheme, time_step), row);
 }
 
-void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpan rows,
-             const std::function<void(std::size_t first, std::size_t last)> &then) {
-  constexpr std::size_t rows_at_once = 64; // they are posed from the cache
-  pose(system, 0, 0);                      // lists have their lengths
+void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpan rows) {
+  pose(system, 0, 0); // lists have their lengths
   const TrialFactors next(scheme, time_step);
   const BlockLanes &lanes = block_lanes(Instructions::widest);
-  const auto in_lanes = [&](std::size_t row, std::size_t last) { // were they?
+  const auto in_lanes = [&](std::size_t row) { // were they?
     const std::size_t end = row + lanes.width;
-    if (end > last) {
+    if (end > rows.last) {
       return false;
     }
     const std::size_t num_deformable = system.deformation_begin[end] - system.deformation_begin[row];
@@ -158,22 +156,15 @@ void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpa
     }
     return num_deformable == 0 || num_deformable == lanes.width;
   };
-  for (std::size_t first = rows.first; first < rows.last; first += rows_at_once) {
-    const std::size_t last = std::min(rows.last, first + rows_at_once);
-    for (std::size_t i = first; i < last; ++i) {
-      while (in_lanes(i, last)) {
-        i += lanes.width;
-      }
-      if (i == last) {
-        break;
-      }
-      set_trial(system, i, next_trial(system, next, i));
-    }
-    pose_in_lanes(system, first, last);
-    if (then) {
-      then(first, last);
+  for (std::size_t row = rows.first; row < rows.last;) {
+    if (in_lanes(row)) {
+      row += lanes.width;
+    } else {
+      set_trial(system, row, next_trial(system, next, row));
+      ++row;
     }
   }
+  pose_in_lanes(system, rows.first, rows.last);
 }
 
 void accelerate(BlockSystem &system) {

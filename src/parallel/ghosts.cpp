@@ -313,7 +313,9 @@ void Ghosts::prepare_motion(const BlockSystem &system) {
   std::vector<Communicator::Message> outgoing;
   std::vector<Communicator::Message> incoming;
   bytes_ = 0;
+  sent_rows_.clear();
   for (Neighbour &n : neighbours_) {
+    sent_rows_.insert(sent_rows_.end(), n.send_rows.begin(), n.send_rows.end());
     n.send.resize(bytes_of_motion(system, n.send_rows));
     n.receive.resize(bytes_of_motion(system, n.receive_rows));
     if (!n.send.empty()) {
@@ -358,12 +360,13 @@ void Ghosts::copy_accelerations(BlockSystem &system) {
       });
 }
 
-void Ghosts::begin(const BlockSystem &system,
-                   const std::function<TrialConfiguration(std::uint32_t)> &trial_of) {
+void Ghosts::begin(const BlockSystem &system, std::span<const TrialConfiguration> trials) {
+  expect(trials.size() == sent_rows_.size(), "every row that is sent has a trial configuration");
+  auto next = trials.begin();
   for (Neighbour &n : neighbours_) {
     std::byte *to = n.send.data();
     for (const std::uint32_t row : n.send_rows) {
-      const TrialConfiguration trial = trial_of(row);
+      const TrialConfiguration &trial = *next++;
       to = put(to, GhostMotion{trial.motion, system.velocity[row]});
       if (system.is_deformable(row)) {
         to = put(to, GhostDeformation{trial.gradient, system.deformation_of(row).rate});

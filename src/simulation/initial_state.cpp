@@ -108,7 +108,8 @@ void Simulation::check_bonds() {
 }
 
 void Simulation::accelerate_owned() {
-  sum_contacts_of_blocks();
+  sum_forces();
+  prepare_forces();
   blocks_.body = {gravity(), ground_acceleration()};
   gather_forces(0, blocks_.num_owned, blocks_.body);
   accelerate(blocks_);

@@ -37,17 +37,17 @@ std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
 
 } // namespace
 
-// Before they are found here.
-void Simulation::send_trials() {
+void Simulation::send_border_trials() {
   const auto scope = phases_.measure(Phase::ghosts);
-  find_prescribed_rows();
-  ghosts_.begin(blocks_, [&](std::uint32_t row) {
-    TrialConfiguration trial = next_trial(blocks_, scheme_, plan_.time_step, row);
+  border_trials_.clear();
+  for (const std::uint32_t row : ghosts_.sent_rows()) {
+    TrialConfiguration &trial =
+        border_trials_.emplace_back(next_trial(blocks_, scheme_, plan_.time_step, row));
     for (const PrescribedRow &prescribed : prescribed_rows_) {
       trial.motion = prescribed.row == row ? prescribed.trial : trial.motion;
     }
-    return trial;
-  });
+  }
+  ghosts_.begin(blocks_, border_trials_);
 }
 
 // At t_n + c1 dt, where the family takes x* of constant velocity.
@@ -62,22 +62,15 @@ void Simulation::find_prescribed_rows() {
   }
 }
 
-void Simulation::predict_rows(std::size_t first, std::size_t last, bool for_contacts) {
-  const auto scope = phases_.measure(Phase::predict);
-  const auto begin_rows = [&](std::size_t from, std::size_t to) {
-    for (const auto &[row, motion, increment] : prescribed_rows_) {
-      if (from <= row && row < to) {
-        blocks_.trial[row] = motion;
-        blocks_.motion[row].set_increment(increment);
-        pose(blocks_, row, row + 1);
-      }
+void Simulation::predict_rows(RowSpan rows) {
+  predict(blocks_, scheme_, plan_.time_step, rows);
+  for (const auto &[row, motion, increment] : prescribed_rows_) {
+    if (rows.first <= row && row < rows.last) {
+      blocks_.trial[row] = motion;
+      blocks_.motion[row].set_increment(increment);
+      pose(blocks_, row, row + 1);
     }
-    if (for_contacts) {
-      add_half_works(blocks_, from, to);
-      contacts_.begin_rows(blocks_, from, to);
-    }
-  };
-  predict(blocks_, scheme_, plan_.time_step, {first, last}, begin_rows);
+  }
 }
 
 // The acceleration is the mean one of the coming step: what is asked how far the block may go in it.
@@ -98,21 +91,17 @@ void Simulation::prepare_forces() {
   own_forces_.local_damping = local_damping_;
 }
 
-void Simulation::begin_moving() {
-  prepare_forces();
-  moving_.body = {gravity(), ground_acceleration()};
-  moving_.predicted = 0;
-  moving_.moved = 0;
-  moving_.passed = 0;
-  moving_.report.clear();
-}
-
 void Simulation::predict_to(std::size_t end) {
-  if (end > moving_.predicted) {
-    const std::size_t last =
-        std::min(blocks_.num_owned, (end + rows_at_once - 1) / rows_at_once * rows_at_once);
-    predict_rows(moving_.predicted, last, true);
-    moving_.predicted = last;
+  if (end <= moving_.predicted) {
+    return;
+  }
+  const auto scope = phases_.measure(Phase::predict);
+  while (moving_.predicted < end) {
+    const RowSpan rows{moving_.predicted, std::min(blocks_.num_owned, moving_.predicted + rows_at_once)};
+    predict_rows(rows);
+    add_half_works(blocks_, rows.first, rows.last);
+    contacts_.begin_rows(blocks_, rows.first, rows.last);
+    moving_.predicted = rows.last;
   }
 }
 
@@ -133,27 +122,26 @@ void Simulation::find_waiting_rows() {
   }
 }
 
-void Simulation::move_to(std::size_t end) {
+void Simulation::advance_to(std::size_t end) {
   const std::size_t last = end == blocks_.num_owned ? end : end / rows_at_once * rows_at_once;
-  if (last <= moving_.moved) {
+  if (last <= moving_.advanced || !bolts_.empty()) { // forces of bolts come after those of all pairs
     return;
   }
   const auto scope = phases_.measure(Phase::update);
-  while (moving_.moved < last) {
+  while (moving_.advanced < last) {
     const bool is_last_run = moving_.passed == moving_.waiting.size();
     const std::size_t stop = is_last_run ? last : std::min(last, moving_.waiting[moving_.passed].first);
-    move_rows(moving_.moved, stop);
-    moving_.moved = stop < last ? moving_.waiting[moving_.passed++].last : last;
+    advance_rows(moving_.advanced, stop);
+    moving_.advanced = stop < last ? moving_.waiting[moving_.passed++].last : last;
   }
 }
 
-// Those that are left.
-void Simulation::move_blocks() {
+void Simulation::advance_remaining() {
   const auto scope = phases_.measure(Phase::update);
   for (std::size_t k = 0; k < moving_.passed; ++k) {
-    move_rows(moving_.waiting[k].first, moving_.waiting[k].last);
+    advance_rows(moving_.waiting[k].first, moving_.waiting[k].last);
   }
-  move_rows(moving_.moved, blocks_.num_owned);
+  advance_rows(moving_.advanced, blocks_.num_owned);
   blocks_.body = moving_.body;
   if (const auto row = moving_.report.broken) {
     keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0});
@@ -161,18 +149,18 @@ void Simulation::move_blocks() {
 }
 
 // Some blocks at a time: what one pass reads is in the cache for the next.
-void Simulation::move_rows(std::size_t first, std::size_t end) {
-  for (first = move_free_rows(first, end); first < end;) {
+void Simulation::advance_rows(std::size_t first, std::size_t end) {
+  for (first = advance_free(first, end); first < end;) {
     const std::size_t last = std::min(end, first + rows_at_once);
     gather_forces(first, last, moving_.body);
     solve_and_update(blocks_, own_forces_, scheme_, plan_.time_step, scene_.run.elasticity, first, last,
                      calm_motion(), moving_.report);
-    first = move_free_rows(last, end);
+    first = advance_free(last, end);
   }
 }
 
 // On most blocks of most scenes only others act: with all that follows in one go.
-std::size_t Simulation::move_free_rows(std::size_t first, std::size_t end) {
+std::size_t Simulation::advance_free(std::size_t first, std::size_t end) {
   if (scene_.run.rayleigh.present()) {
     return first;
   }

@@ -19,17 +19,25 @@ constexpr double failed = 3.0;
 } // namespace
 
 void Simulation::step() {
-  const bool borders_moved = rebalance_if_uneven();
-  if (stale_ || borders_moved) { // stale: some block may use up half the skin in this step; all ranks agree
+  rebalance_if_uneven();
+  if (stale_) { // some block may use up half the skin in this step; all ranks agree
     refresh();
   }
-  load_time_ = time() + scheme_.load_time * plan_.time_step;
-  send_trials();
-  evaluate_contacts(); // blocks are predicted just before it and move on close behind it
-  sum_contacts_of_blocks();
-  move_blocks();
+  begin_step();
+  send_border_trials();
+  for (const PairGroup &group : candidates_.groups) { // blocks are read and advanced from the cache
+    predict_to(group.rows_read);
+    evaluate_group(group);
+    progress_messages();
+    advance_to(group.rows_finished);
+  }
+  receive_ghosts();
+  evaluate_border();
+  sum_forces();
+  advance_remaining();
   ++step_count_;
   prescribe_motion();
+  judge_stage();
   report();
 }
 
@@ -78,6 +86,7 @@ void Simulation::refresh(std::optional<ContactMemory> given) {
   const double reach_skin = skin_ + 4.0 * dilation;
   std::vector<Aabb> boxes = reach_boxes(blocks_, reach_skin);
   ghosts_.rebuild(blocks_, boxes, bolts_.partners(communicator_, blocks_), &map_);
+  border_trials_.reserve(ghosts_.sent_rows().size());
   const std::vector<Aabb> ghost_boxes =
       reach_boxes(blocks_, reach_skin, blocks_.num_owned, blocks_.first_fixed());
   boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(blocks_.num_owned), ghost_boxes.begin(),
@@ -97,11 +106,11 @@ void Simulation::refresh(std::optional<ContactMemory> given) {
 }
 
 // A look now and then; the blocks follow a new map by the migration of a refresh.
-bool Simulation::rebalance_if_uneven() {
+void Simulation::rebalance_if_uneven() {
   constexpr std::int64_t steps_between_looks = 64;
   if (step_count_ == 0 || step_count_ % steps_between_looks != 0 ||
       !balance_.is_lost(counters_.evaluations + counters_.block_steps)) {
-    return false;
+    return;
   }
   const auto scope = phases_.measure(Phase::refresh);
   std::vector<Vec2> centroids;
@@ -109,12 +118,11 @@ bool Simulation::rebalance_if_uneven() {
     centroids.push_back(blocks_.centroid(row));
   }
   auto map = balance_.better_map(centroids, work_of_blocks(blocks_, candidates_), partition_);
-  if (!map) {
-    return false;
+  if (map) {
+    map_ = std::move(*map);
+    stale_ = true;
+    ++counters_.rebalances;
   }
-  map_ = std::move(*map);
-  ++counters_.rebalances;
-  return true;
 }
 
 Diagnostics Simulation::warnings() const {
@@ -139,26 +147,35 @@ Diagnostics Simulation::warnings() const {
   return warnings;
 }
 
-void Simulation::finish_ghosts() {
+void Simulation::begin_step() {
+  const auto scope = phases_.measure(Phase::forces);
+  load_time_ = time() + scheme_.load_time * plan_.time_step;
+  find_prescribed_rows();
+  prepare_forces();
+  moving_.body = {gravity(), ground_acceleration()};
+  moving_.predicted = 0;
+  moving_.advanced = 0;
+  moving_.passed = 0;
+  moving_.report.clear();
+  contacts_.begin(blocks_, candidates_);
+}
+
+void Simulation::evaluate_group(const PairGroup &group) {
+  const auto scope = phases_.measure(Phase::forces);
+  contacts_.evaluate_group(blocks_, candidates_, history_, group);
+}
+
+void Simulation::progress_messages() {
+  const auto scope = phases_.measure(Phase::ghosts);
+  ghosts_.progress();
+}
+
+void Simulation::receive_ghosts() {
   const auto scope = phases_.measure(Phase::ghosts);
   ghosts_.finish(blocks_);
 }
 
-void Simulation::evaluate_contacts() {
-  begin_moving();
-  Front front;
-  front.before = [this](std::size_t end) { predict_to(end); };
-  front.after = [this](std::size_t end) {
-    ghosts_.advance();
-    if (bolts_.empty()) { // else their forces come last
-      move_to(end);
-    }
-  };
-  {
-    const auto scope = phases_.measure(Phase::forces);
-    contacts_.evaluate_interior(blocks_, candidates_, history_, front);
-  }
-  finish_ghosts();
+void Simulation::evaluate_border() {
   const auto scope = phases_.measure(Phase::forces);
   take(contacts_.evaluate_border(blocks_, candidates_, history_));
   evaluate_bolts();
@@ -179,12 +196,11 @@ void Simulation::take(const ForceReport &report) {
 }
 
 // On each block in the order of its partners' ids.
-void Simulation::sum_contacts_of_blocks() {
+void Simulation::sum_forces() {
   const auto scope = phases_.measure(Phase::forces);
   contact_count_ = contacts_.finish_sums(blocks_, candidates_);
   contacts_.add_dilation_works(candidates_, blocks_);
   bolts_.add_forces(blocks_, contacts_.sums().of_blocks());
-  prepare_forces();
 }
 
 // One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop. It cannot be a
@@ -192,12 +208,6 @@ void Simulation::sum_contacts_of_blocks() {
 // one step late is no bound. One that runs on while this rank counts is no shorter: to start it and to look
 // for its end, each with the cache full of blocks, takes longer than counting.
 void Simulation::report() {
-  if (stages_[static_cast<std::size_t>(stage_.index)].kinetic_damping && stage_step() > 0) {
-    stop_at_energy_peak();
-  }
-  if (is_staged_ && stage_step() > 0 && stage_step() % steps_between_looks(num_blocks()) == 0) {
-    look_at_stage();
-  }
   const auto scope = phases_.measure(Phase::report);
   count();
   const double agreed = communicator_.max(own_status());

@@ -99,6 +99,15 @@ RigidDof Simulation::damped_motion(std::size_t row) const {
                                     : blocks_.velocity[row];
 }
 
+void Simulation::judge_stage() {
+  if (stages_[static_cast<std::size_t>(stage_.index)].kinetic_damping) {
+    stop_at_energy_peak();
+  }
+  if (is_staged_ && stage_step() % steps_between_looks(num_blocks()) == 0) {
+    look_at_stage();
+  }
+}
+
 // Two reductions, now and then; both are exact.
 void Simulation::look_at_stage() {
   ExactSum kinetic;

@@ -274,6 +274,20 @@ TEST(ModuleTable, HasNoCircle) {
   }
 }
 
+// A lower module that is handed a function calls upwards, which no include line shows.
+TEST(Callbacks, AreTakenByNoModuleOfTheStep) {
+  const std::set<std::string> lower{"geometry", "model", "contact", "dynamics", "parallel", "communicator"};
+  std::set<std::string> seen;
+  for (const auto &[path, text] : sources()) {
+    const std::string module = module_of(path).value_or("none");
+    if (lower.contains(module)) {
+      seen.insert(module);
+      EXPECT_EQ(text.find("std::function"), std::string::npos) << path;
+    }
+  }
+  EXPECT_EQ(seen, lower);
+}
+
 TEST(TopLevel, HoldsWhatIsPrescribedOnly) {
   const std::set<std::string> prescribed{"CMakeLists.txt", "CMakePresets.json", "README.md", "src",
                                          "include",        "partition",         "tests",     "run"};

@@ -50,6 +50,7 @@ void forces(benchmark::State &state, Instructions instructions, const std::strin
 void general_pairs(benchmark::State &state) {
   Pile pile(state.range(0));
   pile.candidates.plain.clear();
+  pile.candidates.groups = {PairGroup{.is_last = true}};
   pile.candidates.num_interior_plain = 0;
   pile.candidates.general.resize(pile.candidates.pairs.size());
   for (std::uint32_t k = 0; k < pile.candidates.general.size(); ++k) {

@@ -256,7 +256,7 @@ TEST(MessageRound, RunsAgainAndAgain) {
     const auto all = world.all_gather(std::vector<int>{count});
     EXPECT_EQ(all[static_cast<std::size_t>(previous)][0], count);
     for (int look = 0; look < count; ++look) { // it may arrive before it is finished, or not
-      moved_to.advance();
+      moved_to.progress();
     }
     moved_to.finish();
     int heard = -1;
@@ -271,7 +271,7 @@ TEST(MessageRound, WithoutMessagesDoesNothing) {
   MessageRound empty(world, {}, {});
   for (MessageRound *round : {&none, &empty}) {
     round->start();
-    round->advance();
+    round->progress();
     round->finish();
   }
 }

@@ -190,10 +190,12 @@ Mat2 stretched(std::size_t id, int round) {
 }
 
 void begin(Case &c) {
-  c.ghosts.begin(c.mine, [&](std::uint32_t row) {
-    return TrialConfiguration{c.mine.trial[row],
-                              c.mine.is_deformable(row) ? c.mine.deformation_of(row).trial : Mat2{}};
-  });
+  std::vector<TrialConfiguration> trials;
+  for (const std::uint32_t row : c.ghosts.sent_rows()) {
+    trials.push_back(
+        {c.mine.trial[row], c.mine.is_deformable(row) ? c.mine.deformation_of(row).trial : Mat2{}});
+  }
+  c.ghosts.begin(c.mine, trials);
 }
 
 void update(Case &c) {

@@ -42,6 +42,7 @@ void take_none_as_plain(Candidates &candidates) {
   candidates.num_interior_general = candidates.pairs.size();
   candidates.num_interior_plain = 0;
   candidates.plain.clear();
+  candidates.groups = {PairGroup{.is_last = true}};
   candidates.waiting = candidates.general;
   candidates.is_added.assign(candidates.is_added.size(), 0);
   candidates.are_added.assign(candidates.are_added.size(), 0);

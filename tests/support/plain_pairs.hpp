@@ -29,6 +29,7 @@ struct TwoWays {
     all.num_interior_general = all.pairs.size();
     all.num_interior_plain = 0;
     all.plain.clear();
+    all.groups = {PairGroup{.is_last = true}};
     all.waiting = all.general;
     all.is_added.assign(all.is_added.size(), 0);
     all.are_added.assign(all.are_added.size(), 0);

@@ -215,9 +215,7 @@ TEST(PlainPairs, BornAmongLawsAreAddedWithTheirGroup) {
   ASSERT_TRUE(bench.candidates.waiting.empty());
   ASSERT_GT(bench.candidates.plain.back().group(), 2U);
   for (int step = 0; step < 2; ++step) { // they are born, then known
-    bench.forces.begin_rows(bench.system, 0, bench.system.num_owned);
-    bench.forces.evaluate_interior(bench.system, bench.candidates, bench.history);
-    bench.forces.evaluate_border(bench.system, bench.candidates, bench.history);
+    bench.evaluate();
     const ContactCount counted = bench.forces.finish_sums(bench.system, bench.candidates);
     const Regions regions(bench.system, bench.candidates, bench.history, bench.forces);
     EXPECT_EQ(counted.touching, std::ssize(regions.all()));

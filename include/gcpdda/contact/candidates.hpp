@@ -84,6 +84,16 @@ inline constexpr auto rings = [] {
   return numbers;
 }();
 
+/// Pairs without a ghost that are evaluated together, and the owned rows that this asks for and sets free.
+struct PairGroup {
+  std::uint32_t number = 0; ///< PlainPair::group of its plain pairs
+  std::uint32_t first = 0;  ///< its plain pairs are entries [first, last) of Candidates::plain
+  std::uint32_t last = 0;
+  std::uint32_t rows_read = 0;     ///< this group and those before it read no owned row from here on
+  std::uint32_t rows_finished = 0; ///< later groups add to no owned row below; at most rows_read
+  bool is_last = false;            ///< the last group takes all general pairs without a ghost as well
+};
+
 /// Which pairs may touch, as flat lists.
 struct Candidates {
   std::vector<CandidatePair> pairs; ///< with at least one owned block, by (lower id, higher id)
@@ -102,13 +112,7 @@ struct Candidates {
   std::vector<std::uint32_t> border_places;
   std::vector<std::uint32_t> border_entries;
   std::vector<std::uint8_t> are_added; ///< by PlainPair::group: none of its pairs is one of these
-  /// Of the owned rows, a group and those before it have none from `end` on, and those behind it have none
-  /// below `done`, which is not beyond `end`.
-  struct GroupRows {
-    std::uint32_t end = 0;
-    std::uint32_t done = 0;
-  };
-  std::vector<GroupRows> group_rows; ///< by PlainPair::group
+  std::vector<PairGroup> groups;       ///< at least one; those that have a plain pair without a ghost
 
   /// Of an entry of `plain` with a ghost, in `waiting`.
   [[nodiscard]] std::size_t border_place(std::size_t entry) const {

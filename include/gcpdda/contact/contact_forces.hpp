@@ -40,7 +40,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -80,16 +79,6 @@ struct ForceReport {
   std::optional<Fault> fault;     ///< the one with the smallest ids
 };
 
-/// Who moves the blocks, while pairs are evaluated in the order of their blocks and both are in the cache.
-struct Front {
-  /// Owned rows below this one are about to be read: their trial configurations are posed and they have begun
-  /// (ContactForces::begin_rows()) on return.
-  std::function<void(std::size_t end)> before;
-  /// Contacts of those below this one are added, but of rows that wait (Candidates::is_added), and are not
-  /// read again: their velocities may change.
-  std::function<void(std::size_t end)> after;
-};
-
 class PlainBatch;
 struct PlainScene;
 struct PlainLanes;
@@ -110,19 +99,23 @@ public:
 
   /// Forces of all candidates at the posed trial configuration, from velocities v_n and the regions' memory,
   /// which moves on to this configuration.
-  ForceReport evaluate(BlockSystem &system, const Candidates &candidates, ContactHistory &history) {
-    begin_rows(system, 0, system.num_owned);
-    evaluate_interior(system, candidates, history);
-    return evaluate_border(system, candidates, history);
-  }
-  /// Rows [first, last) begin an evaluation: how they move is found, from velocities and the increments of
-  /// their trial configurations, and owned ones have no contacts yet. All owned rows do so before what
-  /// follows, or once their trial configurations are known there.
+  ForceReport evaluate(BlockSystem &system, const Candidates &candidates, ContactHistory &history);
+
+  // evaluate() in parts, for a step that moves blocks while pairs are evaluated in the order of their blocks:
+  // begin(), then evaluate_group() for each of Candidates::groups in their order, then evaluate_border().
+
+  /// Fixed rows begin; no pair has been evaluated.
+  void begin(BlockSystem &system, const Candidates &candidates);
+  /// Rows [first, last), whose trial configurations are posed, begin an evaluation: how they move is found,
+  /// from velocities and the increments of their trial configurations, and the sums of owned rows are
+  /// cleared. Every owned row below PairGroup::rows_read has begun before evaluate_group().
   void begin_rows(BlockSystem &system, std::size_t first, std::size_t last);
-  /// The same in two parts: pairs without a ghost, which do not wait for the ghosts' trial configurations ...
-  void evaluate_interior(BlockSystem &system, const Candidates &candidates, ContactHistory &history,
-                         const Front &front = {});
-  /// ... and then the rest.
+  /// The group's pairs have no ghost, so that they do not wait for the ghosts' trial configurations. After
+  /// it, the contacts of owned rows below PairGroup::rows_finished are added, except on rows that wait
+  /// (Candidates::is_added), and the other rows below are not read again: their velocities may change.
+  void evaluate_group(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
+                      const PairGroup &group);
+  /// Pairs with a ghost, after the ghosts have been posed.
   ForceReport evaluate_border(BlockSystem &system, const Candidates &candidates, ContactHistory &history);
 
   /// What the regions do to the blocks; of blocks that wait only once it is finished.
@@ -231,9 +224,9 @@ private:
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
   void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t group);
-  /// Entries [first, last) of Candidates::plain.
-  void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates, ContactHistory &history,
-                            std::size_t first, std::size_t last, const Front &front = {});
+  /// Entries [first, last) of Candidates::plain, at most PlainPair::pairs_in_group.
+  void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
+                            const ContactHistory &history, std::size_t first, std::size_t last);
   /// How a pair is looked at: as one corner of each block; as corners of one in a face of the other; as
   /// whole edges on each other; as one that was none of these in the step before; as one that is none.
   enum class Way { corners, face, sides, other_as_before, other };

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -53,12 +52,9 @@ struct RowSpan {
 TrialConfiguration next_trial(const BlockSystem &system, const Scheme &scheme, double time_step,
                               std::size_t row);
 
-/// It is set in rows [first, last), which are posed, with the increment from the one before.
-///
-/// @param then  is told of some rows as soon as they are posed and still in the cache
-void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpan rows,
-             const std::function<void(std::size_t first, std::size_t last)> &then = {});
-/// The same of all owned rows.
+/// Set the next trial configurations of these rows, with the increments from the ones before, and pose them.
+void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpan rows);
+/// Predict all owned rows.
 inline void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
   predict(system, scheme, time_step, {0, system.num_owned});
 }

@@ -146,7 +146,7 @@ public:
   /// Until finish() the buffers belong to the round.
   void start();
   /// Long messages travel only while somebody looks after them: to be called now and then before finish().
-  void advance();
+  void progress();
   void finish();
 
 private:

@@ -15,7 +15,6 @@
 #include "gcpdda/partition/domain_map.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -41,13 +40,16 @@ public:
   void rebuild(BlockSystem &system, std::span<const Aabb> boxes, std::span<const FarGhost> far = {},
                const DomainMap *owners = nullptr);
 
-  /// Owners' trial configurations and velocities set out to their ghosts, by requests that were prepared at
-  /// the rebuild. Until finish() ghost rows keep the old ones.
-  /// @param trial_of  what it is going to be, by owned row
-  void begin(const BlockSystem &system, const std::function<TrialConfiguration(std::uint32_t)> &trial_of);
-  /// Looks after them on their way.
-  void advance() { motion_.advance(); }
-  /// They have arrived; ghosts are posed.
+  /// Owned rows whose motion begin() sends, message by message: a row that several ranks see is listed for
+  /// each of them.
+  [[nodiscard]] std::span<const std::uint32_t> sent_rows() const { return sent_rows_; }
+  /// Start to send the coming trial configurations and the velocities of border rows to their ghosts, by
+  /// requests that were prepared at the rebuild. Until finish() ghost rows keep the old ones.
+  /// @param trials  by entry of sent_rows()
+  void begin(const BlockSystem &system, std::span<const TrialConfiguration> trials);
+  /// Let the messages under way make progress.
+  void progress() { motion_.progress(); }
+  /// Wait for the messages; on return the ghosts are posed.
   void finish(BlockSystem &system);
 
   /// Owners' accelerations to their ghosts.
@@ -100,6 +102,7 @@ private:
 
   Communicator communicator_;
   std::vector<Neighbour> neighbours_;
+  std::vector<std::uint32_t> sent_rows_;
   MessageRound motion_;
   std::int64_t messages_ = 0;
   std::int64_t bytes_ = 0;

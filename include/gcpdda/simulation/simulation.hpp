@@ -207,9 +207,10 @@ public:
         turns[blocks_.deformation_begin[row]] = blocks_.motion[row].turn;
       }
     }
-    send_trials();
-    predict_rows(0, blocks_.num_owned, false);
-    finish_ghosts();
+    find_prescribed_rows();
+    send_border_trials();
+    predict_rows({0, blocks_.num_owned});
+    receive_ghosts();
     look(blocks_);
     blocks_.trial = std::move(trial);
     blocks_.deformation = std::move(deformation);
@@ -308,33 +309,37 @@ private:
   [[nodiscard]] ContactMemory remembered_contacts() const;
   /// @param given  what is remembered of contacts, if it is not what stands in their history
   void refresh(std::optional<ContactMemory> given = {});
-  bool rebalance_if_uneven();
-  void send_trials();
-  void find_prescribed_rows();
-  /// @param for_contacts  which are to be evaluated there
-  void predict_rows(std::size_t first, std::size_t last, bool for_contacts);
-  // How owned rows go through a step, see moving.cpp.
-  void find_waiting_rows();
-  void begin_moving();
-  /// Those below `end` have their trial configurations then.
+  // The parts of a step in their order, see simulation.cpp; moving.cpp says how owned rows go through it.
+  void rebalance_if_uneven();
+  void begin_step();
+  void send_border_trials();
+  /// Set the trial configurations of owned rows below `end`, which begin a contact evaluation.
   void predict_to(std::size_t end);
-  /// Contacts of those below `end` are all added: they go to the end of the step, unless they wait.
-  void move_to(std::size_t end);
-  void move_rows(std::size_t first, std::size_t end);
-  /// @return the first row that is not free
-  std::size_t move_free_rows(std::size_t first, std::size_t end);
-  void prepare_forces();
-  void finish_ghosts();
+  void evaluate_group(const PairGroup &group);
+  void progress_messages();
+  /// Advance owned rows below `end` to the end of the step; rows that wait stay behind.
+  void advance_to(std::size_t end);
+  void receive_ghosts();
+  void evaluate_border();
+  void sum_forces();
+  void advance_remaining();
   void prescribe_motion();
-  void evaluate_contacts();
+  void judge_stage();
+  void report();
+
+  void find_prescribed_rows();
+  void prepare_forces();
+  /// Set the trial configurations of owned rows, prescribed ones by their tables.
+  void predict_rows(RowSpan rows);
+  void find_waiting_rows();
+  void advance_rows(std::size_t first, std::size_t end);
+  /// @return the first row that is not free
+  std::size_t advance_free(std::size_t first, std::size_t end);
   void evaluate_bolts();
   void take(const ForceReport &report);
-  void sum_contacts_of_blocks();
-  void move_blocks();
   void gather_forces(std::size_t first, std::size_t last, const BodyForces &body);
   AppliedForces gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water);
   void gather_gradient(std::size_t row, const WaterLoad &water);
-  void report();
   /// Two blocks that close by half their width in a step skip the force that parts them, m.
   [[nodiscard]] double most_motion_in_step() const { return 0.25 * thinnest_; }
   /// Blocks of which most_motion() is no more need no closer look, m.
@@ -361,7 +366,7 @@ private:
   struct Moving {
     BodyForces body;
     std::size_t predicted = 0;    ///< rows below have their trial configurations
-    std::size_t moved = 0;        ///< those below are at the end of the step, but for ...
+    std::size_t advanced = 0;     ///< rows below are at the end of the step, but for ...
     std::size_t passed = 0;       ///< ... so many of ...
     std::vector<RowSpan> waiting; ///< ... these, which cannot go on with their group
     AdvanceReport report;         ///< of the last step
@@ -373,6 +378,7 @@ private:
     RigidDof increment;
   };
   std::vector<PrescribedRow> prescribed_rows_;
+  std::vector<TrialConfiguration> border_trials_; ///< by entry of Ghosts::sent_rows()
   /// Motion of every block that has a velocity table, by ascending id: all ranks know them all.
   std::vector<std::pair<BlockId, PrescribedMotion>> prescribed_;
   std::vector<LoadCourse> courses_;         ///< what loads are multiplied by; 0: the constant one

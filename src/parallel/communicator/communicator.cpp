@@ -261,7 +261,7 @@ void MessageRound::start() {
   check(MPI_Startall(count_of(requests_->all.size()), requests_->all.data()), "MPI_Startall");
 }
 
-void MessageRound::advance() {
+void MessageRound::progress() {
   if (requests_ == nullptr || !requests_->running || requests_->arrived) {
     return;
   }
