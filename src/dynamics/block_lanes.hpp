@@ -14,7 +14,7 @@
 namespace gcpdda {
 
 /// Where and how long all blocks step, and where they take springs.
-struct OwnStep {
+struct BlockSolve {
   const Scheme &scheme;
   double time_step;
   SpringTime spring;
@@ -56,12 +56,12 @@ struct DeformableLanes {
 /// Advances the rows under their gathered forces and notes their elastic force. A row whose new state is not
 /// finite or turned inside out keeps its old one.
 /// @return bit i is set where row i is such a one
-using StepDeformables = unsigned (*)(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step);
+using StepDeformables = unsigned (*)(BlockSystem &system, DeformableLanes &lanes, const BlockSolve &step);
 
 /// Of row first + i in bit i.
 struct FreeStep {
   unsigned broken = 0;       ///< not finite afterwards, and kept as it was
-  unsigned restless = 0;     ///< its most_motion() is above FreeRows::calm
+  unsigned to_check = 0;     ///< its most_motion() is above FreeRows::safe_motion
   double largest_turn = 0.0; ///< of a deformable one, rad
 };
 
@@ -71,7 +71,7 @@ using StepFreeRows = FreeStep (*)(BlockSystem &system, std::size_t first, const 
 
 /// The same of deformable ones.
 using StepFreeDeformables = FreeStep (*)(BlockSystem &system, std::size_t first, const FreeRows &rows,
-                                         const OwnStep &step);
+                                         const BlockSolve &step);
 
 /// Rows, no more than there are lanes.
 using RowsAtOnce = std::span<const std::size_t>;

@@ -1,4 +1,4 @@
-#include "own_step.hpp"
+#include "block_solve.hpp"
 
 #include "gcpdda/base/prefetch.hpp"
 
@@ -10,7 +10,7 @@ std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const S
                               double time_step, Elasticity elasticity, std::size_t first, std::size_t last,
                               AdvanceReport &report, Instructions instructions) {
   const BlockLanes &lanes = block_lanes(instructions);
-  const OwnStep step = own_step({.local_damping = rows.local_damping}, scheme, time_step, elasticity);
+  const BlockSolve step = block_solve({.local_damping = rows.local_damping}, scheme, time_step, elasticity);
   for (std::size_t end = first + lanes.width; end <= last; first = end, end += lanes.width) {
     const std::size_t entry = system.deformation_begin[first];
     const std::size_t num_deformable = system.deformation_begin[end] - entry;
@@ -25,12 +25,12 @@ std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const S
     const FreeStep done = are_rigid ? lanes.step_free_rows(system, first, rows, scheme, time_step)
                                     : lanes.step_free_deformables(system, first, rows, step);
     if (done.broken != 0) {
-      report.note_broken(first + static_cast<std::size_t>(std::countr_zero(done.broken)));
+      report.add_broken(first + static_cast<std::size_t>(std::countr_zero(done.broken)));
     }
-    if (done.restless != 0) {
-      report.restless.push_back({first, end});
+    if (done.to_check != 0) {
+      report.rows_to_check.push_back({first, end});
     }
-    report.note_turn(done.largest_turn);
+    report.add_turn(done.largest_turn);
   }
   return first;
 }

@@ -1,10 +1,10 @@
 #include "gcpdda/dynamics/integrate.hpp"
 
 #include "block_lanes.hpp"
+#include "block_solve.hpp"
 #include "gcpdda/base/prefetch.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
 #include "own_springs.hpp"
-#include "own_step.hpp"
 
 #include <algorithm>
 #include <array>
@@ -188,15 +188,15 @@ void accelerate(BlockSystem &system) {
 }
 
 void solve_and_update(BlockSystem &system, const OwnForces &own, const Scheme &scheme, double time_step,
-                      Elasticity elasticity, std::size_t first, std::size_t last, double calm,
+                      Elasticity elasticity, std::size_t first, std::size_t last, double safe_motion,
                       AdvanceReport &report) {
-  const OwnStep step = own_step(own, scheme, time_step, elasticity);
-  step_by_own_matrices(system, step, first, last, calm, report);
+  const BlockSolve step = block_solve(own, scheme, time_step, elasticity);
+  solve_by_matrix(system, step, first, last, safe_motion, report);
   for (std::size_t i = first; i < last; ++i) {
     if (deforms_freely(system, i)) {
       continue; // and was looked at in the lanes that stepped it
     }
-    report.restless.push_back({i, i + 1});
+    report.rows_to_check.push_back({i, i + 1});
     if (system.has_matrix(i)) {
       continue;
     }
@@ -208,7 +208,7 @@ void solve_and_update(BlockSystem &system, const OwnForces &own, const Scheme &s
                                   time_step * time_step * ((0.5 - scheme.beta) * a + scheme.beta * a_new));
     const RigidDof v_new = system.velocity[i] + time_step * ((1.0 - scheme.gamma) * a + scheme.gamma * a_new);
     if (!is_finite(a_new) || !is_finite(v_new) || !is_finite(d_new)) {
-      report.note_broken(i);
+      report.add_broken(i);
       continue;
     }
     system.acceleration[i] = a_new;

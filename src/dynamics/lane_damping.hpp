@@ -23,7 +23,7 @@ struct LaneWay {
 template <class Matrix>
 [[gnu::always_inline]] inline LaneDofs damp_locally(const LaneDeformable &block, const Matrix &matrix,
                                                     const Lanes &mass, const LaneMat &back,
-                                                    const LaneWay &way, const OwnStep &step, LaneDofs &x) {
+                                                    const LaneWay &way, const BlockSolve &step, LaneDofs &x) {
   const auto dofs_of = [&](const LaneVec &u, const LaneMat &f) __attribute__((always_inline))->LaneDofs {
     const LaneMat g = back * f;
     return {back(u), {lane_spin(g), g.xx(), g.yy(), g.xy() + g.yx()}};

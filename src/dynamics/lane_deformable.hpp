@@ -85,7 +85,7 @@ struct LaneStepped {
 template <class Matrix>
 [[gnu::always_inline]] inline LaneStepped
 step_of(const LaneDeformable &block, const Matrix &matrix, const Lanes &mass, const LaneVec &force,
-        const LaneMat &gradient_force, const LaneWay &way, const OwnStep &step) {
+        const LaneMat &gradient_force, const LaneWay &way, const BlockSolve &step) {
   const LaneMat turn = lane_rotation_of(block.trial);
   const LaneMat back = transposed(turn);
   const LaneMat stretch = back * block.trial;
@@ -157,7 +157,7 @@ step_of(const LaneDeformable &block, const Matrix &matrix, const Lanes &mass, co
 }
 
 template <class MatrixOf>
-inline unsigned step_scattered(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step,
+inline unsigned step_scattered(BlockSystem &system, DeformableLanes &lanes, const BlockSolve &step,
                                MatrixOf &&matrix_of) {
   std::array<std::size_t, num_lanes> row;
   std::array<std::size_t, num_lanes> given;
@@ -222,7 +222,7 @@ inline unsigned step_scattered(BlockSystem &system, DeformableLanes &lanes, cons
   return broken;
 }
 
-inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, const OwnStep &step) {
+inline unsigned step_deformables(BlockSystem &system, DeformableLanes &lanes, const BlockSolve &step) {
   using Rows = std::array<std::size_t, num_lanes>;
   if (lanes.are_held) {
     return step_scattered(

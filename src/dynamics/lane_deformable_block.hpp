@@ -16,12 +16,13 @@
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-// As the members of OwnStep: Q is LaneVec or LaneMat.
+// As the members of BlockSolve: Q is LaneVec or LaneMat.
 template <class Q>
-[[gnu::always_inline]] inline Q base_of(const OwnStep &step, const Q &q, const Q &v, const Q &a) {
+[[gnu::always_inline]] inline Q base_of(const BlockSolve &step, const Q &q, const Q &v, const Q &a) {
   return q + (Lanes(step.spring.velocity) * v + Lanes(step.spring.acceleration) * a);
 }
-template <class Q> [[gnu::always_inline]] inline Q base_rate_of(const OwnStep &step, const Q &v, const Q &a) {
+template <class Q>
+[[gnu::always_inline]] inline Q base_rate_of(const BlockSolve &step, const Q &v, const Q &a) {
   return v + Lanes(step.spring.rate_acceleration) * a;
 }
 /// A motion of F in turning axes, or a force that works on it: (r, ex, ey, gxy).
@@ -161,7 +162,7 @@ struct LaneDeformable {
 /// read six times as many numbers would take longer than to find these.
 class FreeMatrix {
 public:
-  [[gnu::always_inline]] FreeMatrix(const LaneDeformable &block, const LaneMasses &of, const OwnStep &step)
+  [[gnu::always_inline]] FreeMatrix(const LaneDeformable &block, const LaneMasses &of, const BlockSolve &step)
       : by_mass_(Lanes(1.0) / (Lanes(1.0 - step.scheme.alpha_m) * of.mass)) {
     const Lanes share = 1.0 - step.scheme.alpha_m;
     const Lanes springs =

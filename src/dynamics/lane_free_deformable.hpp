@@ -13,7 +13,7 @@
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
 inline FreeStep step_free_deformables(BlockSystem &system, std::size_t first, const FreeRows &rows,
-                                      const OwnStep &step) {
+                                      const BlockSolve &step) {
   const std::size_t entry = system.deformation_begin[first];
   Deformation *deformation = &system.deformation[entry];
   const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
@@ -75,7 +75,7 @@ inline FreeStep step_free_deformables(BlockSystem &system, std::size_t first, co
 
   const Lanes most_motion = now.most_motion(LaneRigid::load(system.refreshed[first]).u,
                                             load(&Deformation::refreshed), masses.radius, step.time_step);
-  FreeStep done{(!sound).by_lane(), (!(most_motion <= rows.calm)).by_lane()};
+  FreeStep done{(!sound).by_lane(), (!(most_motion <= rows.safe_motion)).by_lane()};
   const Lanes turned = abs(now.turned);
   for (std::size_t i = 0; i < num_lanes; ++i) {
     done.largest_turn = turned[i] > done.largest_turn ? turned[i] : done.largest_turn;

@@ -54,7 +54,7 @@ inline FreeStep step_free_rows(BlockSystem &system, std::size_t first, const Fre
   velocity.store(system.velocity[first]);
   const LaneRigid moved = displacement - LaneRigid::load(system.refreshed[first]);
   return {(!sound).by_lane(),
-          (!(most_motion(moved, velocity, acceleration, of.radius, dt) <= rows.calm)).by_lane()};
+          (!(most_motion(moved, velocity, acceleration, of.radius, dt) <= rows.safe_motion)).by_lane()};
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS

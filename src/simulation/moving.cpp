@@ -154,7 +154,7 @@ void Simulation::advance_rows(std::size_t first, std::size_t end) {
     const std::size_t last = std::min(end, first + rows_at_once);
     gather_forces(first, last, moving_.body);
     solve_and_update(blocks_, own_forces_, scheme_, plan_.time_step, scene_.run.elasticity, first, last,
-                     calm_motion(), moving_.report);
+                     safe_motion(), moving_.report);
     first = advance_free(last, end);
   }
 }
@@ -164,7 +164,7 @@ std::size_t Simulation::advance_free(std::size_t first, std::size_t end) {
   if (scene_.run.rayleigh.present()) {
     return first;
   }
-  return advance_free_rows(blocks_, {moving_.body, local_damping_, calm_motion(), bolts_.empty()}, scheme_,
+  return advance_free_rows(blocks_, {moving_.body, local_damping_, safe_motion(), bolts_.empty()}, scheme_,
                            plan_.time_step, scene_.run.elasticity, first, end, moving_.report);
 }
 

@@ -218,15 +218,15 @@ void Simulation::report() {
   }
 }
 
-double Simulation::calm_motion() const {
+double Simulation::safe_motion() const {
   return std::min(0.5 * skin_, most_motion_in_step());
 }
 
 double Simulation::own_status() {
   double status = 0.0;
-  for (const RowSpan &rows : moving_.report.restless) {
+  for (const RowSpan &rows : moving_.report.rows_to_check) {
     for (std::size_t row = rows.first; row < rows.last; ++row) {
-      if (most_motion(blocks_, row, plan_.time_step) <= calm_motion()) { // as of nearly all, without a root
+      if (most_motion(blocks_, row, plan_.time_step) <= safe_motion()) { // as of nearly all, without a root
         continue;
       }
       const double ahead = motion_bound(blocks_, row, plan_.time_step);

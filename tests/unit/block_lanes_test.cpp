@@ -1,6 +1,6 @@
 // Blocks step side by side, with whatever instructions a machine has: to the bits each has alone.
 
-#include "../../src/dynamics/own_step.hpp"
+#include "../../src/dynamics/block_solve.hpp"
 
 #include "gcpdda/dynamics/deformable.hpp"
 #include "gcpdda/simulation/simulation.hpp"
@@ -82,8 +82,8 @@ struct Blocks {
                                   Elasticity elasticity) {
     AdvanceReport report;
     const Scheme scheme = usual_scheme();
-    step_by_own_matrices(system, own_step({{}, stiffness_damping}, scheme, time_step, elasticity), first,
-                         last, 0.0, report, instructions);
+    solve_by_matrix(system, block_solve({{}, stiffness_damping}, scheme, time_step, elasticity), first, last,
+                    0.0, report, instructions);
     return report.broken;
   }
 };
@@ -146,20 +146,20 @@ TEST(DeformableLanes, TellWhichBlocksMoveMuch) {
     }
   }
   std::nth_element(motions.begin(), motions.begin() + 10, motions.end());
-  const double calm = motions[10];
+  const double safe_motion = motions[10];
   std::vector<std::size_t> wanted;
   std::copy_if(deformable.begin(), deformable.end(), std::back_inserter(wanted),
-               [&](std::size_t row) { return most_motion(first.system, row, time_step) > calm; });
+               [&](std::size_t row) { return most_motion(first.system, row, time_step) > safe_motion; });
   ASSERT_EQ(wanted.size(), deformable.size() - 11);
   for (const Instructions instructions : {Instructions::portable, Instructions::avx2, Instructions::widest}) {
     Blocks blocks;
     AdvanceReport report;
     const Scheme scheme = usual_scheme();
-    step_by_own_matrices(blocks.system,
-                         own_step({{}, stiffness_damping}, scheme, time_step, Elasticity::implicit), 0,
-                         num_blocks, calm, report, instructions);
+    solve_by_matrix(blocks.system,
+                    block_solve({{}, stiffness_damping}, scheme, time_step, Elasticity::implicit), 0,
+                    num_blocks, safe_motion, report, instructions);
     std::vector<std::size_t> listed;
-    for (const RowSpan &rows : report.restless) {
+    for (const RowSpan &rows : report.rows_to_check) {
       ASSERT_EQ(rows.last, rows.first + 1);
       listed.push_back(rows.first);
     }
@@ -309,11 +309,11 @@ struct FreeBlocks {
 
   std::size_t step(Instructions instructions) {
     report = {};
-    return advance_free_rows(system, {{{0.3, -9.81}, {0.7, 0.1}}, 0.6, calm}, usual_scheme(), time_step,
-                             Elasticity::implicit, 0, num_free, report, instructions);
+    return advance_free_rows(system, {{{0.3, -9.81}, {0.7, 0.1}}, 0.6, safe_motion}, usual_scheme(),
+                             time_step, Elasticity::implicit, 0, num_free, report, instructions);
   }
 
-  double calm = std::numeric_limits<double>::infinity();
+  double safe_motion = std::numeric_limits<double>::infinity();
   AdvanceReport report;
 };
 
@@ -350,17 +350,17 @@ TEST(FreeRows, AreLookedAtWhereTheyMoveMuch) {
     blocks.system.displacement.assign(num_free, {});
     constexpr std::size_t far = 5;
     blocks.system.displacement[far].r = 0.5; // of a block with a radius of 1 m or so
-    blocks.calm = 0.1;
+    blocks.safe_motion = 0.1;
     const std::size_t end = blocks.step(instructions);
     std::vector<bool> is_listed(num_free);
-    for (const RowSpan &rows : blocks.report.restless) {
+    for (const RowSpan &rows : blocks.report.rows_to_check) {
       std::fill(is_listed.begin() + static_cast<std::ptrdiff_t>(rows.first),
                 is_listed.begin() + static_cast<std::ptrdiff_t>(rows.last), true);
     }
     EXPECT_TRUE(is_listed[far]);
     EXPECT_FALSE(is_listed[end - 1]);
     for (std::size_t row = 0; row < end; ++row) {
-      EXPECT_TRUE(is_listed[row] || most_motion(blocks.system, row, time_step) <= blocks.calm) << row;
+      EXPECT_TRUE(is_listed[row] || most_motion(blocks.system, row, time_step) <= blocks.safe_motion) << row;
     }
   }
 }

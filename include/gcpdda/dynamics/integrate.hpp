@@ -129,8 +129,8 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
 struct FreeRows {
   BodyForces body; ///< now
   double local_damping = 0.0;
-  double calm = std::numeric_limits<double>::infinity(); ///< most_motion() that needs no closer look, m
-  bool have_deformable = true;                           ///< or only rigid ones are free
+  double safe_motion = std::numeric_limits<double>::infinity(); ///< as of solve_and_update(), m
+  bool have_deformable = true;                                  ///< or only rigid ones are free
 };
 
 /// Half the work of the forces of a block's last evaluation, over the last increment of its trial
@@ -157,14 +157,14 @@ struct AdvanceReport {
   /// The first one whose new state is not finite, or was turned inside out (det F <= 0); it keeps its old
   /// one.
   std::optional<std::size_t> broken;
-  std::vector<RowSpan> restless; ///< of the others most_motion() is no more than what was asked for
-  double largest_turn = 0.0;     ///< of a deformable one, rad
+  std::vector<RowSpan> rows_to_check; ///< most_motion() of all other rows is at most safe_motion
+  double largest_turn = 0.0;          ///< of a deformable one, rad
 
-  void note_broken(std::size_t row) { broken = std::min(row, broken.value_or(row)); }
-  void note_turn(double turn) { largest_turn = std::max(largest_turn, turn); }
+  void add_broken(std::size_t row) { broken = std::min(row, broken.value_or(row)); }
+  void add_turn(double turn) { largest_turn = std::max(largest_turn, turn); }
   void clear() {
     broken.reset();
-    restless.clear();
+    rows_to_check.clear();
     largest_turn = 0.0;
   }
 };
@@ -198,9 +198,9 @@ void apply_mass_damping(BlockSystem &system, std::size_t row, double mass_dampin
 /// The elastic and anchor forces that were applied are noted; of the anchors' work the half over the
 /// increment of x* that ends here, the other half is the caller's after the next predict().
 ///
-/// @param calm  most_motion() that needs no closer look, m
+/// @param safe_motion  a row whose most_motion() is at most this needs no check, m
 void solve_and_update(BlockSystem &system, const OwnForces &own, const Scheme &scheme, double time_step,
-                      Elasticity elasticity, std::size_t first, std::size_t last, double calm,
+                      Elasticity elasticity, std::size_t first, std::size_t last, double safe_motion,
                       AdvanceReport &report);
 /// All owned rows.
 /// @return first row whose new state is broken

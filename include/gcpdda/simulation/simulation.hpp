@@ -342,8 +342,8 @@ private:
   void gather_gradient(std::size_t row, const WaterLoad &water);
   /// Two blocks that close by half their width in a step skip the force that parts them, m.
   [[nodiscard]] double most_motion_in_step() const { return 0.25 * thinnest_; }
-  /// Blocks of which most_motion() is no more need no closer look, m.
-  [[nodiscard]] double calm_motion() const;
+  /// A block whose most_motion() is at most this needs no check, m.
+  [[nodiscard]] double safe_motion() const;
   [[nodiscard]] double own_status();
   void count();
   void agree_on_fault();

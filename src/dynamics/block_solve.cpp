@@ -1,4 +1,4 @@
-#include "own_step.hpp"
+#include "block_solve.hpp"
 
 #include "gcpdda/dynamics/block_matrix.hpp"
 #include "gcpdda/dynamics/deformable.hpp"
@@ -30,7 +30,7 @@ using Dofs = std::array<double, 6>;
 
 /// A rigid block with anchors or a dashpot, in the axes of theta*. Its points at the spring's time are linear
 /// about theta*, which is O(dt^2) away.
-bool step_rigid(BlockSystem &system, std::size_t row, const RigidDof &force, const OwnStep &step) {
+bool step_rigid(BlockSystem &system, std::size_t row, const RigidDof &force, const BlockSolve &step) {
   const BlockProperties &p = system.properties[row];
   const RigidDof d = system.displacement[row];
   const RigidDof v = system.velocity[row];
@@ -78,7 +78,7 @@ bool step_rigid(BlockSystem &system, std::size_t row, const RigidDof &force, con
 /// Anchors and dashpots of a deformable row, as they are before its step.
 class OwnSprings {
 public:
-  OwnSprings(const BlockSystem &system, std::size_t row, const OwnStep &step)
+  OwnSprings(const BlockSystem &system, std::size_t row, const BlockSolve &step)
       : anchors_(system.anchors_of(row)), dashpot_(system.dashpot_of(row)), step_(step) {
     const Deformation &d = system.deformation_of(row);
     const Vec2 a = system.acceleration[row].u;
@@ -115,7 +115,7 @@ private:
 
   std::span<const Anchor> anchors_;
   const Dashpot *dashpot_;
-  const OwnStep &step_;
+  const BlockSolve &step_;
   Mat2 turn_;
   Vec2 u_; // at the spring's time so far known
   Mat2 gradient_;
@@ -152,9 +152,10 @@ void note_local_damping(BlockSystem &system, std::size_t row, const AnchorForce 
 /// Deformable rows on their way to the lanes, those on springs of their own apart from others.
 class DeformableSteps {
 public:
-  DeformableSteps(BlockSystem &system, const OwnStep &step, double calm, AdvanceReport &report,
+  DeformableSteps(BlockSystem &system, const BlockSolve &step, double safe_motion, AdvanceReport &report,
                   Instructions instructions)
-      : system_(system), step_(step), calm_(calm), report_(report), block_lanes_(block_lanes(instructions)) {
+      : system_(system), step_(step), safe_motion_(safe_motion), report_(report),
+        block_lanes_(block_lanes(instructions)) {
     held_.are_held = true;
   }
 
@@ -182,14 +183,14 @@ private:
     const unsigned broken = block_lanes_.step_deformables(system_, lanes, step_);
     for (std::size_t i = 0; i < lanes.count; ++i) {
       const std::size_t row = lanes.row[i];
-      if (!(lanes.most_motion[i] <= calm_)) {
-        report_.restless.push_back({row, row + 1});
+      if (!(lanes.most_motion[i] <= safe_motion_)) {
+        report_.rows_to_check.push_back({row, row + 1});
       }
       if ((broken >> i & 1U) != 0) {
-        report_.note_broken(row);
+        report_.add_broken(row);
         continue;
       }
-      report_.note_turn(std::abs(lanes.turned[i]));
+      report_.add_turn(std::abs(lanes.turned[i]));
       if (lanes.are_held) {
         note_springs(system_, row, *springs_[i]);
       }
@@ -204,8 +205,8 @@ private:
   }
 
   BlockSystem &system_;
-  const OwnStep &step_;
-  double calm_;
+  const BlockSolve &step_;
+  double safe_motion_;
   AdvanceReport &report_;
   const BlockLanes &block_lanes_;
   DeformableLanes free_;
@@ -215,7 +216,8 @@ private:
 
 } // namespace
 
-OwnStep own_step(const OwnForces &forces, const Scheme &scheme, double time_step, Elasticity elasticity) {
+BlockSolve block_solve(const OwnForces &forces, const Scheme &scheme, double time_step,
+                       Elasticity elasticity) {
   return {scheme,
           time_step,
           spring_time(scheme, time_step),
@@ -225,17 +227,17 @@ OwnStep own_step(const OwnForces &forces, const Scheme &scheme, double time_step
           elasticity_of(scheme, elasticity) == Elasticity::implicit};
 }
 
-void step_by_own_matrices(BlockSystem &system, const OwnStep &step, std::size_t first, std::size_t last,
-                          double calm, AdvanceReport &report, Instructions instructions) {
+void solve_by_matrix(BlockSystem &system, const BlockSolve &step, std::size_t first, std::size_t last,
+                     double safe_motion, AdvanceReport &report, Instructions instructions) {
   if (system.matrix.empty() && system.deformation.empty()) {
     return;
   }
-  DeformableSteps deformables(system, step, calm, report, instructions);
+  DeformableSteps deformables(system, step, safe_motion, report, instructions);
   for (std::size_t row = first; row < last; ++row) {
     if (deforms_freely(system, row)) {
       deformables.add(row);
     } else if (system.has_matrix(row) && !step_rigid(system, row, system.contact[row].force, step)) {
-      report.note_broken(row);
+      report.add_broken(row);
     }
   }
   deformables.flush();
