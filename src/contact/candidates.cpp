@@ -419,7 +419,7 @@ Candidates make_candidates(const BlockSystem &system,
       take_law(system, parameters, history.regions[begin].law, candidates.pairs.back());
     }
     const bool may_be_corners = is_plain && candidates.plain.back().kind.may_be_corners();
-    append_places(is_plain, may_be_corners ? PlainOverlap::corners : PlainOverlap::other, begin, deforms,
+    append_places(is_plain, may_be_corners ? PlainOverlap::corners : PlainOverlap::polygon, begin, deforms,
                   history);
   }
 

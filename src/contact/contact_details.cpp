@@ -26,8 +26,8 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
                                  const ContactHistory &history, std::uint32_t first, std::uint32_t last) {
   corners_.clear();
   faces_.clear();
-  sides_.clear();
-  others_.clear();
+  edges_.clear();
+  polygons_.clear();
   places_.assign(PlainPair::pairs_in_group, no_place);
   std::size_t num_forces = num_forces_;
   candidates.for_plain_of_group(first / PlainPair::pairs_in_group, [&](std::size_t entry) {
@@ -37,8 +37,8 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
       places_[pair % PlainPair::pairs_in_group] = static_cast<std::uint32_t>(num_forces++);
       (overlap == PlainOverlap::corners ? corners_
        : overlap == PlainOverlap::face  ? faces_
-       : overlap == PlainOverlap::sides ? sides_
-                                        : others_)
+       : overlap == PlainOverlap::edges ? edges_
+                                        : polygons_)
           .push_back(static_cast<std::uint32_t>(entry));
     }
   });

@@ -118,7 +118,7 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
     for_bits(which & given, [&](std::size_t i) { to.push_back(entries[i]); });
   };
   PlainBatch::Seen seen;
-  PlainOverlap overlap = PlainOverlap::other;
+  PlainOverlap overlap = PlainOverlap::polygon;
   switch (way) {
   case Way::corners:
     seen = batch_->evaluate_corners(scene, lanes);
@@ -128,29 +128,29 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
     seen = batch_->evaluate_faces(scene, lanes);
     overlap = PlainOverlap::face;
     break;
-  case Way::sides:
-    seen = batch_->evaluate_sides(scene, lanes);
-    overlap = PlainOverlap::sides;
+  case Way::edges:
+    seen = batch_->evaluate_edges(scene, lanes);
+    overlap = PlainOverlap::edges;
     break;
   default:
     seen = batch_->evaluate(scene, lanes);
   }
-  if (way != Way::other) {
+  if (way != Way::polygon) {
     const PlainPair::Kind kind = lanes.pair[0]->kind;
     const auto elsewhere_to = [&](Way other, bool may_be, unsigned with) {
       return way != other && may_be ? with : 0U;
     };
     const unsigned to_corners = elsewhere_to(Way::corners, kind.may_be_corners(), seen.with_corners);
     const unsigned to_faces = elsewhere_to(Way::face, kind.may_be_face(), seen.with_face);
-    const unsigned to_sides = elsewhere_to(Way::sides, kind.may_be_sides(), seen.with_sides);
+    const unsigned to_edges = elsewhere_to(Way::edges, kind.may_be_edges(), seen.with_edges);
     leave(to_corners, corners_);
     leave(to_faces, faces_);
-    leave(to_sides, sides_);
-    const unsigned elsewhere = to_corners | to_faces | to_sides;
-    if (way == Way::other_as_before) { // they may not be so any more
+    leave(to_edges, edges_);
+    const unsigned elsewhere = to_corners | to_faces | to_edges;
+    if (way == Way::polygon_as_before) { // they may not be so any more
       seen.touching &= ~elsewhere;
     } else {
-      leave(~(seen.touching | seen.apart | elsewhere), left_);
+      leave(~(seen.touching | seen.apart | elsewhere), remaining_);
     }
   }
   const unsigned touching = seen.touching & given;
@@ -235,34 +235,34 @@ void ContactForces::evaluate_all(const PlainScene &scene, const std::vector<std:
 }
 
 // Mostly each list does with its own way. By the corners that are inside no two of the ways fit one pair
-// (lane_faces.hpp, lane_sides.hpp), so which one takes it does not depend on the list it came from, and what
+// (lane_faces.hpp, lane_edges.hpp), so which one takes it does not depend on the list it came from, and what
 // one way leaves to another does not come back.
 void ContactForces::evaluate_by_shape(const PlainScene &scene) {
-  left_.clear();
-  evaluate_all(scene, sides_, Way::sides);
-  sides_.clear();
+  remaining_.clear();
+  evaluate_all(scene, edges_, Way::edges);
+  edges_.clear();
   evaluate_all(scene, faces_, Way::face);
   faces_.clear();
   evaluate_all(scene, corners_, Way::corners);
   evaluate_all(scene, faces_, Way::face);
-  evaluate_all(scene, sides_, Way::sides);
-  evaluate_all(scene, left_, Way::other);
+  evaluate_all(scene, edges_, Way::edges);
+  evaluate_all(scene, remaining_, Way::polygon);
 }
 
 // Those with a region. What was none of these mostly stays so: to see that no corner is inside costs less
 // than to look for the other ways in vain, and changes nothing.
 void ContactForces::evaluate_known(const PlainScene &scene) {
-  evaluate_all(scene, others_, Way::other_as_before);
+  evaluate_all(scene, polygons_, Way::polygon_as_before);
   evaluate_by_shape(scene);
 }
 
-void ContactForces::evaluate_strangers(const PlainScene &scene) {
+void ContactForces::evaluate_without_region(const PlainScene &scene) {
   corners_.clear();
   faces_.clear();
-  sides_.clear();
-  others_.clear();
-  for (const std::uint32_t entry : strangers_) {
-    (scene.candidates.plain[entry].kind.may_be_corners() ? corners_ : others_).push_back(entry);
+  edges_.clear();
+  polygons_.clear();
+  for (const std::uint32_t entry : without_region_) {
+    (scene.candidates.plain[entry].kind.may_be_corners() ? corners_ : polygons_).push_back(entry);
   }
   evaluate_known(scene);
 }
@@ -270,7 +270,8 @@ void ContactForces::evaluate_strangers(const PlainScene &scene) {
 // Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
 void ContactForces::find_meeting(const BlockSystem &system, const Candidates &candidates,
                                  const ContactHistory &history, std::size_t first, std::size_t last) {
-  std::array<std::vector<std::uint32_t> *, 5> lists{&strangers_, &corners_, &faces_, &sides_, &others_};
+  std::array<std::vector<std::uint32_t> *, 5> lists{&without_region_, &corners_, &faces_, &edges_,
+                                                    &polygons_};
   std::array<std::uint32_t *, lists.size()> ends{};
   for (std::size_t i = 0; i < lists.size(); ++i) {
     lists[i]->resize(last - first);
@@ -311,7 +312,7 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
                          false};
   find_meeting(system, candidates, history, first, last);
   evaluate_known(scene);
-  evaluate_strangers(scene);
+  evaluate_without_region(scene);
   for (const std::uint32_t entry : births_) {
     evaluate_birth(system, candidates, entry);
   }
@@ -333,7 +334,7 @@ void ContactForces::evaluate_birth(const BlockSystem &system, const Candidates &
   if (append_regions(system, candidates, number, {}) == 0) {
     return;
   }
-  next_.overlaps[number] = PlainOverlap::other;
+  next_.overlaps[number] = PlainOverlap::polygon;
   plain_memory_[number] = next_.regions.back();
   if (!plain_grips_.empty()) {
     plain_grips_[number] = next_.regions.back().grip;

@@ -43,21 +43,22 @@ struct LaneCorner {
 };
 
 /// More than what rounding does to a depth below a line of a block.
-[[gnu::always_inline]] inline Lanes rounding_of(const LaneSide &side) {
+[[gnu::always_inline]] inline Lanes rounding_of(const LaneChain &chain) {
   return Lanes(16.0 * std::numeric_limits<double>::epsilon()) *
-         (max(abs(side.low.x), abs(side.high.x)) + max(abs(side.low.y), abs(side.high.y)));
+         (max(abs(chain.low.x), abs(chain.high.x)) + max(abs(chain.low.y), abs(chain.high.y)));
 }
 
 /// @param beyond  what counts as in the box besides it, m
-[[gnu::always_inline]] inline Mask is_in_box(const LaneVec &x, const LaneSide &side, const Lanes &beyond) {
-  return (side.low.x - beyond <= x.x) & (x.x <= side.high.x + beyond) & (side.low.y - beyond <= x.y) &
-         (x.y <= side.high.y + beyond);
+[[gnu::always_inline]] inline Mask is_in_box(const LaneVec &x, const LaneChain &chain, const Lanes &beyond) {
+  return (chain.low.x - beyond <= x.x) & (x.x <= chain.high.x + beyond) & (chain.low.y - beyond <= x.y) &
+         (x.y <= chain.high.y + beyond);
 }
 
-/// @param rounding  of the other block: sides in one line have no corner that is clearly inside, and it would
+/// @param rounding  of the other block: edges in one line have no corner that is clearly inside, and it would
 ///                  be in vain to look at what rounding puts there
 template <std::size_t lines>
-[[gnu::always_inline]] inline Mask is_inside(const LaneVec &x, const LaneSide &other, const Lanes &rounding) {
+[[gnu::always_inline]] inline Mask is_inside(const LaneVec &x, const LaneChain &other,
+                                             const Lanes &rounding) {
   Mask inside = is_in_box(x, other, 0.0);
   each<lines>([&](auto j) { inside = inside & (dot(other.slope[j], other.vertex[j] - x) > rounding); });
   return inside;
@@ -71,7 +72,7 @@ struct CornersInside {
   Mask two_touch{}; ///< at least two are inside or, but for rounding, on the boundary
 };
 
-inline CornersInside count_corners(const LaneSide &own, const LaneSide &other) {
+inline CornersInside count_corners(const LaneChain &own, const LaneChain &other) {
   const Lanes rounding = rounding_of(other);
   CornersInside count;
   Mask one_touches{};
@@ -94,7 +95,7 @@ inline CornersInside count_corners(const LaneSide &own, const LaneSide &other) {
 
 /// The first end of two edges of `own` inside `other`.
 template <std::size_t edges>
-[[gnu::always_inline]] inline Mask find_corner(const LaneSide &own, const LaneSide &other,
+[[gnu::always_inline]] inline Mask find_corner(const LaneChain &own, const LaneChain &other,
                                                LaneCorner &corner) {
   const Lanes rounding = rounding_of(other);
   Mask found{};
@@ -276,7 +277,7 @@ struct BeyondLine {
   Mask clearly{}; ///< by more than rounding
 };
 
-template <std::size_t edges> BeyondLine find_line_between(const LaneSide &own, const LaneSide &other) {
+template <std::size_t edges> BeyondLine find_line_between(const LaneChain &own, const LaneChain &other) {
   const Lanes rounding = Lanes(1e-9) * (other.high.x - other.low.x + other.high.y - other.low.y);
   BeyondLine beyond;
   each<edges>([&](auto j) __attribute__((always_inline)) {
@@ -292,7 +293,7 @@ template <std::size_t edges> BeyondLine find_line_between(const LaneSide &own, c
 
 /// Where evaluate() would find no pressure either: no edge of either block has an end below all lines of the
 /// other one, or a line keeps them apart whatever rounding does.
-template <std::size_t edges> Mask are_apart(const LaneSide &lower, const LaneSide &higher) {
+template <std::size_t edges> Mask are_apart(const LaneChain &lower, const LaneChain &higher) {
   const BeyondLine first = find_line_between<edges>(lower, higher);
   const BeyondLine second = find_line_between<edges>(higher, lower);
   return (first.all & second.all) | first.clearly | second.clearly;
@@ -324,20 +325,20 @@ template <std::size_t edges> struct CornerOverlap {
   }
 
   /// True where the blocks overlap so; elsewhere nothing of this means anything.
-  Mask find(const LaneSide &lower_side, const LaneSide &higher_side);
+  Mask find(const LaneChain &lower_chain, const LaneChain &higher_chain);
   /// Is one of the two lines of the corner the nearest wherever an edge runs inside a block?
   [[nodiscard]] Mask has_two_lines_each() const;
   /// int_S (phi_A + phi_B) H dA where that is so, m3; see pair_energies.hpp.
   [[nodiscard]] Lanes energy() const;
 
 private:
-  static Mask find_stretches(const LaneCorner &own, const LaneSide &other_side, const LaneCorner &other,
+  static Mask find_stretches(const LaneCorner &own, const LaneChain &other_chain, const LaneCorner &other,
                              const LaneVec &begin, std::array<CornerStretch<edges>, 2> &stretches);
 };
 
 template <std::size_t edges>
 [[gnu::always_inline]] inline Mask
-CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneSide &other_side,
+CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneChain &other_chain,
                                      const LaneCorner &other, const LaneVec &begin,
                                      std::array<CornerStretch<edges>, 2> &stretches) {
   Mask valid = own.vertex.x == own.vertex.x;
@@ -345,8 +346,8 @@ CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneSide &othe
   each<edges>([&](auto j) __attribute__((always_inline)) {
     // A line of the corner is measured from there: both ends are as near as the contact is short.
     const LaneVec anchor =
-        edges == 2 ? other.vertex : select(other.has_line[j], other.vertex, other_side.vertex[j]);
-    lower.depth[j] = dot(other_side.slope[j], anchor - own.vertex);
+        edges == 2 ? other.vertex : select(other.has_line[j], other.vertex, other_chain.vertex[j]);
+    lower.depth[j] = dot(other_chain.slope[j], anchor - own.vertex);
     valid = valid & (lower.depth[j] > 0.0);
   });
   each<2>([&](auto i) __attribute__((always_inline)) {
@@ -354,7 +355,7 @@ CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneSide &othe
     stretch.begin = begin;
     stretch.direction = own.away(i);
     each<edges>([&](auto j) __attribute__((always_inline)) {
-      lower.fall[j] = dot(other_side.slope[j], stretch.direction);
+      lower.fall[j] = dot(other_chain.slope[j], stretch.direction);
     });
     valid = valid & integrate_stretch<edges>(lower, other.has_line, stretch);
     valid = valid & (stretch.length <= own.length[i]);
@@ -363,16 +364,16 @@ CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneSide &othe
 }
 
 template <std::size_t edges>
-Mask CornerOverlap<edges>::find(const LaneSide &lower_side, const LaneSide &higher_side) {
-  lower_has = find_corner<edges>(lower_side, higher_side, lower);
-  higher_has = find_corner<edges>(higher_side, lower_side, higher);
+Mask CornerOverlap<edges>::find(const LaneChain &lower_chain, const LaneChain &higher_chain) {
+  lower_has = find_corner<edges>(lower_chain, higher_chain, lower);
+  higher_has = find_corner<edges>(higher_chain, lower_chain, higher);
   const Mask has_both = lower_has & higher_has;
   if (!has_both.any()) {
     return has_both;
   }
-  const Mask on_first = find_stretches(lower, higher_side, higher, {0.0, 0.0}, on_lower);
+  const Mask on_first = find_stretches(lower, higher_chain, higher, {0.0, 0.0}, on_lower);
   return has_both & on_first &
-         find_stretches(higher, lower_side, lower, higher.vertex - lower.vertex, on_higher);
+         find_stretches(higher, lower_chain, lower, higher.vertex - lower.vertex, on_higher);
 }
 
 // Walked along these two lines alone, an edge has the same pressure, bit for bit.

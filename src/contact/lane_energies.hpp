@@ -45,7 +45,7 @@ template <std::size_t lines> struct LeastDepths {
 
 template <std::size_t lines>
 [[gnu::always_inline]] inline LeastDepths<lines> find_least(const LaneStretch &stretch,
-                                                            const LaneSide &other) {
+                                                            const LaneChain &other) {
   LeastDepths<lines> depths;
   each<lines>([&](auto j) __attribute__((always_inline)) {
     depths.first[j] = dot(other.slope[j], other.vertex[j] - stretch.begin);
@@ -77,18 +77,18 @@ template <std::size_t lines>
 }
 
 /// Inside the edges of a block that can take part, and its box, or on its boundary up to rounding.
-inline Mask is_inside(const LaneVec &x, const LaneSide &side, const Lanes &rounding) {
-  Mask inside = (side.low.x - rounding <= x.x) & (x.x <= side.high.x + rounding) &
-                (side.low.y - rounding <= x.y) & (x.y <= side.high.y + rounding);
-  for (std::size_t j = 0; j < side.edges; ++j) {
-    inside = inside & (dot(side.slope[j], side.vertex[j] - x) > -rounding);
+inline Mask is_inside(const LaneVec &x, const LaneChain &chain, const Lanes &rounding) {
+  Mask inside = (chain.low.x - rounding <= x.x) & (x.x <= chain.high.x + rounding) &
+                (chain.low.y - rounding <= x.y) & (x.y <= chain.high.y + rounding);
+  for (std::size_t j = 0; j < chain.edges; ++j) {
+    inside = inside & (dot(chain.slope[j], chain.vertex[j] - x) > -rounding);
   }
   return inside;
 }
 
 /// int phi dA of `other`, by the stretches of `own` inside it.
 template <std::size_t lines>
-LaneEnergy find_field_energy(const LaneSide &own, const LaneStretches &on_own, const LaneSide &other) {
+LaneEnergy find_field_energy(const LaneChain &own, const LaneStretches &on_own, const LaneChain &other) {
   // At the vertex between lines k and k + 1: tan(phi/2)/3, and the ends of the line from there that are
   // missing. A vertex on the boundary, as where faces end flush, counts as inside, changes there do not.
   const Lanes rounding = Lanes(64.0 * std::numeric_limits<double>::epsilon()) *
@@ -134,7 +134,8 @@ LaneEnergy find_field_energy(const LaneSide &own, const LaneStretches &on_own, c
 }
 
 /// The same for any number of lines there is a way of its own for.
-inline LaneEnergy find_field_energy(const LaneSide &own, const LaneStretches &on_own, const LaneSide &other) {
+inline LaneEnergy find_field_energy(const LaneChain &own, const LaneStretches &on_own,
+                                    const LaneChain &other) {
   static_assert(most_corner_edges == 4);
   switch (other.edges) {
   case 1:

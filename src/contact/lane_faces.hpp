@@ -82,8 +82,9 @@ template <std::size_t edges> struct FaceOverlap {
   [[nodiscard]] const LaneVec &origin() const { return first_; }
 
   /// True where the blocks overlap so; elsewhere nothing of this but lower_has and higher_has means anything.
-  /// Edges of a side from its number on are copies of its last one.
-  Mask find(const LaneSide &lower, std::size_t lower_edges, const LaneSide &higher, std::size_t higher_edges);
+  /// Edges of a chain from its number of edges on are copies of its last one.
+  Mask find(const LaneChain &lower, std::size_t lower_edges, const LaneChain &higher,
+            std::size_t higher_edges);
 
   /// visit(number, stretch, direction of its pressure on the lower block).
   template <class Visit> [[gnu::always_inline]] void for_stretches(Visit &&visit) const {
@@ -110,21 +111,22 @@ private:
     Lanes length;
     std::array<Mask, edges> is_it; ///< by edge of the chain
 
-    [[gnu::always_inline]] void take(const Mask &here, const LaneSide &side, std::size_t k) {
-      normal = select(here, side.normal[k], normal);
-      length = select(here, side.length[k], length);
+    [[gnu::always_inline]] void take(const Mask &here, const LaneChain &chain, std::size_t k) {
+      normal = select(here, chain.normal[k], normal);
+      length = select(here, chain.length[k], length);
       is_it[k] = here;
     }
   };
 
-  static Mask find_inside(const LaneSide &own, std::size_t own_edges, const LaneSide &other, Inside &inside);
+  static Mask find_inside(const LaneChain &own, std::size_t own_edges, const LaneChain &other,
+                          Inside &inside);
   /// Edges of `a` where the mask is true, else of `b`.
-  static void choose(const Mask &mask, const LaneSide &a, const LaneSide &b, LaneSide &chosen);
-  void find_corners(const LaneSide &own, const Inside &inside);
+  static void choose(const Mask &mask, const LaneChain &a, const LaneChain &b, LaneChain &chosen);
+  void find_corners(const LaneChain &own, const Inside &inside);
   /// Which line the edge leaves across first.
   static std::array<Mask, edges> find_exit(const FallingDepths<edges> &lower);
-  static void find_falls(const LaneSide &other, const LaneVec &direction, FallingDepths<edges> &lower);
-  Mask walk_face(const LaneSide &own, const LaneVec &face_normal);
+  static void find_falls(const LaneChain &other, const LaneVec &direction, FallingDepths<edges> &lower);
+  Mask walk_face(const LaneChain &own, const LaneVec &face_normal);
 
   LaneVec first_;        ///< V
   LaneVec second_;       ///< V'
@@ -143,8 +145,9 @@ private:
 };
 
 template <std::size_t edges>
-[[gnu::always_inline]] inline Mask FaceOverlap<edges>::find_inside(const LaneSide &own, std::size_t own_edges,
-                                                                   const LaneSide &other, Inside &inside) {
+[[gnu::always_inline]] inline Mask FaceOverlap<edges>::find_inside(const LaneChain &own,
+                                                                   std::size_t own_edges,
+                                                                   const LaneChain &other, Inside &inside) {
   const Lanes rounding = rounding_of(other);
   Mask any{};
   inside[0] = any;
@@ -157,8 +160,8 @@ template <std::size_t edges>
 }
 
 template <std::size_t edges>
-[[gnu::always_inline]] inline void FaceOverlap<edges>::choose(const Mask &mask, const LaneSide &a,
-                                                              const LaneSide &b, LaneSide &chosen) {
+[[gnu::always_inline]] inline void FaceOverlap<edges>::choose(const Mask &mask, const LaneChain &a,
+                                                              const LaneChain &b, LaneChain &chosen) {
   each<edges>([&](auto k) __attribute__((always_inline)) {
     chosen.vertex[k] = select(mask, a.vertex[k], b.vertex[k]);
     chosen.normal[k] = select(mask, a.normal[k], b.normal[k]);
@@ -168,7 +171,7 @@ template <std::size_t edges>
 }
 
 template <std::size_t edges>
-[[gnu::always_inline]] inline void FaceOverlap<edges>::find_corners(const LaneSide &own,
+[[gnu::always_inline]] inline void FaceOverlap<edges>::find_corners(const LaneChain &own,
                                                                     const Inside &inside) {
   first_ = own.vertex[1];
   second_ = first_;
@@ -221,14 +224,15 @@ FaceOverlap<edges>::find_exit(const FallingDepths<edges> &lower) {
 }
 
 template <std::size_t edges>
-[[gnu::always_inline]] inline void
-FaceOverlap<edges>::find_falls(const LaneSide &other, const LaneVec &direction, FallingDepths<edges> &lower) {
+[[gnu::always_inline]] inline void FaceOverlap<edges>::find_falls(const LaneChain &other,
+                                                                  const LaneVec &direction,
+                                                                  FallingDepths<edges> &lower) {
   each<edges>([&](auto j) __attribute__((always_inline)) { lower.fall[j] = dot(other.slope[j], direction); });
 }
 
 /// From X' to X.
 template <std::size_t edges>
-[[gnu::always_inline]] inline Mask FaceOverlap<edges>::walk_face(const LaneSide &own,
+[[gnu::always_inline]] inline Mask FaceOverlap<edges>::walk_face(const LaneChain &own,
                                                                  const LaneVec &face_normal) {
   on_face_.direction = perp(face_normal);
   on_face_.begin = on_after_.begin + on_after_.length * on_after_.direction;
@@ -245,7 +249,7 @@ template <std::size_t edges>
 }
 
 template <std::size_t edges>
-Mask FaceOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, const LaneSide &higher,
+Mask FaceOverlap<edges>::find(const LaneChain &lower, std::size_t lower_edges, const LaneChain &higher,
                               std::size_t higher_edges) {
   Inside inside;
   Inside higher_inside;
@@ -259,8 +263,8 @@ Mask FaceOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, co
   each<edges>([&](auto k) __attribute__((always_inline)) {
     inside[k] = (inside[k] & lower_is_own) | (higher_inside[k] & !lower_is_own);
   });
-  LaneSide own;
-  LaneSide other;
+  LaneChain own;
+  LaneChain other;
   choose(lower_is_own, lower, higher, own);
   choose(lower_is_own, higher, lower, other);
   find_corners(own, inside);

@@ -28,10 +28,10 @@ struct LaneBlocks {
   }
 };
 
-[[gnu::always_inline]] inline void load_box(const LaneBlocks &blocks, LaneSide &side) {
+[[gnu::always_inline]] inline void load_box(const LaneBlocks &blocks, LaneChain &chain) {
   const FourLanes box = load_by_lane([&](std::size_t i) { return &blocks.motion[i]->box.low.x; });
-  side.low = {box[0], box[1]};
-  side.high = {box[2], box[3]};
+  chain.low = {box[0], box[1]};
+  chain.high = {box[2], box[3]};
 }
 
 /// Where rigid blocks stand: their outlines follow to the bits of pose().
@@ -62,21 +62,21 @@ public:
   [[nodiscard, gnu::always_inline]] LaneVec vertex(std::size_t number) const {
     return vertex(places(number));
   }
-  /// Edge `number` of the chains as edge k of the side; without its length where none deforms.
-  [[gnu::always_inline]] void load_edge(std::size_t number, std::size_t k, LaneSide &side) const {
+  /// Edge `number` of the chains in memory as edge k of `chain`; without its length where none deforms.
+  [[gnu::always_inline]] void load_edge(std::size_t number, std::size_t k, LaneChain &chain) const {
     const Places at = places(number);
-    side.vertex[k] = vertex(at);
+    chain.vertex[k] = vertex(at);
     if (is_deformable_) {
       const DeformedEdge *edge = system_.deformed_edge.data();
       const FourLanes four = load_by_lane([&](std::size_t i) { return &edge[at[i]].slope.x; });
-      side.slope[k] = {four[0], four[1]};
-      side.length[k] = four[2];
-      side.normal[k] = four[3] * side.slope[k];
+      chain.slope[k] = {four[0], four[1]};
+      chain.length[k] = four[2];
+      chain.normal[k] = four[3] * chain.slope[k];
       return;
     }
     const Vec2 *normal = system_.reference_normal.data();
-    side.normal[k] = place_.turned(LaneVec::of([&](std::size_t i) { return normal + at[i]; }));
-    side.slope[k] = side.normal[k];
+    chain.normal[k] = place_.turned(LaneVec::of([&](std::size_t i) { return normal + at[i]; }));
+    chain.slope[k] = chain.normal[k];
   }
 
 private:
@@ -101,36 +101,37 @@ private:
 };
 
 /// Of edge k that ends there: a list of lengths would take longer to read.
-[[gnu::always_inline]] inline void find_length(std::size_t k, const LaneVec &end, LaneSide &side) {
-  side.length[k] = dot(end - side.vertex[k], perp(side.normal[k]));
+[[gnu::always_inline]] inline void find_length(std::size_t k, const LaneVec &end, LaneChain &chain) {
+  chain.length[k] = dot(end - chain.vertex[k], perp(chain.normal[k]));
 }
 
 /// All edges of the chains.
 inline void load_chain(const BlockSystem &system, const PlainPair::Kind &kind, const LaneBlocks &blocks,
-                       std::size_t edges, LaneSide &side) {
+                       std::size_t edges, LaneChain &chain) {
   const LaneOutline outline(system, kind, blocks);
-  side.edges = edges;
+  chain.edges = edges;
   for (std::size_t k = 0; k < edges; ++k) {
-    outline.load_edge(k, k, side);
+    outline.load_edge(k, k, chain);
   }
-  side.vertex[edges] = outline.vertex(edges);
+  chain.vertex[edges] = outline.vertex(edges);
   for (std::size_t k = 0; k < edges && !kind.is_deformable; ++k) {
-    find_length(k, side.vertex[k + 1], side);
+    find_length(k, chain.vertex[k + 1], chain);
   }
 }
 
 /// As many edges, with copies of the last one; the end of the chain and lengths of rigid blocks alone.
 template <std::size_t edges>
-[[gnu::always_inline]] inline void load_side(const BlockSystem &system, const PlainPair::Kind &kind,
-                                             const LaneBlocks &blocks, std::size_t last, LaneSide &side) {
+[[gnu::always_inline]] inline void load_padded_chain(const BlockSystem &system, const PlainPair::Kind &kind,
+                                                     const LaneBlocks &blocks, std::size_t last,
+                                                     LaneChain &chain) {
   const LaneOutline outline(system, kind, blocks);
   each<edges>([&](auto k) __attribute__((always_inline)) {
-    outline.load_edge(std::min<std::size_t>(k, last), k, side);
+    outline.load_edge(std::min<std::size_t>(k, last), k, chain);
   });
   if (!kind.is_deformable) {
-    side.vertex[edges] = outline.vertex(last + 1);
+    chain.vertex[edges] = outline.vertex(last + 1);
     each<edges>([&](auto k) __attribute__((always_inline)) {
-      find_length(k, side.vertex[k < last ? k + 1 : edges], side);
+      find_length(k, chain.vertex[k < last ? k + 1 : edges], chain);
     });
   }
 }

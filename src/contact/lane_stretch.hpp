@@ -16,8 +16,8 @@
 
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
-/// One side of as many contacts as there are lanes: the edges of one block that can take part.
-struct LaneSide {
+/// Chains of as many contacts as there are lanes: the edges of one block each that can take part.
+struct LaneChain {
   std::size_t edges = 0;
   std::array<LaneVec, most_plain_edges + 1> vertex; ///< ends of the edges, in order
   std::array<LaneVec, most_plain_edges> normal;
@@ -54,7 +54,7 @@ struct LaneStretch {
   }
 };
 
-[[gnu::always_inline]] inline Mask boxes_meet(const LaneSide &a, const LaneSide &b) {
+[[gnu::always_inline]] inline Mask boxes_meet(const LaneChain &a, const LaneChain &b) {
   return (a.low.x <= b.high.x) & (b.low.x <= a.high.x) & (a.low.y <= b.high.y) & (b.low.y <= a.high.y);
 }
 
@@ -73,17 +73,17 @@ template <std::size_t count, class Visit> [[gnu::always_inline]] inline void eac
 /// Which edge stands for line j: beyond four, lines are padded with the last edge, which then is never the
 /// next active line, since its slope is not smaller.
 template <std::size_t lines>
-[[gnu::always_inline]] inline std::size_t edge_of(const LaneSide &side, std::size_t j) {
-  return lines <= 4 ? j : std::min(j, side.edges - 1);
+[[gnu::always_inline]] inline std::size_t edge_of(const LaneChain &chain, std::size_t j) {
+  return lines <= 4 ? j : std::min(j, chain.edges - 1);
 }
 
 /// Depth of a point below each line of a block.
 template <std::size_t lines>
-[[gnu::always_inline]] inline void find_depths(const LaneSide &side, const LaneVec &x,
+[[gnu::always_inline]] inline void find_depths(const LaneChain &chain, const LaneVec &x,
                                                PerLine<lines> &depth) {
   each<lines>([&](auto j) {
-    const std::size_t k = edge_of<lines>(side, j);
-    depth[j] = dot(side.slope[k], side.vertex[k] - x);
+    const std::size_t k = edge_of<lines>(chain, j);
+    depth[j] = dot(chain.slope[k], chain.vertex[k] - x);
   });
 }
 
@@ -142,7 +142,7 @@ template <std::size_t lines>
 }
 
 template <std::size_t lines>
-void cut_edge(const LaneSide &own, std::size_t edge, const LaneSide &other, const PerLine<lines> &at_begin,
+void cut_edge(const LaneChain &own, std::size_t edge, const LaneChain &other, const PerLine<lines> &at_begin,
               const PerLine<lines> &at_end, LaneStretch &stretch) {
   Lanes least = max(at_begin[0], at_end[0]);
   each<lines>([&](auto j) { least = min(least, max(at_begin[j], at_end[j])); });
@@ -222,7 +222,7 @@ void cut_edge(const LaneSide &own, std::size_t edge, const LaneSide &other, cons
 }
 
 template <std::size_t lines>
-void cut_all(const LaneSide &own, const LaneSide &other, LaneStretches &stretches) {
+void cut_all(const LaneChain &own, const LaneChain &other, LaneStretches &stretches) {
   PerLine<lines> at_begin;
   PerLine<lines> at_end;
   find_depths<lines>(other, own.vertex[0], at_end);
@@ -234,7 +234,7 @@ void cut_all(const LaneSide &own, const LaneSide &other, LaneStretches &stretche
 }
 
 /// The stretches of all edges of `own` inside `other`.
-inline void cut_edges(const LaneSide &own, const LaneSide &other, LaneStretches &stretches) {
+inline void cut_edges(const LaneChain &own, const LaneChain &other, LaneStretches &stretches) {
   static_assert(most_plain_edges == 8);
   switch (other.edges) {
   case 1:

@@ -92,7 +92,7 @@ public:
     unsigned apart = 0;        ///< the blocks are seen not to touch
     unsigned with_corners = 0; ///< of each block one corner is in the other one: evaluate_corners() may do
     unsigned with_face = 0;    ///< corners of one block only are: evaluate_faces() may do
-    unsigned with_sides = 0;   ///< none is: evaluate_sides() may do
+    unsigned with_edges = 0;   ///< none is: evaluate_edges() may do
   };
   /// Whatever the overlap is.
   virtual Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;
@@ -103,9 +103,9 @@ public:
   /// The same, where PlainPair::Kind::may_be_face, for those that overlap with one or two corners of one
   /// block in a face of the other one (lane_faces.hpp).
   virtual Seen evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) = 0;
-  /// The same, where PlainPair::Kind::may_be_sides, for those that overlap with edges of one length whose
-  /// neighbours run in one line (lane_sides.hpp).
-  virtual Seen evaluate_sides(const PlainScene &scene, const PlainLanes &lanes) = 0;
+  /// The same, where PlainPair::Kind::may_be_edges, for those that overlap with edges of one length whose
+  /// neighbours run in one line (lane_edges.hpp).
+  virtual Seen evaluate_edges(const PlainScene &scene, const PlainLanes &lanes) = 0;
   /// Energies by lane, m3; see find_energies.
   struct Energies {
     unsigned known = 0; ///< by bits

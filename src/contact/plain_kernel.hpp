@@ -3,11 +3,11 @@
 // What plain_batch.hpp promises, with one contact in each lane.
 
 #include "lane_corners.hpp"
+#include "lane_edges.hpp"
 #include "lane_energies.hpp"
 #include "lane_faces.hpp"
 #include "lane_motion.hpp"
 #include "lane_region.hpp"
-#include "lane_sides.hpp"
 #include "lane_stretch.hpp"
 #include "lane_sums.hpp"
 #include "plain_batch.hpp"
@@ -34,7 +34,7 @@ public:
   Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Seen evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
   Seen evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) override;
-  Seen evaluate_sides(const PlainScene &scene, const PlainLanes &lanes) override;
+  Seen evaluate_edges(const PlainScene &scene, const PlainLanes &lanes) override;
   Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
                                 const PlainLanes &lanes) override;
   Energies find_energies(const BlockSystem &system, const Candidates &candidates,
@@ -58,13 +58,13 @@ private:
   void measure(const LaneConstants &constants);
   template <class AnyMotion> void add_dashpot(const LaneConstants &constants, const AnyMotion &motion);
   template <std::size_t edges> Seen evaluate_corners(const PlainScene &scene, const Pairs &pairs);
-  /// Overlap: FaceOverlap or SideOverlap.
+  /// Overlap: FaceOverlap or EdgeOverlap.
   template <class Overlap, std::size_t edges> Seen evaluate_as(const PlainScene &scene, const Pairs &pairs);
   /// Of the lanes whose overlap is known, which touch.
   template <class Overlap>
   unsigned evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
                             const Mask &known);
-  template <std::size_t edges> struct PairSides;
+  template <std::size_t edges> struct PairChains;
   static Energies by_lane(const Mask &known, const Lanes &energy);
   /// visit(edges) with the number of edges of the longer chain, where there are few.
   template <class Visit> static auto with_few_edges(const PlainPair &pair, Visit &&visit);
@@ -75,8 +75,8 @@ private:
   void add_friction_and_dashpots(const PlainScene &scene, const Pairs &pairs, const LaneConstants &constants,
                                  AddDashpot &&add_dashpot);
 
-  LaneSide lower_;
-  LaneSide higher_;
+  LaneChain lower_;
+  LaneChain higher_;
   LaneStretches on_lower_;
   LaneStretches on_higher_;
   LaneRegions regions_;
@@ -235,9 +235,9 @@ void LaneBatch::add_friction_and_dashpots(const PlainScene &scene, const Pairs &
 
 inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
-  const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneSide &side) {
-    load_chain(scene.system, pairs.first.kind, blocks, edges, side);
-    load_box(blocks, side);
+  const auto load = [&](const LaneBlocks &blocks, std::size_t edges, LaneChain &chain) {
+    load_chain(scene.system, pairs.first.kind, blocks, edges, chain);
+    load_box(blocks, chain);
   };
   load(pairs.lower, pairs.first.kind.lower_edges, lower_);
   load(pairs.higher, pairs.first.kind.higher_edges, higher_);
@@ -253,7 +253,7 @@ inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const Plain
   seen.meeting = meets.by_lane();
   seen.with_corners = (meets & of_lower.any & of_higher.any & !(of_lower.two | of_higher.two)).by_lane();
   seen.with_face = (meets & (of_lower.any ^ of_higher.any) & !(of_lower.three | of_higher.three)).by_lane();
-  seen.with_sides =
+  seen.with_edges =
       (meets & of_lower.two_touch & of_higher.two_touch & !(of_lower.any | of_higher.any)).by_lane();
   if (seen.touching == 0) {
     return seen;
@@ -325,17 +325,17 @@ unsigned LaneBatch::evaluate_overlap(const PlainScene &scene, const Pairs &pairs
 
 // The shorter chain goes on with copies of its last edge: no line is next to itself, and a corner is found
 // where it is first.
-template <std::size_t edges> struct LaneBatch::PairSides {
-  LaneSide lower;
-  LaneSide higher;
+template <std::size_t edges> struct LaneBatch::PairChains {
+  LaneChain lower;
+  LaneChain higher;
   std::size_t last_lower;
   std::size_t last_higher;
 
-  [[gnu::always_inline]] PairSides(const BlockSystem &system, const Pairs &pairs)
+  [[gnu::always_inline]] PairChains(const BlockSystem &system, const Pairs &pairs)
       : last_lower(pairs.first.kind.lower_edges - std::size_t{1}),
         last_higher(pairs.first.kind.higher_edges - std::size_t{1}) {
-    load_side<edges>(system, pairs.first.kind, pairs.lower, last_lower, lower);
-    load_side<edges>(system, pairs.first.kind, pairs.higher, last_higher, higher);
+    load_padded_chain<edges>(system, pairs.first.kind, pairs.lower, last_lower, lower);
+    load_padded_chain<edges>(system, pairs.first.kind, pairs.higher, last_higher, higher);
     load_box(pairs.lower, lower);
     load_box(pairs.higher, higher);
   }
@@ -350,20 +350,20 @@ template <std::size_t edges> struct LaneBatch::PairSides {
 
 template <std::size_t edges>
 PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pairs &pairs) {
-  PairSides<edges> sides(scene.system, pairs);
+  PairChains<edges> chains(scene.system, pairs);
   CornerOverlap<edges> overlap;
-  const Mask meets = boxes_meet(sides.lower, sides.higher);
-  const Mask valid = meets & overlap.find(sides.lower, sides.higher);
+  const Mask meets = boxes_meet(chains.lower, chains.higher);
+  const Mask valid = meets & overlap.find(chains.lower, chains.higher);
   Seen seen;
   seen.meeting = meets.by_lane();
   seen.apart = (!meets).by_lane();
   if ((!valid).any()) {
     const Mask with_face = meets & (overlap.lower_has ^ overlap.higher_has);
-    sides.load_ends(scene.system, pairs);
-    const Mask apart = are_apart<edges>(sides.lower, sides.higher);
+    chains.load_ends(scene.system, pairs);
+    const Mask apart = are_apart<edges>(chains.lower, chains.higher);
     seen.with_face = with_face.by_lane();
     seen.apart |= (apart & !valid & !with_face).by_lane();
-    seen.with_sides = (meets & !apart & !(overlap.lower_has | overlap.higher_has)).by_lane();
+    seen.with_edges = (meets & !apart & !(overlap.lower_has | overlap.higher_has)).by_lane();
     if (!valid.any()) {
       return seen;
     }
@@ -374,17 +374,17 @@ PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pair
 
 template <class Overlap, std::size_t edges>
 PlainBatch::Seen LaneBatch::evaluate_as(const PlainScene &scene, const Pairs &pairs) {
-  const PairSides<edges> sides(scene.system, pairs);
+  const PairChains<edges> chains(scene.system, pairs);
   Overlap overlap;
-  const Mask meets = boxes_meet(sides.lower, sides.higher);
+  const Mask meets = boxes_meet(chains.lower, chains.higher);
   const Mask valid =
-      meets & overlap.find(sides.lower, sides.last_lower + 1, sides.higher, sides.last_higher + 1);
+      meets & overlap.find(chains.lower, chains.last_lower + 1, chains.higher, chains.last_higher + 1);
   Seen seen;
   seen.meeting = meets.by_lane();
   seen.apart = (!meets).by_lane();
   seen.with_corners = (meets & overlap.lower_has & overlap.higher_has).by_lane();
   seen.with_face = (meets & (overlap.lower_has ^ overlap.higher_has)).by_lane();
-  seen.with_sides = (meets & !(overlap.lower_has | overlap.higher_has)).by_lane();
+  seen.with_edges = (meets & !(overlap.lower_has | overlap.higher_has)).by_lane();
   if (valid.any()) {
     seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
   }
@@ -414,10 +414,10 @@ inline PlainBatch::Seen LaneBatch::evaluate_faces(const PlainScene &scene, const
                         [&](auto edges) { return evaluate_as<FaceOverlap<edges>, edges>(scene, pairs); });
 }
 
-inline PlainBatch::Seen LaneBatch::evaluate_sides(const PlainScene &scene, const PlainLanes &lanes) {
+inline PlainBatch::Seen LaneBatch::evaluate_edges(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
-  return pairs.first.kind.has_three_edges_each() ? evaluate_as<SideOverlap<3>, 3>(scene, pairs)
-                                                 : evaluate_as<SideOverlap<4>, 4>(scene, pairs);
+  return pairs.first.kind.has_three_edges_each() ? evaluate_as<EdgeOverlap<3>, 3>(scene, pairs)
+                                                 : evaluate_as<EdgeOverlap<4>, 4>(scene, pairs);
 }
 
 inline PlainBatch::Energies LaneBatch::by_lane(const Mask &known, const Lanes &energy) {
@@ -433,9 +433,9 @@ inline PlainBatch::Energies LaneBatch::find_corner_energies(const BlockSystem &s
                                                             const PlainLanes &lanes) {
   const Pairs pairs(system, candidates, lanes);
   return with_few_edges(pairs.first, [&](auto edges) {
-    const PairSides<edges> sides(system, pairs);
+    const PairChains<edges> chains(system, pairs);
     CornerOverlap<edges> overlap;
-    const Mask overlaps = overlap.find(sides.lower, sides.higher);
+    const Mask overlaps = overlap.find(chains.lower, chains.higher);
     return by_lane(overlaps & overlap.has_two_lines_each(), overlap.energy());
   });
 }

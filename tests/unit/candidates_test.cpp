@@ -184,7 +184,7 @@ TEST(MakeCandidates, MemoryIsMatchedByIds) {
   ContactHistory history;
   history.regions.resize(3); // leftovers of an older list must not shine through
   history.regions[1].shear = 77.0;
-  history.overlaps.assign(3, PlainOverlap::other);
+  history.overlaps.assign(3, PlainOverlap::polygon);
   history.plain.resize(3);
   make_candidates(system, pairs, {one_law(1e6), 0.0, {}}, all, history, testing::infinite_skin);
   ASSERT_EQ(history.overlaps.size(), pairs.size());

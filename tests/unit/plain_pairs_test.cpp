@@ -114,7 +114,7 @@ void expect_all_ways(const ContactHistory &history, std::size_t most_edges) {
   for (const PlainOverlap overlap : {PlainOverlap::corners, PlainOverlap::face}) {
     EXPECT_GE(num_seen_as(overlap, history), most_edges == most_corner_edges ? 15 : 5);
   }
-  EXPECT_TRUE(most_edges == most_corner_edges || num_seen_as(PlainOverlap::other, history) >= 5);
+  EXPECT_TRUE(most_edges == most_corner_edges || num_seen_as(PlainOverlap::polygon, history) >= 5);
 }
 
 void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = false,

@@ -46,7 +46,7 @@ struct PlainPair {
     /// ... or one or two of one block alone.
     [[nodiscard]] bool may_be_face() const { return has_few_edges && (lower_edges > 1 || higher_edges > 1); }
     /// ... or edges lie on each other whole, with those beside them in one line.
-    [[nodiscard]] bool may_be_sides() const { return has_few_edges && lower_edges > 2 && higher_edges > 2; }
+    [[nodiscard]] bool may_be_edges() const { return has_few_edges && lower_edges > 2 && higher_edges > 2; }
     [[nodiscard]] bool has_three_edges_each() const { return lower_edges == 3 && higher_edges == 3; }
   };
   Kind kind;

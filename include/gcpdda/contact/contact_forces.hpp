@@ -227,19 +227,19 @@ private:
   /// Entries [first, last) of Candidates::plain, at most PlainPair::pairs_in_group.
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                             const ContactHistory &history, std::size_t first, std::size_t last);
-  /// How a pair is looked at: as one corner of each block; as corners of one in a face of the other; as
-  /// whole edges on each other; as one that was none of these in the step before; as one that is none.
-  enum class Way { corners, face, sides, other_as_before, other };
+  /// The overlap that a kernel supposes: one corner of each block; corners of one in a face of the other;
+  /// whole edges on each other; some other polygon, as in the step before or for certain.
+  enum class Way { corners, face, edges, polygon_as_before, polygon };
   PlainLanes lanes_of(const PlainScene &scene, std::span<const std::uint32_t> entries);
   void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way);
   /// Entries [first, last) whose boxes meet.
   void find_meeting(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                     std::size_t first, std::size_t last);
   void evaluate_all(const PlainScene &scene, const std::vector<std::uint32_t> &entries, Way way);
-  /// Those of corners_, faces_ and sides_, and what is left of them.
+  /// Evaluate corners_, faces_ and edges_, and the entries among them to which no specialised kernel applies.
   void evaluate_by_shape(const PlainScene &scene);
   void evaluate_known(const PlainScene &scene);
-  void evaluate_strangers(const PlainScene &scene);
+  void evaluate_without_region(const PlainScene &scene);
   /// Places for the lanes that touch.
   PlainResults open_regions(const Candidates &candidates, const PlainLanes &lanes, unsigned touching,
                             PlainOverlap overlap);
@@ -312,15 +312,15 @@ private:
   Overlap overlap_;
   std::array<TrialOutline, 2> outlines_; ///< of the pair at hand, if it is not plain
   std::unique_ptr<PlainBatch> batch_;
-  // Entries of Candidates::plain whose boxes meet, by what they are looked at as.
+  // Entries of Candidates::plain whose boxes meet, by the overlap each pair had in the last evaluation.
   std::vector<std::uint32_t> corners_;
   std::vector<std::uint32_t> faces_;
-  std::vector<std::uint32_t> sides_;
-  std::vector<std::uint32_t> others_;    ///< they were none of these
-  std::vector<std::uint32_t> left_;      ///< they are none of these
-  std::vector<std::uint32_t> strangers_; ///< without a region so far
-  std::vector<std::uint32_t> births_;    ///< new ones that must choose among laws
-  std::array<CandidatePair, 8> own_;     ///< constants of mixed pairs at hand, by lane
+  std::vector<std::uint32_t> edges_;
+  std::vector<std::uint32_t> polygons_;       ///< the overlap was some other polygon
+  std::vector<std::uint32_t> remaining_;      ///< in this evaluation no specialised kernel applies
+  std::vector<std::uint32_t> without_region_; ///< the blocks did not touch
+  std::vector<std::uint32_t> births_;         ///< new ones that must choose among laws
+  std::array<CandidatePair, 8> own_;          ///< constants of mixed pairs at hand, by lane
   BlockSums sums_;
   // The regions of pairs that are not plain are the first num_forces_; those of plain pairs of the group at
   // hand follow. The others are of evaluations before and spare making new ones.

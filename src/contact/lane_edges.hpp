@@ -27,7 +27,7 @@
 namespace gcpdda::GCPDDA_INSTRUCTIONS {
 
 /// The boundary of such an overlap.
-template <std::size_t edges> struct SideOverlap {
+template <std::size_t edges> struct EdgeOverlap {
   static_assert(edges >= 3);
   Mask lower_has; ///< it has a corner clearly inside the other one
   Mask higher_has;
@@ -35,8 +35,9 @@ template <std::size_t edges> struct SideOverlap {
   [[nodiscard]] const LaneVec &origin() const { return origin_; }
 
   /// True where the blocks overlap so; elsewhere nothing of this but lower_has and higher_has means anything.
-  /// Edges of a side from its number on are copies of its last one.
-  Mask find(const LaneSide &lower, std::size_t lower_edges, const LaneSide &higher, std::size_t higher_edges);
+  /// Edges of a chain from its number of edges on are copies of its last one.
+  Mask find(const LaneChain &lower, std::size_t lower_edges, const LaneChain &higher,
+            std::size_t higher_edges);
 
   /// visit(number, stretch, direction of its pressure on the lower block).
   template <class Visit> [[gnu::always_inline]] void for_stretches(Visit &&visit) const {
@@ -54,22 +55,22 @@ private:
   /// What of a block lies in or on the other one.
   struct Meeting {
     std::array<PerLine<edges>, edges> depth; ///< of vertex k below line j; the first vertex is no corner
-    std::array<Mask, edges> is_side;         ///< both ends of edge k do
+    std::array<Mask, edges> is_whole;        ///< both ends of edge k do
     Mask has_side{};                         ///< these ends alone do
     Mask has_inside{};                       ///< some corner is clearly inside
   };
-  /// The side of a block, and depths of its begin below the other one's lines.
-  struct Side {
+  /// The edge of a block, and depths of its begin below the other one's lines.
+  struct WholeEdge {
     LaneVec begin;
     LaneVec normal;
     Lanes length;
     PerLine<edges> depth;
   };
 
-  static void find_meeting(const LaneSide &own, std::size_t own_edges, const LaneSide &other,
+  static void find_meeting(const LaneChain &own, std::size_t own_edges, const LaneChain &other,
                            Meeting &meeting);
-  static Side find_side(const LaneSide &own, const Meeting &meeting);
-  static void walk(const Side &side, const LaneSide &other, const LaneVec &origin,
+  static WholeEdge find_edge(const LaneChain &own, const Meeting &meeting);
+  static void walk(const WholeEdge &edge, const LaneChain &other, const LaneVec &origin,
                    InnerStretch<edges> &stretch);
 
   LaneVec origin_; ///< V
@@ -80,9 +81,9 @@ private:
 };
 
 template <std::size_t edges>
-[[gnu::always_inline]] inline void SideOverlap<edges>::find_meeting(const LaneSide &own,
-                                                                    std::size_t own_edges,
-                                                                    const LaneSide &other, Meeting &meeting) {
+[[gnu::always_inline]] inline void
+EdgeOverlap<edges>::find_meeting(const LaneChain &own, std::size_t own_edges, const LaneChain &other,
+                                 Meeting &meeting) {
   const Lanes rounding = rounding_of(other);
   std::array<Mask, edges> touches{};
   Mask two{};
@@ -105,46 +106,46 @@ template <std::size_t edges>
   });
   Mask has_neighbours{};
   each<edges>([&](auto k) __attribute__((always_inline)) {
-    meeting.is_side[k] = k > 0 && k + 1 < edges ? touches[k] & touches[(k + 1) % edges] : Mask{};
-    has_neighbours = has_neighbours | meeting.is_side[k];
+    meeting.is_whole[k] = k > 0 && k + 1 < edges ? touches[k] & touches[(k + 1) % edges] : Mask{};
+    has_neighbours = has_neighbours | meeting.is_whole[k];
   });
   meeting.has_side = has_neighbours & !three;
 }
 
 template <std::size_t edges>
-[[gnu::always_inline]] inline typename SideOverlap<edges>::Side
-SideOverlap<edges>::find_side(const LaneSide &own, const Meeting &meeting) {
-  Side side{own.vertex[1], own.normal[1], own.length[1], meeting.depth[1]};
+[[gnu::always_inline]] inline typename EdgeOverlap<edges>::WholeEdge
+EdgeOverlap<edges>::find_edge(const LaneChain &own, const Meeting &meeting) {
+  WholeEdge edge{own.vertex[1], own.normal[1], own.length[1], meeting.depth[1]};
   each<edges - 3>([&](auto before) __attribute__((always_inline)) {
     constexpr std::size_t k = before + 2;
-    const Mask &here = meeting.is_side[k];
-    side.begin = select(here, own.vertex[k], side.begin);
-    side.normal = select(here, own.normal[k], side.normal);
-    side.length = select(here, own.length[k], side.length);
+    const Mask &here = meeting.is_whole[k];
+    edge.begin = select(here, own.vertex[k], edge.begin);
+    edge.normal = select(here, own.normal[k], edge.normal);
+    edge.length = select(here, own.length[k], edge.length);
     each<edges>([&](auto j) __attribute__((always_inline)) {
-      side.depth[j] = select(here, meeting.depth[k][j], side.depth[j]);
+      edge.depth[j] = select(here, meeting.depth[k][j], edge.depth[j]);
     });
   });
-  return side;
+  return edge;
 }
 
 template <std::size_t edges>
-[[gnu::always_inline]] inline void SideOverlap<edges>::walk(const Side &side, const LaneSide &other,
+[[gnu::always_inline]] inline void EdgeOverlap<edges>::walk(const WholeEdge &edge, const LaneChain &other,
                                                             const LaneVec &origin,
                                                             InnerStretch<edges> &stretch) {
-  stretch.begin = side.begin - origin;
-  stretch.direction = perp(side.normal);
-  stretch.length = side.length;
+  stretch.begin = edge.begin - origin;
+  stretch.direction = perp(edge.normal);
+  stretch.length = edge.length;
   FallingDepths<edges> below;
   each<edges>([&](auto j) __attribute__((always_inline)) {
-    below.depth[j] = max(0.0, side.depth[j]);
+    below.depth[j] = max(0.0, edge.depth[j]);
     below.fall[j] = dot(other.slope[j], stretch.direction);
   });
   integrate_inside<edges>(below, stretch);
 }
 
 template <std::size_t edges>
-Mask SideOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, const LaneSide &higher,
+Mask EdgeOverlap<edges>::find(const LaneChain &lower, std::size_t lower_edges, const LaneChain &higher,
                               std::size_t higher_edges) {
   Meeting of_lower;
   Meeting of_higher;
@@ -162,7 +163,7 @@ Mask SideOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, co
       const Lanes closed = max(of_lower.depth[k][q], of_lower.depth[k + 1][q]);
       run_in_line =
           run_in_line |
-          (of_lower.is_side[k] & of_higher.is_side[q] & (closed > below_higher) &
+          (of_lower.is_whole[k] & of_higher.is_whole[q] & (closed > below_higher) &
            (of_lower.depth[k + 1][q - 1] <= below_higher) & (of_lower.depth[k][q + 1] <= below_higher) &
            (of_higher.depth[q + 1][k - 1] <= below_lower) & (of_higher.depth[q][k + 1] <= below_lower));
     });
@@ -171,8 +172,8 @@ Mask SideOverlap<edges>::find(const LaneSide &lower, std::size_t lower_edges, co
   if (!valid.any()) {
     return valid;
   }
-  const Side on_lower = find_side(lower, of_lower);
-  const Side on_higher = find_side(higher, of_higher);
+  const WholeEdge on_lower = find_edge(lower, of_lower);
+  const WholeEdge on_higher = find_edge(higher, of_higher);
   origin_ = on_lower.begin;
   walk(on_lower, higher, origin_, on_lower_);
   walk(on_higher, lower, origin_, on_higher_);

@@ -1,4 +1,4 @@
-// Blocks that lie on each other with whole edges, their next edges in one line (src/contact/lane_sides.hpp).
+// Blocks that lie on each other with whole edges, their next edges in one line (src/contact/lane_edges.hpp).
 
 #include "support/plain_pairs.hpp"
 #include "support/scenes.hpp"
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <set>
 
-namespace gcpdda::sides_in_line_test {
+namespace gcpdda::edges_in_line_test {
 namespace {
 
 using namespace testing;
@@ -113,7 +113,7 @@ void expect_agreement(bool (*is_deformable)(std::size_t), Shape shape) {
   for (int step = 0; step < 3; ++step) {
     move_together(engine, {&ways.plain, &ways.general});
     evaluate_and_finish(ways.plain, ways.general);
-    EXPECT_GE(num_seen_as(PlainOverlap::sides, ways.plain.history), num_couples * 9 / 10);
+    EXPECT_GE(num_seen_as(PlainOverlap::edges, ways.plain.history), num_couples * 9 / 10);
     ASSERT_EQ(std::ssize(ways.plain.regions.all()), num_couples);
     ASSERT_EQ(std::ssize(ways.general.regions.all()), num_couples);
     for (std::size_t couple = 0; couple < num_couples && !::testing::Test::HasFailure(); ++couple) {
@@ -126,17 +126,17 @@ void expect_agreement(bool (*is_deformable)(std::size_t), Shape shape) {
   EXPECT_GT(sliding, 0);
 }
 
-TEST(SidesInLine, AgreeWithTheGeneralWay) {
+TEST(EdgesInLine, AgreeWithTheGeneralWay) {
   expect_agreement([](std::size_t) { return false; }, Shape::oblique);
   expect_agreement([](std::size_t) { return false; }, Shape::upright);
 }
 
-TEST(SidesInLine, AgreeWhereBlocksDeform) {
+TEST(EdgesInLine, AgreeWhereBlocksDeform) {
   expect_agreement(some_deform, Shape::oblique);
 }
 
 // A refresh may leave out the two edges that are far from the contact, or not.
-TEST(SidesInLine, EdgesThatAreLeftOutChangeNoBit) {
+TEST(EdgesInLine, EdgesThatAreLeftOutChangeNoBit) {
   std::mt19937 engine(18);
   const BlockSystem system = strips(engine, some_deform);
   ContactBench whole(system, one_law(1e6, 0.3, 10.0), 0.1);
@@ -159,13 +159,13 @@ TEST(SidesInLine, EdgesThatAreLeftOutChangeNoBit) {
     }
     expect_same_sums(cut, whole);
   }
-  EXPECT_GE(num_seen_as(PlainOverlap::sides, cut.history), num_couples * 9 / 10);
+  EXPECT_GE(num_seen_as(PlainOverlap::edges, cut.history), num_couples * 9 / 10);
 }
 
 // A refresh forgets how a pair overlaps, and rank counts decide when maps are made anew; also where blocks
 // touch by rounding only, as all do that a joint has cut apart.
-TEST(SidesInLine, WhatIsForgottenChangesNoBit) {
-  std::ptrdiff_t by_sides = 0;
+TEST(EdgesInLine, WhatIsForgottenChangesNoBit) {
+  std::ptrdiff_t by_edges = 0;
   for (int digits = 0; digits <= 16; ++digits) {
     const double scale = std::pow(10.0, -digits);
     std::mt19937 engine(20);
@@ -180,16 +180,16 @@ TEST(SidesInLine, WhatIsForgottenChangesNoBit) {
         expect_same_bits(forgetful.regions.all()[k], knowing.regions.all()[k]);
       }
       EXPECT_EQ(forgetful.history.overlaps, knowing.history.overlaps);
-      by_sides += num_seen_as(PlainOverlap::sides, knowing.history);
+      by_edges += num_seen_as(PlainOverlap::edges, knowing.history);
       for (PlainOverlap &overlap : forgetful.history.overlaps) {
         overlap = overlap == PlainOverlap::none ? overlap : PlainOverlap::corners;
       }
     }
   }
-  EXPECT_GT(by_sides, 4 * num_couples);
+  EXPECT_GT(by_edges, 4 * num_couples);
 }
 
-TEST(SidesInLine, WiderRegistersChangeNoBit) {
+TEST(EdgesInLine, WiderRegistersChangeNoBit) {
   for (const Instructions instructions : {Instructions::widest, Instructions::avx2}) {
     std::mt19937 engine(19);
     const BlockSystem system = strips(engine, some_deform);
@@ -208,7 +208,7 @@ TEST(SidesInLine, WiderRegistersChangeNoBit) {
 
 // Out of line by little, one block has a corner in the other one and is looked at otherwise: the force
 // follows.
-TEST(SidesInLine, LeaveTheLineWithoutAJump) {
+TEST(EdgesInLine, LeaveTheLineWithoutAJump) {
   constexpr double sunk = 1e-3;
   ContactBench bench(
       system_of({rectangle({0.0, 0.0}, {1.0, 1.0}), rectangle({0.0, 1.0 - sunk}, {1.0, 2.0})}, {}),
@@ -235,9 +235,9 @@ TEST(SidesInLine, LeaveTheLineWithoutAJump) {
       EXPECT_NEAR(bench.seen.torque[k], turning[k], most + norm(in_line) * shift);
     }
   }
-  EXPECT_TRUE(ways.contains(PlainOverlap::sides));
+  EXPECT_TRUE(ways.contains(PlainOverlap::edges));
   EXPECT_TRUE(ways.contains(PlainOverlap::corners));
 }
 
 } // namespace
-} // namespace gcpdda::sides_in_line_test
+} // namespace gcpdda::edges_in_line_test
