@@ -25,7 +25,7 @@ struct Swollen {
 
 } // namespace
 
-void Simulation::press() {
+void Simulation::apply_in_situ_stress() {
   stress_rows();
   SwellReport report;
   const auto num_ranks = static_cast<std::size_t>(communicator_.size());
@@ -114,7 +114,7 @@ void Simulation::tell_of_swelling(const SwellReport &mine) {
   }
   std::array<double, 3> largest{mine.widest, mine.spread, mine.largest};
   communicator_.max(largest);
-  pressed_ = largest[0];
+  in_situ_overlap_ = largest[0];
   const auto tell = [&](std::string what, std::string why, std::string hint) {
     notes_.push_back(
         {Severity::info, scene_.in_situ.where, std::move(what), std::move(why), std::move(hint)});

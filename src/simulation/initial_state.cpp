@@ -119,7 +119,7 @@ void Simulation::accelerate_owned() {
 // a_0 = M^-1 F(0): constant acceleration is then exact from the first step.
 void Simulation::find_initial_state() {
   check_bonds(); // told with the other faults of the initial state
-  bond_joints(blocks_, candidates_, contacts_.parameters().joints, pressed_, history_);
+  bond_joints(blocks_, candidates_, contacts_.parameters().joints, in_situ_overlap_, history_);
   take(contacts_.evaluate(blocks_, candidates_, history_)); // ghosts are whole copies yet
   evaluate_bolts();
   check_initial_overlaps();

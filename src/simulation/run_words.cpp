@@ -59,7 +59,7 @@ namespace {
 
 /// How near to rest a stage is that waits for its verdict. Large models are looked at seldom.
 std::string words_on_look(const Simulation &simulation, const Stage &stage) {
-  if (simulation.stage_step() < steps_between_looks(simulation.num_blocks())) {
+  if (simulation.stage_step() < steps_between_verdicts(simulation.num_blocks())) {
     return "not looked at yet";
   }
   const StageLook &last = simulation.stage().memory.last;

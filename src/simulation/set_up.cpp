@@ -110,7 +110,7 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
   std::vector<SceneBlock> slab = load_slab(cut_region());
   load_sides(slab);
   note_groups(slab);
-  size_up(slab);
+  find_model_sizes(slab);
   place_monitors(slab);
   survey(slab);
   doubt_blocks(slab);
@@ -128,7 +128,7 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
   take_blocks(std::exchange(slab, {}));
   give_back_free_memory();
   if (scene_.in_situ.present) {
-    press();
+    apply_in_situ_stress();
   }
   ContactMemory memory;
   if (!restart_from.empty()) { // rows are those of the slab still
@@ -170,7 +170,7 @@ std::vector<SceneBlock> Simulation::load_slab(std::vector<SceneBlock> cut) {
 }
 
 // What only the blocks together say: the stiffness of an allowed overlap, and how far a pile may sag.
-void Simulation::size_up(std::span<const SceneBlock> slab) {
+void Simulation::find_model_sizes(std::span<const SceneBlock> slab) {
   const auto by_overlap = [](const JointLaw &law) { return law.allowed_overlap > 0.0; };
   const bool any_by_overlap = std::any_of(scene_.joints.laws.begin(), scene_.joints.laws.end(), by_overlap);
   if (!any_by_overlap && !is_staged_) {

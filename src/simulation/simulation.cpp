@@ -107,8 +107,8 @@ void Simulation::refresh(std::optional<ContactMemory> given) {
 
 // A look now and then; the blocks follow a new map by the migration of a refresh.
 void Simulation::rebalance_if_uneven() {
-  constexpr std::int64_t steps_between_looks = 64;
-  if (step_count_ == 0 || step_count_ % steps_between_looks != 0 ||
+  constexpr std::int64_t steps_between_checks = 64;
+  if (step_count_ == 0 || step_count_ % steps_between_checks != 0 ||
       !balance_.is_lost(counters_.evaluations + counters_.block_steps)) {
     return;
   }

@@ -103,7 +103,7 @@ void Simulation::judge_stage() {
   if (stages_[static_cast<std::size_t>(stage_.index)].kinetic_damping) {
     stop_at_energy_peak();
   }
-  if (is_staged_ && stage_step() % steps_between_looks(num_blocks()) == 0) {
+  if (is_staged_ && stage_step() % steps_between_verdicts(num_blocks()) == 0) {
     look_at_stage();
   }
 }
@@ -112,7 +112,7 @@ void Simulation::judge_stage() {
 void Simulation::look_at_stage() {
   ExactSum kinetic;
   std::array<double, 6> largest{};
-  auto &[unbalanced, acting, motion, moved, astray, overlap] = largest;
+  auto &[unbalanced, acting, motion, moved, moved_beyond_sag, overlap] = largest;
   const std::span<BlockMark> marks = mark_rows(blocks_);
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const BlockProperties &block = blocks_.properties[row];
@@ -135,7 +135,7 @@ void Simulation::look_at_stage() {
     const double way = motion_between(block, mark.stage, now);
     const double share = way / std::sqrt(block.area);
     moved = std::max(moved, share);
-    astray = std::max(astray, way > sag_ ? share : 0.0);
+    moved_beyond_sag = std::max(moved_beyond_sag, way > sag_ ? share : 0.0);
     mark.look = now;
     kinetic.add(kinetic_energy_of(blocks_, row));
   }
@@ -143,8 +143,13 @@ void Simulation::look_at_stage() {
   overlap = force_report_.max_overlap;
   communicator_.max(largest);
   communicator_.sum(kinetic.limbs());
-  const StageLook look{
-      acting > 0.0 ? unbalanced / acting : 0.0, motion, overlap, acting, kinetic.value(), moved, astray};
+  const StageLook look{acting > 0.0 ? unbalanced / acting : 0.0,
+                       motion,
+                       overlap,
+                       acting,
+                       kinetic.value(),
+                       moved,
+                       moved_beyond_sag};
   const Stage &stage = stages_[static_cast<std::size_t>(stage_.index)];
   stage_.verdict = judge(stage, look, stage_.memory);
   const bool unloads = std::any_of(stage_.unloading.begin(), stage_.unloading.end(), [&](const Unloading &u) {

@@ -12,20 +12,20 @@ Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory) {
   memory.most_kinetic = std::max(memory.most_kinetic, look.kinetic);
   memory.last = look;
 
-  const bool calm =
+  const bool is_settled =
       look.unbalanced_ratio <= stage.tolerance && look.motion <= motion_at_rest * look.overlap &&
       (look.kinetic <= last.kinetic || look.kinetic <= energy_at_rest * look.force * look.overlap);
-  memory.calm_looks = calm ? memory.calm_looks + 1 : 0;
-  if (memory.calm_looks >= 2) {
+  memory.settled_looks = is_settled ? memory.settled_looks + 1 : 0;
+  if (memory.settled_looks >= 2) {
     return Verdict::settled;
   }
   const bool goes_on = look.motion >= 0.5 * last.motion && look.kinetic >= 0.25 * memory.most_kinetic;
-  return look.astray >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
+  return look.moved_beyond_sag >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
 }
 
 // Long enough to see a pile sway, whose slowest period of about 12 steps for each block of its height grows
-// with the root of their number: between two looks it goes on by a tenth of a period or more.
-std::int64_t steps_between_looks(std::int64_t num_blocks) {
+// with the root of their number: between two verdicts it goes on by a tenth of a period or more.
+std::int64_t steps_between_verdicts(std::int64_t num_blocks) {
   return 50 + static_cast<std::int64_t>(std::sqrt(static_cast<double>(num_blocks)));
 }
 
@@ -34,7 +34,7 @@ namespace {
 /// The same list of fields for both ways.
 template <class State, class Count, class Real> void visit_state(State &state, Count &&count, Real &&real) {
   count(state.index), count(state.first_step), count(state.ended), count(state.contact_steps_before);
-  count(state.more_mobile), count(state.verdict), count(state.memory.calm_looks);
+  count(state.more_mobile), count(state.verdict), count(state.memory.settled_looks);
   real(state.start_time), real(state.end_time), real(state.memory.most_kinetic),
       real(state.memory.kinetic_before);
   auto &last = state.memory.last;

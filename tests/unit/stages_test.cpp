@@ -317,7 +317,7 @@ TEST(Stages, GoThroughNumbersUnchanged) {
   state.index = 2;
   state.ended = true;
   state.verdict = Verdict::failed;
-  state.memory.calm_looks = 1;
+  state.memory.settled_looks = 1;
   state.memory.last.motion = 0.25;
   state.results = {{Verdict::settled, 1.5, 7, 8, 1e-6, 2.0, 3.0, 0}, {Verdict::done, 1.5, 0, 0, 0, 0, 0, 4}};
   state.removed = {3, 5, 9, 11};

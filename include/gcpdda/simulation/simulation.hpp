@@ -265,7 +265,7 @@ private:
   [[nodiscard]] std::vector<SceneBlock> cut_region();
   [[nodiscard]] std::vector<SceneBlock> load_slab(std::vector<SceneBlock> cut);
   void note_groups(std::span<const SceneBlock> slab);
-  void size_up(std::span<const SceneBlock> slab);
+  void find_model_sizes(std::span<const SceneBlock> slab);
   void survey(std::span<const SceneBlock> slab);
   void find_laws_on_edges(std::span<const SceneBlock> slab);
   void warn_of_rounding(double size, double farthest);
@@ -301,7 +301,7 @@ private:
   void check_bonds();
   void check_initial_overlaps();
   void find_initial_friction();
-  void press();
+  void apply_in_situ_stress();
   void stress_rows();
   void tell_of_swelling(const SwellReport &mine);
   void put_initial_shear();
@@ -397,7 +397,7 @@ private:
   double thinnest_ = 0.0;      ///< narrowest width of any block, m
   double sag_ = 0.0;           ///< largest_sag() of the scene, m
   double base_skin_ = 0.0;
-  double pressed_ = 0.0; ///< largest overlap of the in-situ stress, m
+  double in_situ_overlap_ = 0.0; ///< largest overlap of the in-situ stress, m
   double skin_ = 0.0;
   bool stale_ = true;
   bool stop_asked_ = false;

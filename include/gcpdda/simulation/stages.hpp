@@ -33,7 +33,7 @@ struct StageLook {
   double force = 0.0;            ///< largest force anywhere, N/m
   double kinetic = 0.0;          ///< T, J/m
   double moved = 0.0;            ///< M of all blocks
-  double astray = 0.0;           ///< M of those that have moved farther than a pile sags
+  double moved_beyond_sag = 0.0; ///< M of those that have moved farther than a pile sags
 };
 
 /// What is remembered from one look to the next.
@@ -41,14 +41,14 @@ struct LookMemory {
   StageLook last;
   double most_kinetic = 0.0;
   double kinetic_before = 0.0; ///< one step ago, of a stage with kinetic damping
-  std::int64_t calm_looks = 0;
+  std::int64_t settled_looks = 0;
 };
 
 /// Verdict of a look; the memory moves on.
 Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory);
 
-/// Steps between two looks.
-std::int64_t steps_between_looks(std::int64_t num_blocks);
+/// Steps between two verdicts on a stage.
+std::int64_t steps_between_verdicts(std::int64_t num_blocks);
 
 /// The forces of excavated blocks on one that stays. They keep their direction and fall linearly to zero.
 struct Unloading {
