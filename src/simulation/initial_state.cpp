@@ -132,7 +132,7 @@ void Simulation::find_initial_state() {
     }
     accelerate_owned();
   }
-  moving_.report.rows_to_check = {{0, blocks_.num_owned}};
+  progress_.report.rows_to_check = {{0, blocks_.num_owned}};
   report();
   counters_.evaluations = 0; // these are of steps
   counters_.block_steps = 0;

@@ -1,17 +1,16 @@
-// How owned blocks go through a step, close behind one another.
+// How owned rows go through a step: each is predicted, loaded and advanced while the cache holds it.
 //
-// Pairs are evaluated in the order of their blocks' ids (contact/candidates.hpp). So only rows up to the last
-// one of the next group of pairs need their trial configurations before it, and those below the first one of
-// the group after it are over with their contacts and can go on to the end of the step. Between the two stand
-// a few hundred rows; what they are made of is written, read and written again in the cache, and a large
-// model is read from memory once a step instead of three times. Where ids do not follow places, all rows are
-// predicted before the first group and moved behind the last one.
+// Pairs are evaluated by groups in the order of their blocks' ids (contact/candidates.hpp). Before a group
+// only rows below its rows_read need their trial configurations, and after it rows below its rows_finished
+// have all their contacts and can be advanced to the end of the step. A few hundred rows lie between the two
+// bounds, so that a large model is read from memory once a step instead of three times. Where ids do not
+// follow places, all rows are predicted before the first group and advanced after the last one.
 //
-// Three things keep a row from going on with the others: a pair without a ghost that is evaluated on its own
-// or a pair with a ghost (it waits, Candidates::is_added), and bolts anywhere, whose forces come last. Ghosts
-// need the trial configurations of border rows first; they follow from x_n, v_n and a_n alone and are sent
-// before they stand in their rows. Each row does the same operations on the same numbers whenever it does
-// them, so the order changes no bit.
+// A row waits (Candidates::is_added) if it has a pair with a ghost or a general pair; these are evaluated
+// last. Where there are bolts all rows wait, because the forces of bolts come after those of all pairs. The
+// ghosts on other ranks need the trial configurations of border rows first: they follow from x_n, v_n and a_n
+// alone and are sent before the rows themselves are predicted. Each row does the same operations on the same
+// numbers whenever it does them, so that the order changes no bit.
 
 #include "gcpdda/simulation/simulation.hpp"
 
@@ -22,8 +21,8 @@ namespace gcpdda {
 
 namespace {
 
-constexpr std::size_t rows_at_once = 64; ///< they are moved from the cache
-constexpr std::size_t rows_together = 8; ///< most that are in the lanes
+constexpr std::size_t rows_at_once = 64; ///< rows that the cache holds through all their parts of a step
+constexpr std::size_t rows_together = 8; ///< most rows in the SIMD lanes
 
 /// Row of a block if this rank owns it.
 std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
@@ -73,7 +72,7 @@ void Simulation::predict_rows(RowSpan rows) {
   }
 }
 
-// The acceleration is the mean one of the coming step: what is asked how far the block may go in it.
+// The acceleration is the mean one of the coming step: motion_bound() then bounds the motion in it.
 void Simulation::prescribe_motion() {
   const double dt = plan_.time_step;
   for (const auto &[block, motion] : prescribed_) {
@@ -92,22 +91,22 @@ void Simulation::prepare_forces() {
 }
 
 void Simulation::predict_to(std::size_t end) {
-  if (end <= moving_.predicted) {
+  if (end <= progress_.predicted) {
     return;
   }
   const auto scope = phases_.measure(Phase::predict);
-  while (moving_.predicted < end) {
-    const RowSpan rows{moving_.predicted, std::min(blocks_.num_owned, moving_.predicted + rows_at_once)};
+  while (progress_.predicted < end) {
+    const RowSpan rows{progress_.predicted, std::min(blocks_.num_owned, progress_.predicted + rows_at_once)};
     predict_rows(rows);
     add_half_works(blocks_, rows.first, rows.last);
     contacts_.begin_rows(blocks_, rows.first, rows.last);
-    moving_.predicted = rows.last;
+    progress_.predicted = rows.last;
   }
 }
 
-// They are as many as the registers hold.
+// Waiting rows are grouped in runs of rows_together.
 void Simulation::find_waiting_rows() {
-  std::vector<RowSpan> &waiting = moving_.waiting;
+  std::vector<RowSpan> &waiting = progress_.waiting;
   waiting.clear();
   for (std::size_t first = 0; first < blocks_.num_owned; first += rows_together) {
     const std::size_t last = std::min(blocks_.num_owned, first + rows_together);
@@ -124,48 +123,48 @@ void Simulation::find_waiting_rows() {
 
 void Simulation::advance_to(std::size_t end) {
   const std::size_t last = end == blocks_.num_owned ? end : end / rows_at_once * rows_at_once;
-  if (last <= moving_.advanced || !bolts_.empty()) { // forces of bolts come after those of all pairs
+  if (last <= progress_.advanced || !bolts_.empty()) { // forces of bolts come after those of all pairs
     return;
   }
   const auto scope = phases_.measure(Phase::update);
-  while (moving_.advanced < last) {
-    const bool is_last_run = moving_.passed == moving_.waiting.size();
-    const std::size_t stop = is_last_run ? last : std::min(last, moving_.waiting[moving_.passed].first);
-    advance_rows(moving_.advanced, stop);
-    moving_.advanced = stop < last ? moving_.waiting[moving_.passed++].last : last;
+  while (progress_.advanced < last) {
+    const bool is_last_run = progress_.passed == progress_.waiting.size();
+    const std::size_t stop = is_last_run ? last : std::min(last, progress_.waiting[progress_.passed].first);
+    advance_rows(progress_.advanced, stop);
+    progress_.advanced = stop < last ? progress_.waiting[progress_.passed++].last : last;
   }
 }
 
 void Simulation::advance_remaining() {
   const auto scope = phases_.measure(Phase::update);
-  for (std::size_t k = 0; k < moving_.passed; ++k) {
-    advance_rows(moving_.waiting[k].first, moving_.waiting[k].last);
+  for (std::size_t k = 0; k < progress_.passed; ++k) {
+    advance_rows(progress_.waiting[k].first, progress_.waiting[k].last);
   }
-  advance_rows(moving_.advanced, blocks_.num_owned);
-  blocks_.body = moving_.body;
-  if (const auto row = moving_.report.broken) {
+  advance_rows(progress_.advanced, blocks_.num_owned);
+  blocks_.body = progress_.body;
+  if (const auto row = progress_.report.broken) {
     keep_first(local_fault_, {Fault::Cause::not_finite, blocks_.properties[*row].id, {}, 0.0, 0.0});
   }
 }
 
-// Some blocks at a time: what one pass reads is in the cache for the next.
+// A chunk of rows at a time: what one pass reads is in the cache for the next.
 void Simulation::advance_rows(std::size_t first, std::size_t end) {
   for (first = advance_free(first, end); first < end;) {
     const std::size_t last = std::min(end, first + rows_at_once);
-    gather_forces(first, last, moving_.body);
+    gather_forces(first, last, progress_.body);
     solve_and_update(blocks_, own_forces_, scheme_, plan_.time_step, scene_.run.elasticity, first, last,
-                     safe_motion(), moving_.report);
+                     safe_motion(), progress_.report);
     first = advance_free(last, end);
   }
 }
 
-// On most blocks of most scenes only others act: with all that follows in one go.
+// Only contacts and gravity act on most blocks of most scenes: one kernel loads and advances them.
 std::size_t Simulation::advance_free(std::size_t first, std::size_t end) {
   if (scene_.run.rayleigh.present()) {
     return first;
   }
-  return advance_free_rows(blocks_, {moving_.body, local_damping_, safe_motion(), bolts_.empty()}, scheme_,
-                           plan_.time_step, scene_.run.elasticity, first, end, moving_.report);
+  return advance_free_rows(blocks_, {progress_.body, local_damping_, safe_motion(), bolts_.empty()}, scheme_,
+                           plan_.time_step, scene_.run.elasticity, first, end, progress_.report);
 }
 
 void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
@@ -183,14 +182,14 @@ void Simulation::gather_forces(std::size_t first, std::size_t last, const BodyFo
   }
 }
 
-// Returns what is applied, which is noted where the row has a place for it.
+// Returns the applied forces, which are stored as well where the row has an `applied` entry.
 AppliedForces Simulation::gather_block(std::size_t row, const BodyForces &body, const WaterLoad &water) {
   const BlockProperties &block = blocks_.properties[row];
   RigidDof &force = blocks_.contact[row].force;
   AppliedForces *const own = blocks_.applied_to(row);
   const bool is_deformable = blocks_.is_deformable(row); // then moments stand in the deformation
   if (block.keeps_its_velocity()) {
-    expect(own != nullptr, "what drives a block has its place");
+    expect(own != nullptr, "a driven block needs an `applied` entry");
     const RigidDof held = std::exchange(force, {});
     return *own = {{-1.0 * held.u, is_deformable ? 0.0 : -held.r}, {}, {}};
   }
@@ -212,7 +211,7 @@ AppliedForces Simulation::gather_block(std::size_t row, const BodyForces &body, 
   return applied;
 }
 
-// What works on F; the moments of the rigid part are in it.
+// Forces on F; they contain the moments of the rigid part.
 void Simulation::gather_gradient(std::size_t row, const WaterLoad &water) {
   Deformation &d = blocks_.deformation_of(row);
   const Mat2 &to_reference = blocks_.trial_inverse[blocks_.deformation_begin[row]];

@@ -11,7 +11,7 @@ namespace gcpdda {
 
 namespace {
 
-// What a rank tells the others after a step; the largest counts.
+// The status of a rank after a step; the largest of all ranks counts.
 constexpr double needs_refresh = 1.0;
 constexpr double asked_to_stop = 2.0; // a refresh does no harm then
 constexpr double failed = 3.0;
@@ -49,8 +49,8 @@ Vec2 Simulation::gravity() const {
   return Rise{0.0, scene_.run.gravity_ramp}.at(load_time_) * scene_.run.gravity;
 }
 
-// Each block to the rank that owns its centroid, who is seen by whom, which pairs may touch: on a finished
-// state.
+// On a finished state: blocks migrate to the rank that owns their centroid, then ghosts and candidates are
+// found anew.
 void Simulation::refresh(std::optional<ContactMemory> given) {
   const auto scope = phases_.measure(Phase::refresh);
   bolts_.share(communicator_);
@@ -105,7 +105,7 @@ void Simulation::refresh(std::optional<ContactMemory> given) {
   }
 }
 
-// A look now and then; the blocks follow a new map by the migration of a refresh.
+// The balance is checked every steps_between_checks; blocks follow a new map by the migration of a refresh.
 void Simulation::rebalance_if_uneven() {
   constexpr std::int64_t steps_between_checks = 64;
   if (step_count_ == 0 || step_count_ % steps_between_checks != 0 ||
@@ -152,11 +152,11 @@ void Simulation::begin_step() {
   load_time_ = time() + scheme_.load_time * plan_.time_step;
   find_prescribed_rows();
   prepare_forces();
-  moving_.body = {gravity(), ground_acceleration()};
-  moving_.predicted = 0;
-  moving_.advanced = 0;
-  moving_.passed = 0;
-  moving_.report.clear();
+  progress_.body = {gravity(), ground_acceleration()};
+  progress_.predicted = 0;
+  progress_.advanced = 0;
+  progress_.passed = 0;
+  progress_.report.clear();
   contacts_.begin(blocks_, candidates_);
 }
 
@@ -195,7 +195,7 @@ void Simulation::take(const ForceReport &report) {
   }
 }
 
-// On each block in the order of its partners' ids.
+// Contact forces are summed on each block in the order of its partners' ids.
 void Simulation::sum_forces() {
   const auto scope = phases_.measure(Phase::forces);
   contact_count_ = contacts_.finish_sums(blocks_, candidates_);
@@ -203,10 +203,10 @@ void Simulation::sum_forces() {
   bolts_.add_forces(blocks_, contacts_.sums().of_blocks());
 }
 
-// One reduction: does anybody need a refresh, has anybody failed, is anybody asked to stop. It cannot be a
-// step late: how far a block may go in two steps depends on contacts that nobody has evaluated yet, so a flag
-// one step late is no bound. One that runs on while this rank counts is no shorter: to start it and to look
-// for its end, each with the cache full of blocks, takes longer than counting.
+// One reduction says whether any rank needs a refresh, has failed or was asked to stop. It cannot be a step
+// late: how far a block may go in two steps depends on contacts that are not evaluated yet, so that a flag
+// one step late is no bound. A reduction that runs while this rank counts is no shorter: to start it and to
+// test for its end, each with the cache full of blocks, takes longer than counting.
 void Simulation::report() {
   const auto scope = phases_.measure(Phase::report);
   count();
@@ -224,9 +224,10 @@ double Simulation::safe_motion() const {
 
 double Simulation::own_status() {
   double status = 0.0;
-  for (const RowSpan &rows : moving_.report.rows_to_check) {
+  for (const RowSpan &rows : progress_.report.rows_to_check) {
     for (std::size_t row = rows.first; row < rows.last; ++row) {
-      if (most_motion(blocks_, row, plan_.time_step) <= safe_motion()) { // as of nearly all, without a root
+      if (most_motion(blocks_, row, plan_.time_step) <=
+          safe_motion()) { // true of nearly all blocks, and found without a root
         continue;
       }
       const double ahead = motion_bound(blocks_, row, plan_.time_step);
@@ -253,7 +254,7 @@ void Simulation::count() {
   counters_.contact_steps += contact_count_.touching;
   counters_.cross_rank_contacts = std::max(counters_.cross_rank_contacts, contact_count_.crossing);
   counters_.cross_rank_contacts_formed += contact_count_.crossing_formed;
-  counters_.fastest_turn = std::max(counters_.fastest_turn, moving_.report.largest_turn);
+  counters_.fastest_turn = std::max(counters_.fastest_turn, progress_.report.largest_turn);
 }
 
 // The fault with the smallest block id, so that its report does not depend on the ranks.

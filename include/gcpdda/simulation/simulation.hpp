@@ -363,15 +363,15 @@ private:
   OwnForces own_forces_; ///< at the last evaluation
   TrialOutline outline_; ///< of a block in water
   /// How far a step has come with the owned rows.
-  struct Moving {
-    BodyForces body;
+  struct StepProgress {
+    BodyForces body;              ///< of this step
     std::size_t predicted = 0;    ///< rows below have their trial configurations
-    std::size_t advanced = 0;     ///< rows below are at the end of the step, but for ...
-    std::size_t passed = 0;       ///< ... so many of ...
-    std::vector<RowSpan> waiting; ///< ... these, which cannot go on with their group
+    std::size_t advanced = 0;     ///< rows below are at the end of the step, except waiting ones
+    std::size_t passed = 0;       ///< spans of `waiting` below `advanced`
+    std::vector<RowSpan> waiting; ///< rows that cannot be advanced with their group
     AdvanceReport report;         ///< of the last step
   };
-  Moving moving_;
+  StepProgress progress_;
   struct PrescribedRow {
     std::size_t row;
     RigidDof trial; ///< in the step at hand
