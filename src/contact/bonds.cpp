@@ -28,7 +28,7 @@ struct Displacement {
     u = dof.u;
     if (system.is_deformable(row)) {
       const Mat2 &trial = system.deformation_of(row).trial;
-      stretch = (now ? trial : trial - system.stretched(row)) - Mat2::identity();
+      stretch = (now ? trial : trial - system.gradient_increment(row)) - Mat2::identity();
     } else {
       const double half = std::sin(0.5 * dof.r);
       const double sine = std::sin(dof.r);

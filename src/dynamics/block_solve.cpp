@@ -128,7 +128,7 @@ void note_springs(BlockSystem &system, std::size_t row, const OwnSprings &spring
   Deformation &d = system.deformation_of(row);
   const AnchorForce force = springs.force(system.acceleration[row].u, d.acceleration);
   note_anchors(system, row, {force.u, 0.0});
-  system.ledger[row].load += 0.5 * contract(force.gradient, system.stretched(row));
+  system.ledger[row].load += 0.5 * contract(force.gradient, system.gradient_increment(row));
   d.anchor_force = force.gradient;
 }
 
@@ -136,7 +136,7 @@ void note_springs(BlockSystem &system, std::size_t row, const OwnSprings &spring
 void note_viscous(BlockSystem &system, std::size_t row, const Mat2 &viscous) {
   Deformation &d = system.deformation_of(row);
   d.contact.damping += -1.0 * viscous;
-  system.ledger[row].damping -= 0.5 * contract(viscous, system.stretched(row));
+  system.ledger[row].damping -= 0.5 * contract(viscous, system.gradient_increment(row));
 }
 
 void note_local_damping(BlockSystem &system, std::size_t row, const AnchorForce &damped, double half_work) {

@@ -9,11 +9,11 @@ HalfWorks half_works(const BlockSystem &system, std::size_t row, const AppliedFo
                  work(applied.load, half_increment), dot(applied.gravity, half_increment.u)};
   if (system.is_deformable(row)) {
     const Deformation &d = system.deformation_of(row);
-    const Mat2 stretched = system.stretched(row);
-    half.shear += 0.5 * contract(d.contact.shear, stretched);
-    half.damping += 0.5 * contract(d.contact.damping, stretched);
+    const Mat2 increment = system.gradient_increment(row);
+    half.shear += 0.5 * contract(d.contact.shear, increment);
+    half.damping += 0.5 * contract(d.contact.damping, increment);
     if (system.applied_to(row) != nullptr) {
-      half.load += 0.5 * contract(d.load_force, stretched);
+      half.load += 0.5 * contract(d.load_force, increment);
     }
   }
   return half;
@@ -25,7 +25,7 @@ double anchor_half_work(const BlockSystem &system, std::size_t row) {
   }
   double half = 0.5 * work(system.anchor_force(row), system.motion[row].increment());
   if (system.is_deformable(row)) {
-    half += 0.5 * contract(system.deformation_of(row).anchor_force, system.stretched(row));
+    half += 0.5 * contract(system.deformation_of(row).anchor_force, system.gradient_increment(row));
   }
   return half;
 }

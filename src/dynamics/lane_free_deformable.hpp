@@ -43,7 +43,7 @@ inline FreeStep step_free_deformables(BlockSystem &system, std::size_t first, co
   const LaneMat shear = on_gradient(&BlockGradientSum::shear);
   LaneMat damping = on_gradient(&BlockGradientSum::damping);
   const LaneRigid half_increment = half_increments(system, first);
-  const LaneWay way{Lanes(2.0) * half_increment.u, stretched(system, first, block.trial)};
+  const LaneWay way{Lanes(2.0) * half_increment.u, gradient_increment(system, first, block.trial)};
   FourLanes works = lane_half_works(sum, applied, half_increment);
   add_on_gradient(shear, damping, way.gradient, works);
 

@@ -141,17 +141,17 @@ lane_half_works(const LaneContacts &contacts, const LaneApplied &applied, const 
           dot(applied.load, half_increment.u), dot(applied.gravity, half_increment.u)};
 }
 
-/// BlockSystem::stretched() of rows [first, first + num_lanes).
-[[gnu::always_inline]] inline LaneMat stretched(const BlockSystem &system, std::size_t first,
-                                                const LaneMat &trial) {
+/// BlockSystem::gradient_increment() of rows [first, first + num_lanes).
+[[gnu::always_inline]] inline LaneMat gradient_increment(const BlockSystem &system, std::size_t first,
+                                                         const LaneMat &trial) {
   return LaneMat{load_four(&system.motion[first], offsetof(BlockMotion, turn))} * trial;
 }
 
 /// What contacts do on F adds to them.
 [[gnu::always_inline]] inline void add_on_gradient(const LaneMat &shear, const LaneMat &damping,
-                                                   const LaneMat &stretched, FourLanes &works) {
-  works[0] += Lanes(0.5) * contract(shear, stretched);
-  works[1] += Lanes(0.5) * contract(damping, stretched);
+                                                   const LaneMat &increment, FourLanes &works) {
+  works[0] += Lanes(0.5) * contract(shear, increment);
+  works[1] += Lanes(0.5) * contract(damping, increment);
 }
 
 /// @param damped  what local damping adds to the second of them
@@ -181,7 +181,7 @@ inline void add_half_works_of_deformables(BlockSystem &system, std::size_t first
   FourLanes works = lane_half_works(LaneContacts::load_parts(&system.contact[first]), applied,
                                     half_increments(system, first));
   add_on_gradient(load(&BlockGradientSum::shear), load(&BlockGradientSum::damping),
-                  stretched(system, first, trial), works);
+                  gradient_increment(system, first, trial), works);
   add_to_ledger(works, &system.ledger[first]);
 }
 

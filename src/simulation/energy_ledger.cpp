@@ -256,14 +256,14 @@ void add_strain(const BlockSystem &blocks, Moment moment, ExactSum &sum) {
       const Deformation &d = blocks.deformation_of(row);
       sum.add(moment == Moment::now
                   ? strain_energy(d, d.trial)
-                  : applied_strain_energy(d) + 0.5 * contract(d.internal, blocks.stretched(row)));
+                  : applied_strain_energy(d) + 0.5 * contract(d.internal, blocks.gradient_increment(row)));
     }
   }
 }
 
 /// Mean rate of F between the last two trial configurations; zero for a rigid row.
 Mat2 stretch_rate(const BlockSystem &blocks, std::size_t row, double time_step) {
-  return blocks.is_deformable(row) ? (1.0 / time_step) * blocks.stretched(row) : Mat2{};
+  return blocks.is_deformable(row) ? (1.0 / time_step) * blocks.gradient_increment(row) : Mat2{};
 }
 
 Terms initial_terms(const Simulation &simulation) {

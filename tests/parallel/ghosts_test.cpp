@@ -233,7 +233,7 @@ TEST(Ghosts, UpdateBringsTheTrialAndKeepsTheOldOne) {
       const std::size_t id = c.id_of(row);
       EXPECT_EQ(c.mine.motion[row].increment(), c.whole.motion[id].increment());
       if (c.mine.is_deformable(row)) {
-        EXPECT_EQ(c.mine.stretched(row), c.whole.stretched(id));
+        EXPECT_EQ(c.mine.gradient_increment(row), c.whole.gradient_increment(id));
       }
       EXPECT_EQ(c.mine.motion[row].centroid, c.whole.motion[id].centroid);
       EXPECT_EQ(c.mine.motion[row].box.low, c.whole.motion[id].box.low);

@@ -305,10 +305,10 @@ TEST(LocalDamping, OfADeformableBlockIsFriction) {
         EXPECT_LE(norm(damped.deformation[0].acceleration - pushed.deformation[0].acceleration), 0.05 * size);
 
         const RigidDof before = damped.motion[0].increment();
-        const Mat2 stretched = damped.stretched(0);
+        const Mat2 stretched = damped.gradient_increment(0);
         predict(damped, scheme, time_step);
         const Vec2 way = before.u + damped.motion[0].increment().u;
-        const Mat2 way_of_gradient = stretched + damped.stretched(0);
+        const Mat2 way_of_gradient = stretched + damped.gradient_increment(0);
         const double on_centroid = dot(d, way);
         const double turning = contract(on_gradient, way_of_gradient);
         const double rounding = 1e-13 * (norm(d) * norm(way) + norm(on_gradient) * norm(way_of_gradient));

@@ -111,7 +111,7 @@ Spin spin_slab(double modulus, Elasticity elasticity, int steps_per_turn, int tu
   double energy_0 = 0.0;
   for (int k = 0; k < turns * steps_per_turn; ++k) {
     predict(run.system, run.scheme, run.time_step);
-    const Mat2 stretched = run.system.stretched(0);
+    const Mat2 stretched = run.system.gradient_increment(0);
     const Mat2 rate = (1.0 / run.time_step) * stretched;
     const Mat2 dyad = rate * d.second_moment * transposed(d.trial);
     const double momentum = dyad.yx - dyad.xy;

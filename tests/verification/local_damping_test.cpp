@@ -48,7 +48,7 @@ std::vector<Taken> taken_in_step(const BlockSystem &blocks) {
   std::vector<Taken> taken;
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     taken.push_back({blocks.contact[row].damping.u, blocks.deformation_of(row).contact.damping,
-                     blocks.motion[row].step, blocks.stretched(row)});
+                     blocks.motion[row].step, blocks.gradient_increment(row)});
   }
   return taken;
 }

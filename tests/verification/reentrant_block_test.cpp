@@ -225,7 +225,7 @@ Momentum momentum(const Simulation &simulation) {
     double spin = p.inertia * v.r;
     if (blocks.is_deformable(row)) {
       const Deformation &d = blocks.deformation_of(row);
-      const Mat2 dyad = rate * (blocks.stretched(row) * d.second_moment * transposed(d.trial));
+      const Mat2 dyad = rate * (blocks.gradient_increment(row) * d.second_moment * transposed(d.trial));
       spin = dyad.yx - dyad.xy;
     }
     sum.angular += p.mass * cross(arm, v.u) + spin;

@@ -283,7 +283,7 @@ struct BlockSystem {
                                                  : Mat2{first.x, first.y, -first.y, first.x}};
   }
   /// F*_n - F*_{n-1} of a deformable row.
-  [[nodiscard]] Mat2 stretched(std::size_t row) const {
+  [[nodiscard]] Mat2 gradient_increment(std::size_t row) const {
     return increment_of(row).turn * deformation_of(row).trial;
   }
   [[nodiscard]] bool has_matrix(std::size_t row) const { return matrix_begin[row + 1] > matrix_begin[row]; }
