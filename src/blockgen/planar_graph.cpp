@@ -107,7 +107,7 @@ public:
   /// Faces of the arrangement of these lines.
   std::vector<PlaneFace> faces_of(const Geometry &lines) const {
     GEOSGeometry *plain = GEOSUnaryUnion_r(handle_, lines.get());
-    if (plain == nullptr) { // rounding has led plain noding astray: once more on a grid
+    if (plain == nullptr) { // rounding has misled plain noding, so node again on a grid
       plain = GEOSUnaryUnionPrec_r(handle_, lines.get(), grid_of(lines));
     }
     const Geometry noded = own(plain);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -286,6 +287,57 @@ TEST(Callbacks, AreTakenByNoModuleOfTheStep) {
     }
   }
   EXPECT_EQ(seen, lower);
+}
+
+/// Words that the product does not use, and what it says instead.
+const std::map<std::string, std::string> banned_words{
+    {"own_step", "block_solve"},
+    {"OwnStep", "BlockSolve"},
+    {"restless", "rows_to_check"},
+    {"calm", "safe_motion, settled"},
+    {"note_broken", "add_broken"},
+    {"strangers", "pairs without a region"},
+    {"strangers_", "without_region_"},
+    {"LaneSide", "LaneChain"},
+    {"PairSides", "PairChains"},
+    {"sides_", "edges_"},
+    {"astray", "moved_beyond_sag"},
+    {"press", "apply_in_situ_stress; surfaces push"},
+    {"pressed_", "in_situ_overlap_"},
+    {"size_up", "find_model_sizes"},
+    {"steps_between_looks", "steps_between_verdicts"},
+    {"Front", "PairGroup"},
+};
+
+/// One line for each banned word of a file.
+std::vector<std::string> banned_in(const std::string &path, const std::string &text) {
+  const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  std::vector<std::string> found;
+  auto begin = std::find_if(text.begin(), text.end(), is_letter);
+  while (begin != text.end()) {
+    const auto end = std::find_if_not(begin, text.end(), is_letter);
+    if (const auto word = banned_words.find(std::string(begin, end)); word != banned_words.end()) {
+      found.push_back(path + ":" + std::to_string(1 + std::count(text.begin(), begin, '\n')) + ": '" +
+                      word->first + "', say " + word->second);
+    }
+    begin = std::find_if(end, text.end(), is_letter);
+  }
+  return found;
+}
+
+TEST(Words, AreThoseOfTheMethod) {
+  for (const auto &[path, text] : sources()) {
+    for (const std::string &fault : banned_in(path, text)) {
+      ADD_FAILURE() << fault;
+    }
+  }
+}
+
+TEST(Words, BannedOnesAreSeen) {
+  EXPECT_EQ(banned_in("a.cpp", "int x;\nint calm = 1; // press\n"),
+            (std::vector<std::string>{"a.cpp:2: 'calm', say safe_motion, settled",
+                                      "a.cpp:2: 'press', say apply_in_situ_stress; surfaces push"}));
+  EXPECT_TRUE(banned_in("a.cpp", "double pressure = calms_down;").empty());
 }
 
 TEST(TopLevel, HoldsWhatIsPrescribedOnly) {

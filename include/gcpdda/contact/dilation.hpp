@@ -38,7 +38,7 @@
 // time step covers (dynamics/frequency_bound.hpp). The leapfrog is neutral for it.
 //
 // The dashpot along the normal sees the velocities without the opening, tan(psi) times the sliding: it damps
-// how the surfaces press on each other, and does not hold a block down that its joint lifts.
+// how the surfaces push on each other, and does not hold a block down that its joint lifts.
 //
 // The first opening of a region is taken one step late, and a region of several on a re-entrant block keeps
 // one of its own: it is found among those of the moved blocks by its stretches and its place.
