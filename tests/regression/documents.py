@@ -4,7 +4,7 @@
 Links: every relative link, anchor and picture of every Markdown page of the repository exists.
 
 Commands and scenes: README.md and the pages under run/ are followed from top to bottom, each in a temporary folder that
-holds a copy of run/ and the build folder. A comment before a fenced block says what the block is:
+holds a copy of run/ and the build folder. A comment before a block of code says what the block is:
 
     <!-- file: NAME -->             the block is saved as NAME; a later command of the page uses it
     <!-- fragment of SCENE -->      the toml block is added to SCENE, tables are merged, entries of [[...]] follow those of
@@ -13,10 +13,10 @@ holds a copy of run/ and the build folder. A comment before a fenced block says 
                                     ensemble, and other programs only parse their options
     <!-- too large for a test -->   the same for scenes whose blocks take long to cut: all programs only parse their options
 
-A toml block without such a comment is a failure. A command of a sh block is run where it begins with a program of RUN; a
-script of the repository must exist; other commands (sbatch, srun) are not run. A command ends with exit code 0, or with N
-where `# exit code N` follows it. The lines of a text block are printed, in this order, by the sh block before it; `...`
-stands for any text.
+A toml block without such a comment is a failure. Indented blocks are sh blocks. A command of a sh block is run where it
+begins with a program of RUN; a script of the repository must exist; other commands (sbatch, srun) are not run. A command
+ends with exit code 0, or with N where `# exit code N` follows it. The lines of a text block are printed, in this order, by
+the sh block before it; `...` stands for any text.
 """
 
 import argparse
@@ -89,25 +89,30 @@ def wrong_links(page):
 
 
 class Block:
-    """A fenced block of a page with the comment before it."""
+    """A fenced block of a page with the comment before it, or an indented one, which is a sh block."""
 
     def __init__(self, kind, comment, line):
         self.kind, self.comment, self.line, self.text = kind, comment, line, ""
 
 
-def fenced_blocks(page):
-    blocks, inside, comment = [], False, ""
+def code_blocks(page):
+    blocks, fenced, indented, comment, before = [], False, False, "", ""
     for number, line in enumerate(page.read_text().splitlines(), 1):
-        if inside and line.strip() == "```":
-            inside, comment = False, ""
-        elif inside:
+        is_code = line.startswith("    ") and (indented or not before.strip())
+        if not fenced and is_code and not indented:
+            blocks.append(Block("sh", comment, number))
+        indented = not fenced and is_code
+        if fenced and line.strip() == "```":
+            fenced, comment = False, ""
+        elif fenced or indented:
             blocks[-1].text += line + "\n"
         elif line.strip().startswith("```"):
             blocks.append(Block(line.strip()[3:], comment, number + 1))
-            inside = True
+            fenced = True
         elif line.strip():
             match = re.fullmatch(r"<!--\s*(.*?)\s*-->", line.strip())
             comment = match[1] if match else ""
+        before = line
     return blocks
 
 
@@ -153,7 +158,7 @@ class Page:
             (self.folder / "build").symlink_to(self.build)
             shutil.copytree(SOURCE / "run", self.folder / "run",
                             ignore=shutil.ignore_patterns("results", "pictures", "study", "*.md"))
-            for block in fenced_blocks(self.path):
+            for block in code_blocks(self.path):
                 self.check(block)
             for name, line in self.unused.items():
                 self.fail(line, f"no command of the page after it names {name}")
@@ -240,7 +245,7 @@ class Page:
         self.printed += done.stdout
         if done.returncode != expected:
             end = "\n    ".join(done.stdout.splitlines()[-15:])
-            self.fail(line, f"exit code {done.returncode} instead of {expected}: {command}\n    {end}")
+            self.fail(line, f"exit code {done.returncode} instead of {expected}: {command.strip()}\n    {end}")
 
     def check_printed(self, block):
         rest = self.printed
