@@ -9,6 +9,7 @@ A page is a template of run/study/pages/ in which every {{name}} is replaced by 
 the CSV files in run/results/studies. recorded.csv holds date and machine of each study, which a table's last line repeats.
 """
 
+import argparse
 import csv
 import datetime
 import difflib
@@ -72,17 +73,19 @@ def record(study):
 
 
 def main():
-    asked = sys.argv[1:]
-    if asked[:1] == ["--record"] and len(asked) == 2:
-        record(asked[1])
-    elif asked not in ([], ["--check"]):
-        sys.exit(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    choice = parser.add_mutually_exclusive_group()
+    choice.add_argument("--check", action="store_true")
+    choice.add_argument("--record", metavar="STUDY")
+    asked = parser.parse_args()
+    if asked.record:
+        record(asked.record)
     differ = False
     for path, text in written().items():
         old = path.read_text() if path.exists() else ""
         if old == text:
             continue
-        if asked == ["--check"]:
+        if asked.check:
             differ = True
             sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), text.splitlines(True), str(path), "generated", n=1))
         else:

@@ -2,6 +2,7 @@
 """plot_speed.py FOLDER: draws FOLDER/speed.csv and speed_steps.csv as speed.png and .svg: what a contact and step costs, what a
 block needs of memory, and how much time a settled pile covers in a second of CPU time."""
 
+import argparse
 import csv
 import sys
 from pathlib import Path
@@ -77,7 +78,9 @@ def draw_time(axes, rows):
 
 
 def main():
-    folder = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    folder = parser.parse_args().folder
     rows = read(folder / "speed.csv")
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12.5, 3.9))
     draw_costs(left, rows)
