@@ -291,7 +291,7 @@ void Simulation::doubt_stiffness(double pressure, double size) {
   }
 }
 
-// Contacts press a thin block together by as much as a thick one.
+// Contacts push a thin block together by as much as a thick one.
 void Simulation::doubt_slivers(std::span<const SceneBlock> slab) {
   if (!scene_.in_situ.present || !scene_.region.present()) {
     return;
