@@ -74,6 +74,46 @@ CellLists fill_cells(const SearchGrid &grid, std::span<const Aabb> boxes) {
   return cells;
 }
 
+/// visit(p, q) for all pairs p < q of boxes that meet, p one of the first `num_leading` ones.
+/// @param num_in_grid  boxes that the background grid is laid over: the leading ones and perhaps more
+template <class Visit>
+void for_meeting(std::span<const Aabb> boxes, std::size_t num_leading, std::size_t num_in_grid,
+                 Visit &&visit) {
+  const SearchGrid grid = make_grid(boxes, num_in_grid);
+  const CellLists cells = fill_cells(grid, boxes);
+  for (std::size_t cell = 0; cell + 1 < cells.begin.size(); ++cell) {
+    for (std::uint32_t i = cells.begin[cell]; i < cells.begin[cell + 1]; ++i) {
+      const std::uint32_t p = cells.rows[i];
+      if (p >= num_leading) {
+        break; // rows ascend within a cell: no leading box follows
+      }
+      for (std::uint32_t j = i + 1; j < cells.begin[cell + 1]; ++j) {
+        const std::uint32_t q = cells.rows[j];
+        if (!boxes[p].meets(boxes[q])) {
+          continue;
+        }
+        // Several cells may hold the pair: the one with the lower left corner of the common box counts.
+        const Vec2 corner{std::max(boxes[p].low.x, boxes[q].low.x), std::max(boxes[p].low.y, boxes[q].low.y)};
+        if (static_cast<std::size_t>(grid.row(corner.y) * grid.columns + grid.column(corner.x)) == cell) {
+          visit(p, q);
+        }
+      }
+    }
+  }
+}
+
+std::pair<BlockIndex, BlockIndex> by_id(const BlockSystem &system, std::uint32_t p, std::uint32_t q) {
+  const bool ordered = system.properties[p].id < system.properties[q].id;
+  return {BlockIndex{ordered ? p : q}, BlockIndex{ordered ? q : p}};
+}
+
+void sort_by_id(const BlockSystem &system, std::vector<std::pair<BlockIndex, BlockIndex>> &pairs) {
+  const auto key = [&](const std::pair<BlockIndex, BlockIndex> &pair) {
+    return std::pair(system.properties[pair.first.value].id, system.properties[pair.second.value].id);
+  };
+  std::sort(pairs.begin(), pairs.end(), [&](const auto &a, const auto &b) { return key(a) < key(b); });
+}
+
 } // namespace
 
 std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin) {
@@ -98,34 +138,30 @@ std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &sys
   if (system.num_owned == 0) {
     return pairs;
   }
-  const SearchGrid grid = make_grid(boxes, system.num_mobile());
-  const CellLists cells = fill_cells(grid, boxes);
-  for (std::size_t cell = 0; cell + 1 < cells.begin.size(); ++cell) {
-    for (std::uint32_t i = cells.begin[cell]; i < cells.begin[cell + 1]; ++i) {
-      const std::uint32_t p = cells.rows[i];
-      if (p >= system.num_owned) {
-        break; // rows ascend within a cell: no owned block follows
-      }
-      for (std::uint32_t j = i + 1; j < cells.begin[cell + 1]; ++j) {
-        const std::uint32_t q = cells.rows[j];
-        if (!boxes[p].meets(boxes[q]) ||
-            (system.properties[p].keeps_its_velocity() && system.properties[q].keeps_its_velocity())) {
-          continue;
-        }
-        // Several cells may hold the pair: the one with the lower left corner of the common box counts.
-        const Vec2 corner{std::max(boxes[p].low.x, boxes[q].low.x), std::max(boxes[p].low.y, boxes[q].low.y)};
-        if (static_cast<std::size_t>(grid.row(corner.y) * grid.columns + grid.column(corner.x)) != cell) {
-          continue;
-        }
-        const bool ordered = system.properties[p].id < system.properties[q].id;
-        pairs.emplace_back(BlockIndex{ordered ? p : q}, BlockIndex{ordered ? q : p});
-      }
+  for_meeting(boxes, system.num_owned, system.num_mobile(), [&](std::uint32_t p, std::uint32_t q) {
+    if (!system.properties[p].keeps_its_velocity() || !system.properties[q].keeps_its_velocity()) {
+      pairs.push_back(by_id(system, p, q));
+    }
+  });
+  sort_by_id(system, pairs);
+  return pairs;
+}
+
+std::vector<std::pair<BlockIndex, BlockIndex>> find_kept_pairs(const BlockSystem &system) {
+  std::vector<std::pair<BlockIndex, BlockIndex>> pairs;
+  std::vector<std::uint32_t> rows;
+  std::vector<Aabb> boxes;
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    if (system.properties[row].keeps_its_velocity()) {
+      rows.push_back(static_cast<std::uint32_t>(row));
+      boxes.push_back(reach_boxes(system, 0.0, row, row + 1).front());
     }
   }
-  const auto key = [&](const std::pair<BlockIndex, BlockIndex> &pair) {
-    return std::pair(system.properties[pair.first.value].id, system.properties[pair.second.value].id);
-  };
-  std::sort(pairs.begin(), pairs.end(), [&](const auto &a, const auto &b) { return key(a) < key(b); });
+  if (!rows.empty()) {
+    for_meeting(boxes, rows.size(), rows.size(),
+                [&](std::uint32_t p, std::uint32_t q) { pairs.push_back(by_id(system, rows[p], rows[q])); });
+  }
+  sort_by_id(system, pairs);
   return pairs;
 }
 

@@ -1,95 +1,12 @@
-// The consistent initial state of a Simulation, and what is wrong with it.
+// The consistent initial state of a Simulation.
 
 #include "gcpdda/contact/bonds.hpp"
 #include "gcpdda/contact/initial_friction.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace gcpdda {
-
-namespace {
-
-struct InitialOverlap {
-  std::int64_t lower = 0;
-  std::int64_t higher = 0;
-  double depth = 0.0;
-  double width = 0.0; ///< of the narrower block, m
-};
-
-constexpr double deepest_share = 0.05;
-
-bool is_too_deep(const InitialOverlap &overlap) {
-  return overlap.depth > deepest_share * overlap.width;
-}
-
-Diagnostic too_deep(const Scene &scene, const InitialOverlap &overlap) {
-  return {Severity::error, block_position(scene, overlap.higher),
-          fmt::format("blocks '{}' and '{}' overlap by {:.3g} m", block_name(scene, overlap.lower),
-                      block_name(scene, overlap.higher), overlap.depth),
-          fmt::format("more than 5 % of the narrower block's width {:.3g} m", overlap.width),
-          "move or trim one of them"};
-}
-
-} // namespace
-
-// Each rank tells its too deep pairs and the deepest of the others; all make the same list of them.
-void Simulation::check_initial_overlaps() {
-  std::vector<InitialOverlap> mine;
-  InitialOverlap deepest;
-  for_regions(0, candidates_.pairs.size(), [&](std::uint32_t number, std::span<const RegionForce> regions) {
-    const CandidatePair &pair = candidates_.pairs[number];
-    if (!counts_here(pair)) {
-      return;
-    }
-    const BlockProperties &a = blocks_.properties[pair.lower.value];
-    const BlockProperties &b = blocks_.properties[pair.higher.value];
-    for (const RegionForce &force : regions) {
-      const InitialOverlap overlap{a.id.value, b.id.value, force.overlap, std::min(a.width, b.width)};
-      if (is_too_deep(overlap)) {
-        mine.push_back(overlap);
-      } else if (overlap.depth > deepest.depth) {
-        deepest = overlap;
-      }
-    }
-  });
-  mine.push_back(deepest);
-  std::vector<InitialOverlap> all;
-  for (const auto &from_rank : communicator_.all_gather(mine)) {
-    all.insert(all.end(), from_rank.begin(), from_rank.end());
-  }
-  std::sort(all.begin(), all.end(), [](const InitialOverlap &a, const InitialOverlap &b) {
-    return std::pair(a.lower, a.higher) < std::pair(b.lower, b.higher);
-  });
-  constexpr std::size_t most = 100;
-  std::size_t count = 0;
-  for (const InitialOverlap &overlap : all) {
-    if (!is_too_deep(overlap)) {
-      deepest = overlap.depth > deepest.depth ? overlap : deepest;
-    } else if (++count <= most) {
-      notes_.push_back(too_deep(scene_, overlap));
-    }
-  }
-  if (count > most) {
-    notes_.push_back({Severity::error,
-                      {},
-                      fmt::format("{} more pairs of blocks overlap too deep", count - most),
-                      "",
-                      "move or trim one of each pair"});
-  }
-  if (count > 0) {
-    local_fault_.reset(); // told better here
-  } else if (deepest.depth > 0.0) {
-    notes_.push_back(
-        {Severity::info,
-         {},
-         fmt::format("the deepest initial overlap is {:.3g} m between blocks '{}' and '{}'", deepest.depth,
-                     block_name(scene_, deepest.lower), block_name(scene_, deepest.higher)),
-         "initial overlaps are contacts",
-         ""});
-  }
-}
 
 // The blocks of a bond must stay candidates until it breaks.
 void Simulation::check_bonds() {

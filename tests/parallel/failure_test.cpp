@@ -1,8 +1,11 @@
 // A run that cannot go on: all ranks stop in the same step with the same words and leave files that can be
 // read.
 
+#include "gcpdda/geometry/polygon.hpp"
 #include "gcpdda/io/run_comparison.hpp"
+#include "gcpdda/simulation/balance.hpp"
 #include "gcpdda/simulation/run.hpp"
+#include "gcpdda/simulation/simulation.hpp"
 #include "shared_folder.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"
@@ -172,6 +175,38 @@ TEST(Failure, BeforeTheFirstStep) {
   const FailedRuns runs(toml);
   EXPECT_EQ(runs.time(), 0.0);
   EXPECT_NE(runs.message().find("'bullet'"), std::string::npos) << runs.message();
+}
+
+// The cells are laid between the centroids, so one of the twins is on each side.
+TEST(InitialOverlaps, OfTwinsOnTwoRanksAreRefusedOnAllRanks) {
+  const Communicator world = Communicator::world();
+  for (const double by : {1e-6, 1e-3}) {
+    const auto one = rectangle({-0.5 - 0.5 * by, 0.0}, {0.5 - 0.5 * by, 1.0});
+    const auto other = rectangle({-0.5 + 0.5 * by, 0.0}, {0.5 + 0.5 * by, 1.0});
+    std::string toml = scene_head(0.1, 1e-3, 1e8);
+    toml.resize(toml.find("[[monitor]]"));
+    const Scene scene = testing::scene_of(
+        toml + testing::block_toml("floor", rectangle({-5.0, -2.0}, {5.0, 0.0}), "fixed = true") +
+        testing::block_toml("one", one) + testing::block_toml("other", other));
+    const std::vector<Vec2> centroids =
+        world.is_root() ? std::vector<Vec2>{polygon_moments(one).centroid, polygon_moments(other).centroid}
+                        : std::vector<Vec2>{};
+    DomainMap map;
+    map.grid = lay_grid(world, centroids);
+    const std::vector<std::int64_t> equal(centroids.size(), 1);
+    map = partition_cells(map.grid, weights_by_cell(world, map.grid, centroids, equal), world.size());
+    if (world.size() > 1) {
+      EXPECT_NE(map.rank_of(polygon_moments(one).centroid), map.rank_of(polygon_moments(other).centroid))
+          << "the scene must be able to tell";
+    }
+    try {
+      const Simulation simulation(world, scene);
+      ADD_FAILURE() << "twins moved by " << by << " m were accepted";
+    } catch (const SceneError &error) {
+      ASSERT_EQ(error.diagnostics().size(), 1U);
+      EXPECT_EQ(error.diagnostics()[0].what, "blocks 'one' and 'other' lie at the same place");
+    }
+  }
 }
 
 } // namespace

@@ -98,6 +98,61 @@ TEST_P(SceneFaults, OfDeepInitialOverlapsNameBothBlocks) {
   expect_faults({"error: blocks 'floor' and 'a' overlap by 0.06 m", "error: blocks 'b' and 'c' overlap by "});
 }
 
+// Where outlines coincide, the depth of the overlap vanishes: the area tells.
+TEST_P(SceneFaults, OfABlockThatIsThereTwice) {
+  const std::vector<Vec2> notched{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 2.0}, {0.0, 2.0}};
+  std::string toml = head_scene(1e8, 1e-3, 0.01);
+  const auto add_twins = [&](const std::string &name, const std::vector<Vec2> &outline, double x, Vec2 by,
+                             const std::string &extra) {
+    toml += testing::block_toml(name, testing::placed(outline, 0.0, {x, 0.0}), extra);
+    toml += testing::block_toml(name + "2", testing::placed(outline, 0.0, Vec2{x, 0.0} + by), extra);
+  };
+  const std::vector<Vec2> square = rectangle({0.0, 0.0}, {1.0, 1.0});
+  add_twins("exact", square, -18.0, {}, "");
+  add_twins("micron", square, -15.0, {1e-6, 0.0}, "");
+  add_twins("millimetre", square, -12.0, {1e-3, 0.0}, "");
+  add_twins("notched", notched, -9.0, {0.0, 1e-3}, "");
+  add_twins("support", square, -6.0, {1e-3, 1e-3}, "fixed = true");
+  add_twins("driven", square, -3.0, {0.0, 0.0}, "prescribed_velocity = [0.1, 0.0, 0.0]");
+  toml += testing::block_toml("host", rectangle({0.0, 0.0}, {1.0, 1.0}));
+  toml += testing::block_toml("guest", rectangle({0.0, 0.0}, {1.0, 0.6}));
+  toml += testing::block_toml("core", rectangle({6.2, 0.2}, {6.8, 0.8}));
+  toml += testing::block_toml("brick", rectangle({3.0, 0.0}, {4.0, 1.0}));
+  toml += "[[wall]]\nname = \"left\"\nmaterial = \"rock\"\norigin = [3.0, 0.0]\nrows = 1\ncolumns = "
+          "4\nblock_size = [1.0, 1.0]\n";
+  toml += "[[wall]]\nname = \"right\"\nmaterial = \"rock\"\norigin = [4.0, 0.0]\nrows = 1\ncolumns = "
+          "2\nblock_size = [1.0, 1.0]\n";
+  folder_.write("scene.toml", toml);
+  expect_faults({"blocks 'exact' and 'exact2' lie at the same place, 100 % of the larger one's area",
+                 "blocks 'micron' and 'micron2' lie at the same place",
+                 "blocks 'millimetre' and 'millimetre2' lie at the same place, 99.9 % of the larger",
+                 "blocks 'notched' and 'notched2' lie at the same place",
+                 "blocks 'support' and 'support2' lie at the same place",
+                 "blocks 'driven' and 'driven2' lie at the same place",
+                 "blocks 'host' and 'guest' overlap by 0.6 m2, that is 100 % of the smaller one's area",
+                 "blocks 'core' and 'left.0.3' overlap by 0.36 m2",
+                 "blocks 'brick' and 'left.0.0' lie at the same place",
+                 "blocks 'left.0.1' and 'right.0.0' lie at the same place",
+                 "blocks 'left.0.2' and 'right.0.1' lie at the same place"});
+}
+
+// Supports that share an edge or a good part of their area, and blocks at rest on them, are no slips.
+TEST(InitialOverlap, OfSupportsAndOfBlocksAtRestIsNoFault) {
+  const WorkFolder folder;
+  const std::string fixed = "fixed = true";
+  folder.write("scene.toml",
+               head_scene(1e8, 1e-3, 0.01) + testing::block_toml("wall", rectangle({-9, 0}, {-5, 4}), fixed) +
+                   testing::block_toml("next", rectangle({-5, 0}, {-4, 4}), fixed) +
+                   testing::block_toml("within", rectangle({-9, 0}, {-7, 4}), fixed) +
+                   testing::block_toml("across", rectangle({-9.5, 1}, {-4.2, 4}), fixed) +
+                   testing::block_toml(
+                       "tray", {{0, 0}, {3, 0}, {3, 1}, {2, 1}, {2, 0.5}, {1, 0.5}, {1, 1}, {0, 1}}, fixed) +
+                   testing::block_toml("lying", rectangle({0.99, 0.49}, {2.01, 1.5})));
+  const Outcome outcome = run_gcpdda(0, {"inspect", "scene.toml"}, folder);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_of(outcome.err, "error"), 0) << outcome.err;
+}
+
 TEST(InitialOverlap, ThatIsThinIsAContact) {
   const WorkFolder folder;
   folder.write("scene.toml", head_scene(1e8, 1e-3, 0.01) +

@@ -67,6 +67,24 @@ std::vector<std::vector<Vec2>> random_boxes(std::mt19937 &engine, int count, dou
   return boxes;
 }
 
+// Those that no contact acts between: find_pairs() leaves them out.
+TEST(FindKeptPairs, AreThoseOfFixedBlocksWhoseBoxesMeet) {
+  std::mt19937 engine(29);
+  BlockSystem system = testing::system_of({rectangle({0.0, 0.0}, {1.0, 1.0})}, random_boxes(engine, 60, 8.0));
+  const std::vector<Aabb> boxes = reach_boxes(system, 0.0);
+  Pairs expected;
+  for (std::size_t p = system.first_fixed(); p < system.num_rows(); ++p) {
+    for (std::size_t q = p + 1; q < system.num_rows(); ++q) {
+      if (boxes[p].meets(boxes[q])) {
+        expected.emplace_back(BlockIndex{static_cast<std::uint32_t>(p)},
+                              BlockIndex{static_cast<std::uint32_t>(q)});
+      }
+    }
+  }
+  EXPECT_GE(expected.size(), 30U) << "the scene must be able to tell";
+  EXPECT_EQ(find_kept_pairs(system), expected);
+}
+
 TEST(FindPairs, AgreesWithAllPairs) {
   std::mt19937 engine(51);
   for (int trial = 0; trial < 30; ++trial) {

@@ -1,6 +1,7 @@
 #include "gcpdda/geometry/polygon.hpp"
 
 #include "gcpdda/geometry/aabb.hpp"
+#include "gcpdda/geometry/common_area.hpp"
 
 #include <gtest/gtest.h>
 
@@ -264,6 +265,34 @@ TEST(ReentrantVertices, AreTheRightTurns) {
   EXPECT_EQ(reentrant_vertices(Polygon{{0.0, 0.0}, {0.5, 1e-13}, {1.0, 0.0}, {0.5, 1.0}}),
             std::vector<bool>(4, false))
       << "a dent of rounding";
+}
+
+TEST(CommonArea, IsThatOfTheIntersection) {
+  EXPECT_DOUBLE_EQ(common_area(unit_square, unit_square), 1.0);
+  EXPECT_DOUBLE_EQ(common_area(unit_square, moved(unit_square, {0.25, 0.5})), 0.375);
+  EXPECT_DOUBLE_EQ(common_area(unit_square, moved(unit_square, {1.0, 0.0})), 0.0);
+  EXPECT_DOUBLE_EQ(common_area(unit_square, moved(unit_square, {3.0, 0.5})), 0.0);
+  EXPECT_DOUBLE_EQ(common_area(l_shape, l_shape), 4.0);
+  EXPECT_DOUBLE_EQ(common_area(l_shape, right_triangle), 31.0 / 12.0);
+  EXPECT_DOUBLE_EQ(common_area(right_triangle, l_shape), 31.0 / 12.0);
+  EXPECT_DOUBLE_EQ(common_area(l_shape, moved(unit_square, {1.0, 1.0})), 0.0) << "in the notch";
+}
+
+TEST(CommonArea, ChangesLittleWithTheVertices) {
+  for (const double by : {1e-12, 1e-9, 1e-6, 1e-3}) {
+    for (const Vec2 direction : {Vec2{1.0, 0.0}, Vec2{0.0, 1.0}, Vec2{-0.6, 0.8}}) {
+      // No more than the perimeter times the shift is lost, and rounding.
+      EXPECT_NEAR(common_area(l_shape, moved(l_shape, by * direction)), 4.0, 10.0 * by + 1e-14);
+    }
+  }
+}
+
+TEST(CommonArea, OfRoundPolygonsIsThatOfALens) {
+  const Polygon circle = regular(2000, 1.0);
+  const double lens = 2.0 * std::acos(0.5) - 0.5 * std::sqrt(3.0); // of unit circles at distance 1
+  EXPECT_NEAR(common_area(circle, moved(circle, {1.0, 0.0})), lens, 1e-5) << "chords lie inside the arc";
+  EXPECT_NEAR(common_area(moved(circle, {1e6, 1e6}), moved(circle, {1e6 + 1.0, 1e6})),
+              common_area(circle, moved(circle, {1.0, 0.0})), 1e-8);
 }
 
 } // namespace

@@ -161,6 +161,10 @@ std::vector<Aabb> reach_boxes(const BlockSystem &system, double skin, std::size_
 std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &system,
                                                           std::span<const Aabb> boxes);
 
+/// All pairs of rows of which none can be moved, fixed and driven ones, and whose boxes meet, as find_pairs()
+/// lists them. No contact acts between them.
+std::vector<std::pair<BlockIndex, BlockIndex>> find_kept_pairs(const BlockSystem &system);
+
 /// The candidates of those pairs, but for pairs of convex rigid blocks that a line of one keeps apart, and
 /// the memory of each taken from `memory` (duplicates allowed).
 ///
