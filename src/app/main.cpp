@@ -15,6 +15,7 @@
 #include "gcpdda/simulation/restart.hpp"
 #include "gcpdda/simulation/run.hpp"
 #include "gcpdda/simulation/safety_factor.hpp"
+#include "gcpdda/simulation/scene_size.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 #include "gcpdda/simulation/stop_signal.hpp"
 
@@ -96,6 +97,20 @@ int with_scene(const Communicator &world, const Arguments &arguments, const std:
   }
 }
 
+/// Says before the work what the scene takes, if that is much; throws SceneError where it is too much.
+/// @param copies  of the scene that are held at one time
+void judge_before_work(const Communicator &world, const Arguments &arguments, const Scene &scene,
+                       double copies = 1.0) {
+  Diagnostics found = judge_size(world, scene, copies);
+  if (has_errors(found)) {
+    throw SceneError(found);
+  }
+  for (Diagnostic &d : found) {
+    d.where.file = arguments.scene;
+  }
+  print(world, found);
+}
+
 template <class Work> int with_scene(const Communicator &world, const Arguments &arguments, Work &&work) {
   return with_scene(world, arguments, read_scene_on_root(world, arguments.scene), work);
 }
@@ -108,6 +123,7 @@ std::filesystem::path result_folder(const Arguments &arguments, const std::strin
 int run(const Communicator &world, const Arguments &arguments) {
   catch_stop_signal();
   return with_scene(world, arguments, [&](const Scene &scene) {
+    judge_before_work(world, arguments, scene);
     RunOptions options;
     options.directory = result_folder(arguments, scene.stem);
     options.overwrite = arguments.overwrite;
@@ -123,6 +139,7 @@ int restart(const Communicator &world, Arguments arguments) {
   unchanged.sets.clear();
   const SceneReading before = read_scene(read_scene_on_root(world, arguments.scene), arguments.scene, {});
   return with_scene(world, has_errors(before.diagnostics) ? unchanged : arguments, [&](const Scene &after) {
+    judge_before_work(world, arguments, after);
     return restart_scene(world, before.scene, after, arguments.directory);
   });
 }
@@ -166,6 +183,7 @@ int fos(const Communicator &world, Arguments arguments) {
     }
   }
   return with_scene(world, arguments, [&](const Scene &scene) {
+    judge_before_work(world, arguments, scene);
     SafetyOptions options;
     options.directory = result_folder(arguments, scene.stem + "_fos");
     options.overwrite = arguments.overwrite;
@@ -184,6 +202,13 @@ std::string identity_of(const std::string &text, const Arguments &arguments) {
   return read_scene(text, arguments.scene, sets).scene.resolved;
 }
 
+/// Groups of ranks that compute members at one time.
+double copies_in(const Ensemble &ensemble, int ranks) {
+  const std::int64_t groups = ensemble.ranks > 0 ? ranks / std::min<std::int64_t>(ensemble.ranks, ranks)
+                                                 : std::min<std::int64_t>(ensemble.count, ranks);
+  return static_cast<double>(std::max<std::int64_t>(1, groups));
+}
+
 int ensemble(const Communicator &world, Arguments arguments) {
   catch_stop_signal();
   if (!arguments.count.empty()) {
@@ -191,6 +216,7 @@ int ensemble(const Communicator &world, Arguments arguments) {
   }
   const std::string text = read_scene_on_root(world, arguments.scene);
   return with_scene(world, arguments, text, [&](const Scene &scene) {
+    judge_before_work(world, arguments, scene, copies_in(scene.ensemble, world.size()));
     print(world, implausible_values(scene)); // members are quiet
     const auto member_scene = [&](const Communicator &group, const std::vector<double> &values) {
       std::vector<std::string> sets = arguments.sets;
@@ -212,6 +238,7 @@ int ensemble(const Communicator &world, Arguments arguments) {
 
 int inspect(const Communicator &world, const Arguments &arguments) {
   return with_scene(world, arguments, [&](const Scene &scene) {
+    judge_before_work(world, arguments, scene);
     const std::string report = inspect_scene(world, scene, {arguments.ranks, arguments.svg});
     if (world.is_root()) {
       std::cout << report << std::flush;
@@ -222,6 +249,10 @@ int inspect(const Communicator &world, const Arguments &arguments) {
 
 int blocks(const Communicator &world, const Arguments &arguments) {
   return with_scene(world, arguments, [&](const Scene &scene) {
+    Scene region = scene; // nothing else is made
+    region.blocks.clear();
+    region.generators.clear();
+    judge_before_work(world, arguments, region);
     return cut_blocks(world, scene, {arguments.svg, arguments.json, arguments.directory});
   });
 }
@@ -347,6 +378,14 @@ int main(int argc, char **argv) {
       MpiScope::abort(file_trouble);
     }
     return file_trouble;
+  } catch (const std::bad_alloc &) {
+    std::cerr << "error: rank " << world.rank()
+              << " has run out of memory, see 'memory' of gcpdda inspect, use more machines, fewer ranks on "
+                 "each or fewer blocks\n";
+    if (world.size() > 1) {
+      MpiScope::abort(internal);
+    }
+    return internal;
   } catch (const std::exception &error) { // seen by this rank alone, perhaps: take the others along
     std::cerr << "internal error on rank " << world.rank() << ": " << error.what() << '\n';
     if (world.size() > 1) {

@@ -1,5 +1,6 @@
 #include "necks.hpp"
 
+#include "gcpdda/geometry/edge_tree.hpp"
 #include "gcpdda/geometry/polygon.hpp"
 
 #include <algorithm>
@@ -27,18 +28,33 @@ bool has_area(const Ring &ring, double rounding) {
   return signed_area(ring) > rounding * length;
 }
 
+/// By how many vertices behind a vertex those edges begin on which it lies, ascending.
+std::vector<std::size_t> edges_at(const Ring &ring, const EdgeTree &tree, std::size_t vertex,
+                                  double rounding) {
+  const std::size_t n = ring.size();
+  std::vector<std::size_t> found;
+  Aabb around;
+  around.include(ring[vertex]);
+  tree.any_meeting(around.inflated(2.0 * rounding), [&](std::size_t edge) {
+    const std::size_t behind = (edge + n - vertex) % n;
+    if (behind >= 1 && behind + 1 < n && is_on(ring[vertex], ring[edge], ring[(edge + 1) % n], rounding)) {
+      found.push_back(behind);
+    }
+    return false;
+  });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 /// The two parts of a ring with a vertex on an edge.
 std::optional<std::array<Ring, 2>> parted(const Ring &ring, double rounding) {
   const std::size_t n = ring.size();
+  const EdgeTree tree(ring);
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 1; k + 1 < n; ++k) { // from the k-th vertex behind this one to the next
-      const auto vertex = [&](std::size_t behind) { return ring[(i + behind) % n]; };
-      if (!is_on(ring[i], vertex(k), vertex(k + 1), rounding)) {
-        continue;
-      }
+    for (const std::size_t k : edges_at(ring, tree, i, rounding)) {
       std::array<Ring, 2> parts{Ring{ring[i]}, Ring{ring[i]}};
       for (std::size_t behind = 1; behind < n; ++behind) {
-        parts[behind <= k ? 0 : 1].push_back(vertex(behind));
+        parts[behind <= k ? 0 : 1].push_back(ring[(i + behind) % n]);
       }
       if (has_area(parts[0], rounding) && has_area(parts[1], rounding)) {
         return parts;

@@ -28,6 +28,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -112,6 +113,15 @@ std::vector<Polygon> convex_parts(std::span<const Vec2> vertex) {
   return parts;
 }
 
+Polygon common_part(Polygon region, const Polygon &other) {
+  for (std::size_t j = 0; j < other.size() && region.size() >= 3; ++j) {
+    const Vec2 a = other[j];
+    const Vec2 along = other[(j + 1) % other.size()] - a;
+    region = keep_positive(region, [&](Vec2 x) { return cross(along, x - a); });
+  }
+  return region;
+}
+
 FieldEnergy::FieldEnergy(std::span<const Vec2> vertex, std::span<const Vec2> normal)
     : vertex_(vertex), normal_(normal), reentrant_(reentrant_vertices(vertex)) {}
 
@@ -153,6 +163,16 @@ FieldEnergy::Features FieldEnergy::near(const Polygon &cell) const {
 
 double FieldEnergy::integrate(const Polygon &region) const {
   return region.size() < 3 ? 0.0 : within_domains(region, near(region), 0);
+}
+
+double FieldEnergy::integrate_among(const Polygon &region, const std::vector<std::size_t> &edges) const {
+  if (region.size() < 3) {
+    return 0.0;
+  }
+  Features features{edges, {}};
+  std::copy_if(edges.begin(), edges.end(), std::back_inserter(features.vertices),
+               [&](std::size_t v) { return reentrant_[v]; });
+  return within_domains(region, features, 0);
 }
 
 /// Cut by the domains of the lines from number `next` on, then of the vertices.

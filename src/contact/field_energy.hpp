@@ -13,12 +13,17 @@ namespace gcpdda {
 /// A polygon cut into triangles by clipping ears; a convex one stays whole.
 std::vector<Polygon> convex_parts(std::span<const Vec2> vertex);
 
+/// The part of a convex polygon inside another one.
+Polygon common_part(Polygon region, const Polygon &other);
+
 /// The integral over convex regions inside a simple polygon; the spans must outlive it.
 class FieldEnergy {
 public:
   FieldEnergy(std::span<const Vec2> vertex, std::span<const Vec2> normal);
 
   [[nodiscard]] double integrate(const Polygon &region) const;
+  /// The same where one of these edges is the nearest to every point of the region.
+  [[nodiscard]] double integrate_among(const Polygon &region, const std::vector<std::size_t> &edges) const;
 
 private:
   /// What may be nearest somewhere in a cell.

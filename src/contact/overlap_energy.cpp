@@ -2,6 +2,7 @@
 
 #include "convex_cut.hpp"
 #include "field_energy.hpp"
+#include "large_overlap.hpp"
 
 #include <algorithm>
 #include <array>
@@ -146,15 +147,6 @@ Outline common_part(Outline region, std::span<const Vec2> vertex, std::span<cons
   return region;
 }
 
-Polygon common_part(Polygon region, const Polygon &other) {
-  for (std::size_t j = 0; j < other.size() && region.size() >= 3; ++j) {
-    const Vec2 a = other[j];
-    const Vec2 along = other[(j + 1) % other.size()] - a;
-    region = keep_positive(region, [&](Vec2 x) { return cross(along, x - a); });
-  }
-  return region;
-}
-
 /// int over the overlap of the field of `block`, over the world. There dA = J dA_ref, so J cancels and the
 /// integral is that of the reference distance over the overlap mapped back.
 double field_energy(const BlockView &block, const BlockView &other) {
@@ -182,6 +174,21 @@ double field_energy(const BlockView &block, const BlockView &other) {
   return sum;
 }
 
+/// The same of blocks with many vertices.
+double large_field_energy(const BlockView &block, const BlockView &other) {
+  const PlainOutline own = block.frame ? without_straight_vertices(block.frame->vertex, block.frame->normal)
+                                       : without_straight_vertices(block.vertex, block.normal);
+  PlainOutline mapped = without_straight_vertices(other.vertex, other.normal);
+  if (block.frame) {
+    mapped.vertex = to_reference(mapped.vertex, *block.frame);
+    for (std::size_t i = 0; i < mapped.vertex.size(); ++i) {
+      const Vec2 along = mapped.vertex[(i + 1) % mapped.vertex.size()] - mapped.vertex[i];
+      mapped.normal[i] = (-1.0 / norm(along)) * perp(along);
+    }
+  }
+  return integrate_by_cells(own, mapped);
+}
+
 /// Of two convex rigid blocks.
 template <class Outline> double rigid_energy(const BlockView &first, const BlockView &second) {
   const Outline region =
@@ -198,6 +205,9 @@ template <class Outline> double rigid_energy(const BlockView &first, const Block
 double overlap_energy(const BlockView &first, const BlockView &second) {
   if (!first.box.meets(second.box)) {
     return 0.0;
+  }
+  if (std::max(first.vertex.size(), second.vertex.size()) > many_vertices) {
+    return large_field_energy(first, second) + large_field_energy(second, first);
   }
   if (!is_convex_and_rigid(first) || !is_convex_and_rigid(second)) {
     return field_energy(first, second) + field_energy(second, first);

@@ -1,11 +1,21 @@
 #include "gcpdda/geometry/mean_width.hpp"
 
+#include "gcpdda/geometry/polygon.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace gcpdda {
 
 double mean_width(double area, std::span<const Vec2> vertices) {
+  constexpr std::size_t many = 64;
+  if (vertices.size() > many) { // the two farthest are corners of the hull
+    const std::vector<Vec2> hull = convex_hull(vertices);
+    if (hull.size() < vertices.size()) {
+      return mean_width(area, hull);
+    }
+  }
   double longest = 0.0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {

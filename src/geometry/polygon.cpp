@@ -1,7 +1,11 @@
 #include "gcpdda/geometry/polygon.hpp"
 
+#include "gcpdda/geometry/edge_tree.hpp"
+
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <tuple>
 
 namespace gcpdda {
 
@@ -50,47 +54,146 @@ double rounding_of(std::span<const Vec2> vertices) {
   return 4.0 * std::numeric_limits<double>::epsilon() * largest;
 }
 
-/// Whether an edge other than those at vertex `from` crosses the way from there to `to`, short of its end.
-bool is_blocked(std::span<const Vec2> vertices, std::size_t from, Vec2 to) {
-  const std::size_t n = vertices.size();
-  const Vec2 v = vertices[from];
-  const Vec2 way = to - v;
-  constexpr double short_of_end = 1e-9;
-  for (std::size_t step = 1; step + 1 < n; ++step) {
-    const Vec2 a = vertices[(from + step) % n];
-    const Vec2 edge = vertices[(from + step + 1) % n] - a;
-    const double from_a = cross(way, a - v);
-    const double from_b = cross(way, a + edge - v);
-    const double across = cross(way, edge);
-    if (across != 0.0 && (from_a <= 0.0) != (from_b <= 0.0)) {
-      const double share = cross(a - v, edge) / across;
-      if (share > 0.0 && share < 1.0 - short_of_end) {
+/// From this number of vertices on a look at all pairs costs more than a tree of boxes.
+constexpr std::size_t many_vertices = 64;
+
+/// Distances from a re-entrant vertex to other edges.
+class WidthAtVertex {
+public:
+  /// @param tree  of the polygon, null for one of few vertices
+  WidthAtVertex(std::span<const Vec2> vertices, const EdgeTree *tree, std::size_t vertex)
+      : vertices_(vertices), tree_(tree), vertex_(vertex), v_(vertices[vertex]),
+        in_(v_ - vertices[before(vertex)]), out_(vertices[after(vertex)] - v_) {}
+
+  /// Smallest distance through the interior to an edge that does not start or end at the vertex, if it is
+  /// below this one. The foot of a step's riser lies in the cone's border: material is not narrow there.
+  [[nodiscard]] double narrower_than(double narrowest) const {
+    const auto look_at = [&](std::size_t edge) {
+      if (is_own(edge)) {
+        return;
+      }
+      const Vec2 a = vertices_[edge];
+      const Vec2 along = vertices_[after(edge)] - a;
+      const double share = std::clamp(dot(v_ - a, along) / dot(along, along), 0.0, 1.0);
+      const Vec2 foot = a + share * along;
+      const double width = norm(foot - v_);
+      if (width < narrowest && is_in_cone(foot - v_, width) && !is_blocked(foot)) {
+        narrowest = width;
+      }
+    };
+    if (tree_ == nullptr) {
+      for (std::size_t edge = 0; edge < vertices_.size(); ++edge) {
+        look_at(edge);
+      }
+    } else {
+      tree_->visit_nearest([&](const Aabb &box) { return least_width(box); }, [&] { return narrowest; },
+                           look_at);
+    }
+    return narrowest;
+  }
+
+private:
+  [[nodiscard]] std::size_t before(std::size_t i) const { return i == 0 ? vertices_.size() - 1 : i - 1; }
+  [[nodiscard]] std::size_t after(std::size_t i) const { return i + 1 == vertices_.size() ? 0 : i + 1; }
+  [[nodiscard]] bool is_own(std::size_t edge) const { return edge == vertex_ || edge == before(vertex_); }
+
+  [[nodiscard]] bool is_in_cone(Vec2 way, double length) const {
+    constexpr double strictly = 1e-9;
+    return cross(in_, way) > strictly * norm(in_) * length ||
+           cross(out_, way) > strictly * norm(out_) * length;
+  }
+
+  /// No edge in the box is nearer; infinite where the box lies outside the cone.
+  [[nodiscard]] double least_width(const Aabb &box) const {
+    const bool may_be_in_cone = std::max(most_of_cross(in_, box), most_of_cross(out_, box)) > 0.0;
+    const Vec2 nearest{std::clamp(v_.x, box.low.x, box.high.x), std::clamp(v_.y, box.low.y, box.high.y)};
+    return may_be_in_cone ? (1.0 - 1e-12) * norm(nearest - v_) : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] double most_of_cross(Vec2 along, const Aabb &box) const {
+    return std::max(along.x * (box.low.y - v_.y), along.x * (box.high.y - v_.y)) -
+           std::min(along.y * (box.low.x - v_.x), along.y * (box.high.x - v_.x));
+  }
+
+  /// Whether an edge other than those at the vertex crosses the way from there, short of its end.
+  [[nodiscard]] bool is_blocked(Vec2 to) const {
+    const Vec2 way = to - v_;
+    const auto crosses = [&](std::size_t edge) {
+      constexpr double short_of_end = 1e-9;
+      if (is_own(edge)) {
+        return false;
+      }
+      const Vec2 a = vertices_[edge];
+      const Vec2 along = vertices_[after(edge)] - a;
+      const double from_a = cross(way, a - v_);
+      const double from_b = cross(way, a + along - v_);
+      const double across = cross(way, along);
+      if (across == 0.0 || (from_a <= 0.0) == (from_b <= 0.0)) {
+        return false;
+      }
+      const double share = cross(a - v_, along) / across;
+      return share > 0.0 && share < 1.0 - short_of_end;
+    };
+    if (tree_ != nullptr) {
+      Aabb around;
+      around.include(v_);
+      around.include(to);
+      return tree_->any_meeting(around.inflated(1e-9 * norm(way)), crosses);
+    }
+    for (std::size_t edge = 0; edge < vertices_.size(); ++edge) {
+      if (crosses(edge)) {
         return true;
       }
     }
+    return false;
   }
-  return false;
+
+  std::span<const Vec2> vertices_;
+  const EdgeTree *tree_;
+  std::size_t vertex_;
+  Vec2 v_;
+  Vec2 in_;
+  Vec2 out_;
+};
+
+/// Smallest distance between two parallel lines that enclose a convex polygon, one of them flush with an
+/// edge: the vertex farthest from an edge goes around with the edge.
+double width_of_hull(std::span<const Vec2> hull) {
+  const std::size_t n = hull.size();
+  double narrowest = std::numeric_limits<double>::infinity();
+  std::size_t far = 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 along = hull[(i + 1) % n] - hull[i];
+    const auto distance = [&](std::size_t k) { return cross(along, hull[k % n] - hull[i]) / norm(along); };
+    far = std::max(far, i + 1);
+    while (distance(far + 1) > distance(far)) {
+      ++far;
+    }
+    narrowest = std::min(narrowest, distance(far));
+  }
+  return narrowest;
 }
 
-/// Smallest distance from a re-entrant vertex through the interior to an edge that does not start or end
-/// there. The foot of a step's riser lies in the cone's border: material is not narrow there.
-double width_at(std::span<const Vec2> vertices, std::size_t vertex) {
+/// The same of any polygon of few vertices, from all pairs of them.
+double width_of_few(std::span<const Vec2> vertices, bool convex) {
   const std::size_t n = vertices.size();
-  const Vec2 v = vertices[vertex];
-  const Vec2 in = v - vertices[(vertex + n - 1) % n];
-  const Vec2 out = vertices[(vertex + 1) % n] - v;
-  constexpr double strictly = 1e-9;
+  // The edges of a convex polygon are those of its hull. Otherwise the hull's are among all pairs of
+  // vertices, and no direction is narrower than the narrowest.
+  const std::size_t farthest = convex ? 1 : n - 1;
   double narrowest = std::numeric_limits<double>::infinity();
-  for (std::size_t step = 1; step + 1 < n; ++step) {
-    const Vec2 a = vertices[(vertex + step) % n];
-    const Vec2 edge = vertices[(vertex + step + 1) % n] - a;
-    const double share = std::clamp(dot(v - a, edge) / dot(edge, edge), 0.0, 1.0);
-    const Vec2 foot = a + share * edge;
-    const double width = norm(foot - v);
-    const bool in_cone = cross(in, foot - v) > strictly * norm(in) * width ||
-                         cross(out, foot - v) > strictly * norm(out) * width;
-    if (width < narrowest && in_cone && !is_blocked(vertices, vertex, foot)) {
-      narrowest = width;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t step = 1; step <= farthest; ++step) {
+      const Vec2 along = vertices[(i + step) % n] - vertices[i];
+      const double length = norm(along);
+      double low = 0.0;
+      double high = 0.0;
+      for (const Vec2 p : vertices) {
+        const double d = cross(along, p - vertices[i]);
+        low = std::min(low, d);
+        high = std::max(high, d);
+      }
+      if (length > 0.0) {
+        narrowest = std::min(narrowest, (high - low) / length);
+      }
     }
   }
   return narrowest;
@@ -128,6 +231,8 @@ Moments polygon_moments(std::span<const Vec2> vertices) {
 
 bool is_simple(std::span<const Vec2> vertices) {
   const std::size_t n = vertices.size();
+  const bool are_many = n > many_vertices;
+  const std::optional<EdgeTree> tree = are_many ? std::optional<EdgeTree>(vertices) : std::nullopt;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 a = vertices[i];
     const Vec2 b = vertices[(i + 1) % n];
@@ -136,9 +241,18 @@ bool is_simple(std::span<const Vec2> vertices) {
     if (turn(a, b, c) == 0 && dot(b - a, c - b) < 0.0) {
       return false;
     }
-    for (std::size_t j = i + 2; j < n; ++j) {
+    const auto is_met_by = [&](std::size_t j) {
       const bool closes_ring = i == 0 && j == n - 1;
-      if (!closes_ring && segments_meet(a, b, vertices[j], vertices[(j + 1) % n])) {
+      return j >= i + 2 && !closes_ring && segments_meet(a, b, vertices[j], vertices[(j + 1) % n]);
+    };
+    if (tree) {
+      if (tree->any_meeting(tree->box(i), is_met_by)) {
+        return false;
+      }
+      continue;
+    }
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (is_met_by(j)) {
         return false;
       }
     }
@@ -176,31 +290,39 @@ std::vector<bool> reentrant_vertices(std::span<const Vec2> vertices) {
   return reentrant;
 }
 
+std::vector<Vec2> convex_hull(std::span<const Vec2> points) {
+  std::vector<Vec2> sorted(points.begin(), points.end());
+  std::sort(sorted.begin(), sorted.end(),
+            [](Vec2 a, Vec2 b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+  std::vector<Vec2> hull;
+  const auto add_chain = [&](auto first, auto last) {
+    const std::size_t begin = hull.size();
+    for (auto p = first; p != last; ++p) {
+      while (hull.size() >= begin + 2 &&
+             cross(hull.back() - hull[hull.size() - 2], *p - hull.back()) <= 0.0) {
+        hull.pop_back();
+      }
+      hull.push_back(*p);
+    }
+    hull.pop_back(); // it begins the other chain
+  };
+  add_chain(sorted.begin(), sorted.end());
+  add_chain(sorted.rbegin(), sorted.rend());
+  return hull;
+}
+
 double narrowest_width(std::span<const Vec2> vertices) {
-  const std::size_t n = vertices.size();
-  // The edges of a convex polygon are those of its hull. Otherwise the hull's are among all pairs of
-  // vertices, and no direction is narrower than the narrowest.
   const std::vector<bool> reentrant = reentrant_vertices(vertices);
   const bool convex = std::find(reentrant.begin(), reentrant.end(), true) == reentrant.end();
-  const std::size_t farthest = convex ? 1 : n - 1;
-  double narrowest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t step = 1; step <= farthest; ++step) {
-      const Vec2 along = vertices[(i + step) % n] - vertices[i];
-      const double length = norm(along);
-      double low = 0.0;
-      double high = 0.0;
-      for (const Vec2 p : vertices) {
-        const double d = cross(along, p - vertices[i]);
-        low = std::min(low, d);
-        high = std::max(high, d);
-      }
-      if (length > 0.0) {
-        narrowest = std::min(narrowest, (high - low) / length);
-      }
-    }
+  const bool are_many = vertices.size() > many_vertices;
+  double narrowest = are_many ? width_of_hull(convex_hull(vertices)) : width_of_few(vertices, convex);
+  if (convex) {
+    return narrowest;
+  }
+  const std::optional<EdgeTree> tree = are_many ? std::optional<EdgeTree>(vertices) : std::nullopt;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (reentrant[i]) {
-      narrowest = std::min(narrowest, width_at(vertices, i));
+      narrowest = WidthAtVertex(vertices, tree ? &*tree : nullptr, i).narrower_than(narrowest);
     }
   }
   return narrowest;

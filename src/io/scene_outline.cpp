@@ -35,8 +35,7 @@ bool is_flat(std::span<const Vec2> vertices) {
                      [&](Vec2 p) { return std::abs(cross(farthest, p - origin)) <= bound; });
 }
 
-// Left turns only and once around: such a ring is simple, which spares the O(n^2) test (1 s at 10^4
-// vertices).
+// Left turns only and once around: such a ring is simple, which spares the test of all edges.
 bool turns_left_once(std::span<const Vec2> vertices) {
   constexpr double three_half_turns = 9.42477796076938;
   const std::size_t n = vertices.size();

@@ -389,15 +389,29 @@ private:
   }
 
   void check_numbers(const Section &section) {
-    const double area = signed_area(region_.outline);
-    for (const JointSet &set : region_.joint_sets) {
-      const double traces = expected_traces(set, area);
-      if (traces > most_traces) {
-        source_.faults.add(
-            section.source(), fmt::format("{} would have about {:.3g} joints", set.name, traces),
-            fmt::format("a set has at most {:g}", most_traces), "use a larger spacing or longer traces");
-        return;
+    constexpr double most = 1e8;
+    const auto expect_few = [&](double count, const std::string &who, const char *what, const char *hint) {
+      if (count > most) {
+        fault(section.source(), fmt::format("{} would have about {:.3g} {}", who, count, what),
+              fmt::format("a set has at most {:g} in the bounding box of the region", most), hint);
       }
+      return count <= most;
+    };
+    bool are_few = true;
+    for (const JointSet &set : region_.joint_sets) {
+      are_few &= expect_few(expected_traces(set, region_), set.name, "joints",
+                            "use a larger spacing or longer traces, or look for a vertex gone astray");
+    }
+    for (const VoronoiCells &cells : region_.voronoi) {
+      are_few &= expect_few(expected_cells(cells, region_), "the Voronoi pattern", "cells",
+                            "use a larger size, or look for a vertex gone astray");
+    }
+    for (const BrickPattern &bricks : region_.bricks) {
+      are_few &= expect_few(expected_bricks(bricks, region_), "the brick pattern", "bricks",
+                            "use a larger block_size, or look for a vertex gone astray");
+    }
+    if (!are_few) {
+      return;
     }
     const double blocks = expected_blocks(region_);
     if (blocks > static_cast<double>(region_.max_blocks)) {
@@ -405,8 +419,6 @@ private:
             fmt::format("max_blocks is {}", region_.max_blocks), "use larger spacings, or raise max_blocks");
     }
   }
-
-  static constexpr double most_traces = 1e8;
 
   SceneSource source_;
   Materials *materials_;

@@ -1,7 +1,9 @@
 #include "gcpdda/model/rock_region.hpp"
 
+#include "gcpdda/geometry/aabb.hpp"
 #include "gcpdda/geometry/polygon.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -25,11 +27,46 @@ double share_of_traces(const JointSet &set) {
   return set.through_going ? 1.0 : set.trace.mean / (set.trace.mean + set.gap.mean);
 }
 
+/// Width of a polygon in a direction.
+double width_along(const std::vector<Vec2> &outline, Vec2 direction) {
+  double low = dot(outline[0], direction);
+  double high = low;
+  for (const Vec2 p : outline) {
+    low = std::min(low, dot(p, direction));
+    high = std::max(high, dot(p, direction));
+  }
+  return high - low;
+}
+
+/// Width of the region across the joints of a set. Of a compact region the root of its area says it well
+/// enough; one that reaches far, by a vertex gone astray perhaps, is crossed by as many joints as it is wide.
+double width_across(const RockRegion &region, const JointSet &set) {
+  const double compact = std::sqrt(signed_area(region.outline));
+  const Vec2 across{-std::sin(set.dip.mean), std::cos(set.dip.mean)};
+  const double width = width_along(set.within.empty() ? region.outline : set.within, across);
+  constexpr double far = 4.0;
+  return width > far * compact ? width : compact;
+}
+
 } // namespace
 
-double expected_traces(const JointSet &set, double area) {
-  const double lines = std::sqrt(area) / set.spacing.mean;
-  return lines + (set.through_going ? 0.0 : area / set.spacing.mean / (set.trace.mean + set.gap.mean));
+double expected_traces(const JointSet &set, const RockRegion &region) {
+  const Vec2 extent = bounding_box(region.outline).extent();
+  const double sine = std::abs(std::sin(set.dip.mean));
+  const double cosine = std::abs(std::cos(set.dip.mean));
+  const double lines = (extent.x * sine + extent.y * cosine) / set.spacing.mean;
+  const double length = extent.x * cosine + extent.y * sine;
+  return lines * (set.through_going ? 1.0 : 1.0 + length / (set.trace.mean + set.gap.mean));
+}
+
+double expected_cells(const VoronoiCells &cells, const RockRegion &region) {
+  const Vec2 extent = bounding_box(region.outline).extent();
+  return (extent.x / cells.size + 1.0) * (extent.y / cells.size + 1.0);
+}
+
+double expected_bricks(const BrickPattern &bricks, const RockRegion &region) {
+  const Vec2 extent = bounding_box(region.outline).extent();
+  return (extent.x / bricks.size.x + 1.0) * (extent.y / bricks.size.y + 1.0);
 }
 
 double expected_blocks(const RockRegion &region) {
@@ -38,7 +75,7 @@ double expected_blocks(const RockRegion &region) {
   double blocks = 1.0;
   for (const JointSet &set : region.joint_sets) {
     families.push_back({share_of_traces(set) / set.spacing.mean, set.dip.mean});
-    blocks += share_of_traces(set) * std::sqrt(area) / set.spacing.mean;
+    blocks += share_of_traces(set) * width_across(region, set) / set.spacing.mean;
   }
   for (const VoronoiCells &cells : region.voronoi) {
     families.push_back({2.0 / cells.size, {}});

@@ -22,6 +22,7 @@
 #include "gcpdda/parallel/packing.hpp"
 #include "gcpdda/simulation/plausibility.hpp"
 #include "gcpdda/simulation/region_slabs.hpp"
+#include "gcpdda/simulation/scene_size.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -107,6 +108,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
 // Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
 void Simulation::distribute(const std::filesystem::path &restart_from) {
   stop_on_errors(open_block_file(communicator_, scene_));
+  stop_on_errors(judge_size(communicator_, scene_));
   std::vector<SceneBlock> slab = load_slab(cut_region());
   load_sides(slab);
   note_groups(slab);

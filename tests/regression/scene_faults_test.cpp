@@ -98,6 +98,13 @@ TEST_P(SceneFaults, OfDeepInitialOverlapsNameBothBlocks) {
   expect_faults({"error: blocks 'floor' and 'a' overlap by 0.06 m", "error: blocks 'b' and 'c' overlap by "});
 }
 
+TEST_P(SceneFaults, OfASceneThatNoMemoryHoldsComeBeforeTheWork) {
+  folder_.write("scene.toml", head_scene(1e8, 1e-3, 0.1) +
+                                  "[[wall]]\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 1000000\ncolumns = "
+                                  "2000\nblock_size = [1.0, 1.0]\nbond = 0\n");
+  expect_faults({"scene.toml: error: about 2e+09 blocks need at least "});
+}
+
 // Where outlines coincide, the depth of the overlap vanishes: the area tells.
 TEST_P(SceneFaults, OfABlockThatIsThereTwice) {
   const std::vector<Vec2> notched{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 2.0}, {0.0, 2.0}};

@@ -295,5 +295,41 @@ TEST(CommonArea, OfRoundPolygonsIsThatOfALens) {
               common_area(circle, moved(circle, {1.0, 0.0})), 1e-8);
 }
 
+/// Prongs of width 1 that point up, 1 apart, on a bar.
+Polygon comb(int num_prongs) {
+  Polygon polygon{{0.0, -3.0}, {2.0 * num_prongs - 1.0, -3.0}};
+  for (int k = num_prongs - 1; k >= 0; --k) {
+    const double x = 2.0 * k;
+    polygon.insert(polygon.end(), {{x + 1.0, 0.0}, {x + 1.0, 50.0}, {x, 50.0}, {x, 0.0}});
+  }
+  polygon.erase(polygon.begin() + 2); // the last prong and the first one have no notch beside them
+  polygon.pop_back();
+  return polygon;
+}
+
+Polygon divided(const Polygon &polygon, int pieces) {
+  Polygon fine;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    for (int k = 0; k < pieces; ++k) {
+      fine.push_back(polygon[i] + (1.0 * k / pieces) * (polygon[(i + 1) % polygon.size()] - polygon[i]));
+    }
+  }
+  return fine;
+}
+
+// Looks at all pairs of 20,000 vertices, at each of them again for what is in the way, would take days.
+TEST(LargePolygon, IsJudgedAsASmallOne) {
+  EXPECT_DOUBLE_EQ(narrowest_width(comb(3)), 1.0);
+  EXPECT_TRUE(is_simple(comb(3)));
+  Polygon large = comb(5000);
+  EXPECT_DOUBLE_EQ(narrowest_width(large), 1.0);
+  EXPECT_TRUE(is_simple(large));
+  large[10001].x -= 1.5; // through the prong beside it
+  EXPECT_FALSE(is_simple(large));
+  EXPECT_NEAR(narrowest_width(divided(l_shape, 3000)), narrowest_width(l_shape), 1e-12);
+  EXPECT_NEAR(narrowest_width(divided(right_triangle, 7000)), narrowest_width(right_triangle), 1e-12);
+  EXPECT_NEAR(narrowest_width(regular(20000, 1.0)), 2.0, 1e-7);
+}
+
 } // namespace
 } // namespace gcpdda::polygon_test

@@ -190,6 +190,24 @@ TEST(RegionScene, SetReachesJointSetsByName) {
   EXPECT_EQ(good(text, {"joint_set.beds.spacing=2"}).region.joint_sets.at(0).spacing.mean, 2.0);
 }
 
+// A vertex gone astray makes a wide box of a small region.
+TEST(RegionScene, SizeIsJudgedByExtentAndSpacing) {
+  const std::string needle = "[region]\nmaterial = \"rock\"\npolygon = [[0, 0], [1, 0], [1e6, 1e6]]\n";
+  EXPECT_EQ(
+      faults(head + needle + "max_blocks = 3000\n[[joint_set]]\ndip_deg = 135\nspacing = 2.0\n"),
+      (Strings{"11:1: error: the region would be cut into about 7.07e+05 blocks, max_blocks is 3000, use "
+               "larger spacings, or raise max_blocks"}));
+  EXPECT_EQ(
+      faults(head + needle + "[[voronoi]]\nsize = 10\n"),
+      (Strings{"11:1: error: the Voronoi pattern would have about 1e+10 cells, a set has at most 1e+08 in "
+               "the bounding box of the region, use a larger size, or look for a vertex gone astray"}));
+  EXPECT_EQ(
+      faults(head + needle + "[[joint_set]]\ndip_deg = 135\nspacing = 1\ntrace_length = 1\ngap = 1\n"),
+      (Strings{"11:1: error: joint_set 'joint_set0' would have about 1e+12 joints, a set has at most 1e+08 "
+               "in the bounding box of the region, use a larger spacing or longer traces, or look for a "
+               "vertex gone astray"}));
+}
+
 TEST(RegionScene, FaultsAreNamedWithTheirPlaces) {
   EXPECT_EQ(
       faults(head + "[region]\npolygon = [[0, 0], [1, 1], [1, 0], [0, 1]]\nmaterial = \"rock\"\n"),

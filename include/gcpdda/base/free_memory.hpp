@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <fstream>
 #include <limits>
+#include <string>
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -19,6 +22,29 @@ inline void give_back_free_memory(std::size_t freed = std::numeric_limits<std::s
     malloc_trim(0);
 #endif
   }
+}
+
+/// Bytes that this machine can still give to programs, those it would swap included, but no more than a
+/// control group allows this one in all; infinite where the system does not say.
+inline double available_memory() {
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  double free = -1.0;
+  double swap = 0.0;
+  std::ifstream machine("/proc/meminfo");
+  std::string key;
+  std::string unit;
+  for (double kilobytes = 0.0; machine >> key >> kilobytes; std::getline(machine, unit)) {
+    free = key == "MemAvailable:" ? 1024.0 * kilobytes : free;
+    swap = key == "SwapFree:" ? 1024.0 * kilobytes : swap;
+  }
+  double available = free >= 0.0 ? free + swap : unlimited;
+  for (const char *path : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::ifstream group(path);
+    if (double limit = 0.0; group >> limit) { // not where it says "max"
+      available = std::min(available, limit);
+    }
+  }
+  return available;
 }
 
 } // namespace gcpdda

@@ -34,6 +34,8 @@ public:
 
   /// The last tile holds the fixed blocks along the sides, if the scene has any.
   [[nodiscard]] std::int64_t num_tiles() const override;
+  [[nodiscard]] double expected_blocks() const override;
+  [[nodiscard]] double expected_seconds() const override;
   [[nodiscard]] Made make(std::int64_t first, std::int64_t last) const override;
   /// The same, with what had to be mended.
   [[nodiscard]] Made make(std::int64_t first, std::int64_t last, CutReport &report) const;

@@ -24,8 +24,8 @@ double signed_area(std::span<const Vec2> vertices);
 /// Clockwise rings give a negative area (holes).
 Moments polygon_moments(std::span<const Vec2> vertices);
 
-/// No edge meets another except neighbours at their common vertex. O(n^2); exact up to rounding of the
-/// orientation test.
+/// No edge meets another except neighbours at their common vertex. O(n log n) for common outlines; exact up
+/// to rounding of the orientation test.
 bool is_simple(std::span<const Vec2> vertices);
 
 /// All turns are left turns or straight up to rounding (counter-clockwise vertices).
@@ -36,9 +36,13 @@ std::vector<bool> reentrant_vertices(std::span<const Vec2> vertices);
 /// The same into a list that has been used before.
 void find_reentrant_vertices(std::span<const Vec2> vertices, std::vector<bool> &reentrant);
 
+/// The corners of the convex hull of points, counter-clockwise. O(n log n).
+std::vector<Vec2> convex_hull(std::span<const Vec2> points);
+
 /// How thin a polygon is (m). Convex: the smallest distance between two parallel lines that enclose it, one
 /// of them flush with an edge. Otherwise that of the convex hull, or the distance from a re-entrant vertex
 /// through the interior to another edge where that is smaller (the leg of an L, the prong of a U).
+/// O(n log n) for common outlines.
 double narrowest_width(std::span<const Vec2> vertices);
 
 } // namespace gcpdda

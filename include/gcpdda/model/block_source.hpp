@@ -20,6 +20,10 @@ public:
 
   virtual ~BlockSource() = default;
   [[nodiscard]] virtual std::int64_t num_tiles() const = 0;
+  /// How many blocks all tiles will hold, about, and how long one rank would take to make them, s: to the
+  /// power of ten.
+  [[nodiscard]] virtual double expected_blocks() const = 0;
+  [[nodiscard]] virtual double expected_seconds() const = 0;
   /// Blocks of the tiles [first, last).
   [[nodiscard]] virtual Made make(std::int64_t first, std::int64_t last) const = 0;
 

@@ -122,11 +122,14 @@ struct RockRegion {
   [[nodiscard]] bool present() const { return !outline.empty(); }
 };
 
-/// How many blocks the region will be cut into, about: the crossings of its joints and the area of its cells.
-/// Through-going or not, scattered or not, only lengths of joints per area count.
+/// How many blocks the region will be cut into, about: the strips between its through-going joints, the
+/// crossings of all joints and the area of its cells. Through-going or not, scattered or not, only lengths of
+/// joints per area count for crossings.
 double expected_blocks(const RockRegion &region);
 
-/// How many traces its joint sets have, about.
-double expected_traces(const JointSet &set, double area);
+/// How many traces, cells or bricks are drawn around the region, about: over its bounding box.
+double expected_traces(const JointSet &set, const RockRegion &region);
+double expected_cells(const VoronoiCells &cells, const RockRegion &region);
+double expected_bricks(const BrickPattern &bricks, const RockRegion &region);
 
 } // namespace gcpdda

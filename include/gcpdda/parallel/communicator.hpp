@@ -26,6 +26,8 @@ public:
 
   /// Of the ranks that say the same number, in their order here. Collective.
   [[nodiscard]] Communicator split(int group) const;
+  /// How many of the ranks share the memory of this one. Collective.
+  [[nodiscard]] int ranks_on_node() const;
 
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int size() const { return size_; }

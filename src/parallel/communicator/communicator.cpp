@@ -110,6 +110,16 @@ Communicator Communicator::split(int group) const {
   return Communicator(std::make_shared<Handle>(handle_->value, group, rank_));
 }
 
+int Communicator::ranks_on_node() const {
+  MPI_Comm node = MPI_COMM_NULL;
+  check(MPI_Comm_split_type(handle_->value, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node),
+        "MPI_Comm_split_type");
+  int count = 0;
+  check(MPI_Comm_size(node, &count), "MPI_Comm_size");
+  check(MPI_Comm_free(&node), "MPI_Comm_free");
+  return count;
+}
+
 void Communicator::barrier() const {
   check(MPI_Barrier(handle_->value), "MPI_Barrier");
 }
