@@ -16,8 +16,8 @@
 
 namespace gcpdda::checkpoint {
 
-inline constexpr const char *format = "gcpdda checkpoint";
-inline constexpr std::int64_t version = 7; ///< of the lists below: it rises with every change of them
+/// Of the lists below and of the seal: it rises with every change of them.
+inline constexpr std::int64_t version = 8;
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -39,12 +39,18 @@ inline constexpr std::array real_facts{RealFact{"/clock/time", &RunFacts::time},
                                        RealFact{"/run/gravity_y", &RunFacts::gravity_y},
                                        RealFact{"/run/shaking_x", &RunFacts::shaking_x},
                                        RealFact{"/run/shaking_y", &RunFacts::shaking_y}};
-inline constexpr const char *frame_times = "/run/frame_times";
-inline constexpr const char *ledger = "/run/ledger";
-inline constexpr const char *stage_counts = "/stage/counts";
-inline constexpr const char *stage_numbers = "/stage/numbers";
-inline constexpr const char *bolt_counts = "/bolt/counts";
-inline constexpr const char *bolt_numbers = "/bolt/numbers";
+
+/// A list of RunFacts.
+template <class T> struct ListFact {
+  const char *name;
+  std::vector<T> RunFacts::*values;
+};
+inline constexpr std::array real_lists{ListFact<double>{"/run/frame_times", &RunFacts::frame_times},
+                                       ListFact<double>{"/run/ledger", &RunFacts::ledger},
+                                       ListFact<double>{"/stage/numbers", &RunFacts::stage_numbers},
+                                       ListFact<double>{"/bolt/numbers", &RunFacts::bolt_numbers}};
+inline constexpr std::array whole_lists{ListFact<std::int64_t>{"/stage/counts", &RunFacts::stage_counts},
+                                        ListFact<std::int64_t>{"/bolt/counts", &RunFacts::bolt_counts}};
 
 struct WholeFact {
   const char *name;
@@ -227,7 +233,8 @@ inline constexpr std::array<const char *, 8> groups{"/clock", "/run",   "/stage"
 inline constexpr const char *checksum = "/checksum";
 
 /// A checksum of numbers in named places: summed modulo 2^64, so that it may be summed over ranks in any
-/// order.
+/// order. It is made of what a run hands over, and tells of a write that went wrong unnoticed; the seal is
+/// made of the written file.
 class ContentSum {
 public:
   /// @param first  place of the first value in its dataset

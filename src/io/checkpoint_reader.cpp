@@ -1,4 +1,5 @@
 #include "checkpoint_layout.hpp"
+#include "checkpoint_seal.hpp"
 #include "frame_strips.hpp"
 #include "hdf5_collective_file.hpp"
 #include "hdf5_input.hpp"
@@ -35,27 +36,10 @@ std::int64_t only_number(const hdf5::File &file, const char *name) {
   return values.front();
 }
 
-bool is_checkpoint(const hdf5::File &file) {
-  const std::string format = checkpoint::format;
-  try {
-    const std::vector<std::byte> bytes = hdf5::read_content(file, "/@format").bytes;
-    return bytes.size() == format.size() && std::memcmp(bytes.data(), format.data(), format.size()) == 0;
-  } catch (const FileError &) {
-    return false;
-  }
-}
-
-/// By one process alone; throws where the file is none or of a later version.
+/// By one process alone, of a file whose bytes are those that were written.
 Found look_at(const fs::path &path) {
   const hdf5::QuietErrors quiet;
   const hdf5::File file(hdf5::open_to_read(path));
-  if (!is_checkpoint(file)) {
-    throw FileError("it is an HDF5 file, but no checkpoint of gcpdda");
-  }
-  if (const std::int64_t version = only_number(file, "/version"); version != checkpoint::version) {
-    throw FileError(
-        fmt::format("it has format version {}, this gcpdda reads version {}", version, checkpoint::version));
-  }
   Found found;
   found.path = path;
   RunFacts &facts = found.facts;
@@ -71,12 +55,12 @@ Found look_at(const fs::path &path) {
     }
     facts.*member = values.front();
   }
-  facts.frame_times = hdf5::read_numbers<double>(file, checkpoint::frame_times);
-  facts.ledger = hdf5::read_numbers<double>(file, checkpoint::ledger);
-  facts.stage_counts = hdf5::read_numbers<std::int64_t>(file, checkpoint::stage_counts);
-  facts.stage_numbers = hdf5::read_numbers<double>(file, checkpoint::stage_numbers);
-  facts.bolt_counts = hdf5::read_numbers<std::int64_t>(file, checkpoint::bolt_counts);
-  facts.bolt_numbers = hdf5::read_numbers<double>(file, checkpoint::bolt_numbers);
+  for (const auto &[name, member] : checkpoint::real_lists) {
+    facts.*member = hdf5::read_numbers<double>(file, name);
+  }
+  for (const auto &[name, member] : checkpoint::whole_lists) {
+    facts.*member = hdf5::read_numbers<std::int64_t>(file, name);
+  }
   found.checksum = only_number(file, checkpoint::checksum);
   return found;
 }
@@ -154,12 +138,12 @@ private:
     for (const auto &[name, member] : checkpoint::real_facts) {
       sum_.add(name, 0, std::span<const double>(&(facts.*member), 1));
     }
-    sum_.add(checkpoint::frame_times, 0, std::span<const double>(facts.frame_times));
-    sum_.add(checkpoint::ledger, 0, std::span<const double>(facts.ledger));
-    sum_.add(checkpoint::stage_counts, 0, std::span<const std::int64_t>(facts.stage_counts));
-    sum_.add(checkpoint::stage_numbers, 0, std::span<const double>(facts.stage_numbers));
-    sum_.add(checkpoint::bolt_counts, 0, std::span<const std::int64_t>(facts.bolt_counts));
-    sum_.add(checkpoint::bolt_numbers, 0, std::span<const double>(facts.bolt_numbers));
+    for (const auto &[name, member] : checkpoint::real_lists) {
+      sum_.add(name, 0, std::span<const double>(facts.*member));
+    }
+    for (const auto &[name, member] : checkpoint::whole_lists) {
+      sum_.add(name, 0, std::span<const std::int64_t>(facts.*member));
+    }
   }
 
   Communicator communicator_;
@@ -310,7 +294,7 @@ template <class T> void share(const Communicator &communicator, std::vector<T> &
   }
 }
 
-/// The root's finding for all. Only facts of fixed size and the frames' times travel.
+/// The root's finding for all.
 void share(const Communicator &communicator, Found &found) {
   std::string path = found.path.string();
   communicator.broadcast(path);
@@ -327,23 +311,17 @@ void share(const Communicator &communicator, Found &found) {
     const auto *first = reinterpret_cast<const std::byte *>(&value);
     bytes.insert(bytes.end(), first, first + sizeof(value));
   });
-  const std::size_t fixed = bytes.size();
-  const auto *times = reinterpret_cast<const std::byte *>(facts.frame_times.data());
-  bytes.insert(bytes.end(), times, times + facts.frame_times.size() * sizeof(double));
   communicator.broadcast(bytes);
   std::size_t at = 0;
   each([&](auto &value) {
     std::memcpy(&value, bytes.data() + at, sizeof(value));
     at += sizeof(value);
   });
-  share(communicator, facts.ledger);
-  share(communicator, facts.stage_counts);
-  share(communicator, facts.stage_numbers);
-  share(communicator, facts.bolt_counts);
-  share(communicator, facts.bolt_numbers);
-  facts.frame_times.resize((bytes.size() - fixed) / sizeof(double));
-  if (!facts.frame_times.empty()) {
-    std::memcpy(facts.frame_times.data(), bytes.data() + fixed, bytes.size() - fixed);
+  for (const auto &[name, member] : checkpoint::real_lists) {
+    share(communicator, facts.*member);
+  }
+  for (const auto &[name, member] : checkpoint::whole_lists) {
+    share(communicator, facts.*member);
   }
 }
 
@@ -351,23 +329,38 @@ std::string reason(const fs::path &path, const std::string &why) {
   return fmt::format("{}: {}", path.string(), why);
 }
 
-/// Root only: those that open, newest first; the others into `rejected`.
-std::vector<Found> look_at_all(const fs::path &directory, const SceneIdentity &scene,
-                               std::vector<std::string> &rejected) {
-  std::vector<Found> found;
+/// A file that has the seal of a checkpoint.
+struct Sealed {
+  fs::path path;
+  checkpoint::Seal seal;
+};
+
+/// Root only: newest first; those without a seal into `rejected`.
+std::vector<Sealed> sealed_files(const fs::path &directory, std::vector<std::string> &rejected) {
+  std::vector<Sealed> found;
   for (const fs::path &path : checkpoint_files(directory)) {
     try {
-      found.push_back(look_at(path));
-      expect_same_scene(found.back().facts.scene, scene);
-    } catch (const FileError &error) {
-      if (!found.empty() && found.back().path == path) {
-        found.pop_back();
-      }
+      found.push_back({path, checkpoint::read_seal(path)});
+    } catch (const std::exception &error) {
       rejected.push_back(reason(path, error.what()));
     }
   }
   std::stable_sort(found.begin(), found.end(),
-                   [](const Found &a, const Found &b) { return a.facts.time > b.facts.time; });
+                   [](const Sealed &a, const Sealed &b) { return a.seal.step > b.seal.step; });
+  return found;
+}
+
+/// The root's file for all, and what it holds once all its bytes have been compared. Collective.
+Found look_at_sealed(const Communicator &communicator, Sealed file) {
+  std::string path = file.path.string();
+  communicator.broadcast(path);
+  file.path = path;
+  std::vector<checkpoint::Seal> seal{file.seal};
+  share(communicator, seal);
+  checkpoint::expect_unchanged(communicator, file.path, seal.front());
+  Found found;
+  on_root(communicator, [&] { found = look_at(file.path); });
+  share(communicator, found);
   return found;
 }
 
@@ -386,9 +379,9 @@ std::vector<fs::path> checkpoint_files(const fs::path &directory) {
 }
 
 void expect_readable_checkpoint(const Communicator &communicator, const fs::path &path) {
-  Found found;
-  on_root(communicator, [&] { found = look_at(path); });
-  share(communicator, found);
+  Sealed file{path, {}};
+  on_root(communicator, [&] { file.seal = checkpoint::read_seal(path); });
+  const Found found = look_at_sealed(communicator, file);
   SummedInput input(communicator, found);
   const auto fields = [&](const auto &table, std::int64_t num_rows) {
     for (const auto &field : table) {
@@ -415,23 +408,24 @@ Restored restore_newest_checkpoint(const Communicator &communicator, const fs::p
                                    const SceneIdentity &scene, BlockSystem &blocks,
                                    const std::function<void(const RunFacts &)> &prepare) {
   Restored restored;
-  std::vector<Found> found;
-  on_root(communicator, [&] { found = look_at_all(directory, scene, restored.rejected); });
-  std::int64_t count = std::ssize(found);
+  std::vector<Sealed> files;
+  on_root(communicator, [&] { files = sealed_files(directory, restored.rejected); });
+  std::int64_t count = std::ssize(files);
   communicator.max(std::span(&count, 1));
   for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-    Found candidate = communicator.is_root() ? found[k] : Found{};
-    share(communicator, candidate);
-    if (prepare) {
-      prepare(candidate.facts);
-    }
+    const Sealed file = communicator.is_root() ? files[k] : Sealed{};
     try {
+      const Found candidate = look_at_sealed(communicator, file);
+      expect_same_scene(candidate.facts.scene, scene);
+      if (prepare) {
+        prepare(candidate.facts);
+      }
       restored.memory = StateReader(communicator, candidate).restore(blocks);
       restored.path = candidate.path;
       restored.facts = candidate.facts;
       return restored;
     } catch (const FileError &error) { // on all ranks
-      restored.rejected.push_back(reason(candidate.path, error.what()));
+      restored.rejected.push_back(reason(file.path, error.what()));
     }
   }
   std::string text = fmt::format("cannot restart {}: ", directory.string());

@@ -1,4 +1,5 @@
 #include "checkpoint_layout.hpp"
+#include "checkpoint_seal.hpp"
 #include "durable_file.hpp"
 #include "frame_strips.hpp"
 #include "hdf5_collective_file.hpp"
@@ -103,12 +104,11 @@ class Draft {
 public:
   Draft(const Communicator &communicator, const fs::path &path, std::int64_t num_blocks,
         std::int64_t ids_per_strip)
-      : communicator_(communicator),
-        file_(communicator, path), strips_{num_blocks, communicator.size(), ids_per_strip} {}
+      : communicator_(communicator), path_(path),
+        file_(communicator, path, checkpoint::seal_size), strips_{num_blocks, communicator.size(),
+                                                                  ids_per_strip} {}
 
   void write(const RunFacts &facts, const BlockSystem &blocks, const RegionSource &regions) {
-    file_.attribute("/", "format", checkpoint::format);
-    file_.number("/version", checkpoint::version);
     for (const char *group : checkpoint::groups) {
       file_.group(group);
     }
@@ -117,7 +117,9 @@ public:
     write_deformations(blocks);
     write_regions(regions);
     file_.number(checkpoint::checksum, static_cast<std::int64_t>(sum_.total(communicator_)));
-    file_.publish();
+    file_.complete();
+    checkpoint::put_seal(communicator_, unfinished_name(path_), facts.step);
+    on_root(communicator_, [&] { publish(path_); });
   }
 
 private:
@@ -209,12 +211,12 @@ private:
     for (const auto &[name, member] : checkpoint::real_facts) {
       list(name, std::vector{facts.*member});
     }
-    list(checkpoint::frame_times, facts.frame_times);
-    list(checkpoint::ledger, facts.ledger);
-    list(checkpoint::stage_counts, facts.stage_counts);
-    list(checkpoint::stage_numbers, facts.stage_numbers);
-    list(checkpoint::bolt_counts, facts.bolt_counts);
-    list(checkpoint::bolt_numbers, facts.bolt_numbers);
+    for (const auto &[name, member] : checkpoint::real_lists) {
+      list(name, facts.*member);
+    }
+    for (const auto &[name, member] : checkpoint::whole_lists) {
+      list(name, facts.*member);
+    }
   }
 
   void write_blocks(std::int64_t num_mobile, const BlockSystem &blocks) {
@@ -298,6 +300,7 @@ private:
   }
 
   Communicator communicator_;
+  fs::path path_;
   CollectiveFile file_;
   Strips strips_;
   checkpoint::ContentSum sum_;
@@ -313,12 +316,22 @@ CheckpointWriter::CheckpointWriter(const Communicator &communicator, fs::path di
 void CheckpointWriter::write(const RunFacts &facts, const BlockSystem &blocks, const RegionSource &regions) {
   const fs::path path = checkpoint::folder(directory_) / fmt::format("checkpoint_{:09}.h5", facts.step);
   on_root(communicator_, [&] { make_directory(path.parent_path()); });
-  Draft(communicator_, path, facts.scene.num_blocks, ids_per_strip_).write(facts, blocks, regions);
+  const auto give_up = [&](const std::string &why) { // on all ranks
+    on_root(communicator_, [&] {
+      fs::remove(path);
+      fs::remove(unfinished_name(path));
+    });
+    throw FileError(why);
+  };
+  try {
+    Draft(communicator_, path, facts.scene.num_blocks, ids_per_strip_).write(facts, blocks, regions);
+  } catch (const FileError &error) {
+    give_up(error.what());
+  }
   try {
     expect_readable_checkpoint(communicator_, path);
-  } catch (const FileError &error) { // on all ranks
-    on_root(communicator_, [&] { fs::remove(path); });
-    throw FileError("cannot write " + path.string() + ": read again, " + error.what());
+  } catch (const FileError &error) {
+    give_up("cannot write " + path.string() + ": read again, " + error.what());
   }
   on_root(communicator_, [&] {
     sync_directory(path.parent_path()); // the new name is on the disk before an old one goes

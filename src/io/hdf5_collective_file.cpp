@@ -103,7 +103,8 @@ RowRange rows_in_rank_order(const Communicator &communicator, std::int64_t count
   return range;
 }
 
-CollectiveFile::CollectiveFile(const Communicator &communicator, std::filesystem::path path)
+CollectiveFile::CollectiveFile(const Communicator &communicator, std::filesystem::path path,
+                               std::int64_t user_block)
     : communicator_(communicator), path_(std::move(path)) {
   on_root(communicator_, [&] {
     if (std::filesystem::exists(path_) && !std::filesystem::is_regular_file(path_)) {
@@ -114,8 +115,10 @@ CollectiveFile::CollectiveFile(const Communicator &communicator, std::filesystem
   });
   on_all_ranks(communicator_, [&] {
     const hdf5::Properties access = parallel_access(communicator_);
+    const hdf5::Properties creation(hdf5::checked(H5Pcreate(H5P_FILE_CREATE), "describe a file"));
+    hdf5::checked(H5Pset_userblock(creation.get(), static_cast<hsize_t>(user_block)), "describe a file");
     file_ = hdf5::File(
-        hdf5::checked(H5Fcreate(unfinished_name(path_).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()),
+        hdf5::checked(H5Fcreate(unfinished_name(path_).c_str(), H5F_ACC_TRUNC, creation.get(), access.get()),
                       "create " + unfinished_name(path_).string()));
   });
 }

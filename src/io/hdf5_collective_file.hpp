@@ -38,7 +38,8 @@ RowRange rows_in_rank_order(const Communicator &communicator, std::int64_t count
 /// unless completed it vanishes with the object. What it holds does not depend on the number of ranks.
 class CollectiveFile {
 public:
-  CollectiveFile(const Communicator &communicator, std::filesystem::path path);
+  /// @param user_block  bytes at its begin that HDF5 leaves alone: 0, 512 or more by powers of 2
+  CollectiveFile(const Communicator &communicator, std::filesystem::path path, std::int64_t user_block = 0);
   ~CollectiveFile();
   CollectiveFile(const CollectiveFile &) = delete;
   CollectiveFile &operator=(const CollectiveFile &) = delete;

@@ -4,6 +4,7 @@
 
 #include "gcpdda/base/input_file.hpp"
 
+#include <fmt/format.h>
 #include <mpi.h>
 
 #include <algorithm>
@@ -84,14 +85,30 @@ std::string type_in_words(const Datatype &type) {
   return words + (H5Tget_order(type.get()) == H5T_ORDER_BE ? ", big endian" : "");
 }
 
-// Shape and type of a dataset or attribute; room for its bytes.
-Content describe(const std::string &path, const Dataspace &space, const Datatype &type) {
+/// That many bytes can be in the file: a damaged header may claim any number of them.
+void expect_within_file(hid_t object, const std::string &path, double bytes) {
+  const File file(checked(H5Iget_file_id(object), "read " + path));
+  hsize_t size = 0;
+  checked(H5Fget_filesize(file.get(), &size), "read " + path);
+  if (bytes > static_cast<double>(size)) {
+    throw FileError(fmt::format("cannot read {}: it claims {:g} bytes in a file of {}", path, bytes, size));
+  }
+}
+
+double bytes_of(const Dataspace &space, const Datatype &type) {
+  return static_cast<double>(H5Sget_simple_extent_npoints(space.get())) *
+         static_cast<double>(H5Tget_size(type.get()));
+}
+
+// Shape and type of a dataset or attribute; room for its bytes. Our files do not compress.
+Content describe(hid_t object, const std::string &path, const Dataspace &space, const Datatype &type) {
   Content content{path, type_in_words(type), {}, {}};
   const int dimensions = checked(H5Sget_simple_extent_ndims(space.get()), "read the shape of " + path);
   content.shape.resize(static_cast<std::size_t>(dimensions));
   checked(H5Sget_simple_extent_dims(space.get(), content.shape.data(), nullptr), "read the shape of " + path);
   const auto count = static_cast<std::size_t>(
       checked(H5Sget_simple_extent_npoints(space.get()), "read the shape of " + path));
+  expect_within_file(object, path, bytes_of(space, type));
   content.bytes.resize(count * H5Tget_size(type.get()));
   return content;
 }
@@ -123,12 +140,13 @@ Content read_content(const File &file, const std::string &path) {
   if (at != std::string::npos) {
     const Attribute attribute(checked(H5Aopen(object.get(), path.c_str() + at + 1, H5P_DEFAULT), what));
     const Datatype type(checked(H5Aget_type(attribute.get()), what));
-    Content content = describe(path, Dataspace(checked(H5Aget_space(attribute.get()), what)), type);
+    Content content =
+        describe(attribute.get(), path, Dataspace(checked(H5Aget_space(attribute.get()), what)), type);
     checked(H5Aread(attribute.get(), type.get(), content.bytes.data()), what);
     return content;
   }
   const Datatype type(checked(H5Dget_type(object.get()), what));
-  Content content = describe(path, Dataspace(checked(H5Dget_space(object.get()), what)), type);
+  Content content = describe(object.get(), path, Dataspace(checked(H5Dget_space(object.get()), what)), type);
   if (!content.bytes.empty()) {
     checked(H5Dread(object.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, content.bytes.data()), what);
   }

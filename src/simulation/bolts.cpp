@@ -387,6 +387,9 @@ void Bolts::to_numbers(const std::vector<BoltLink> &links, std::vector<std::int6
 Bolts Bolts::from_numbers(std::span<const std::int64_t> counts, std::span<const double> numbers) {
   Bolts bolts;
   const std::size_t count = counts.size() / counts_per_link;
+  if (counts.size() != count * counts_per_link || numbers.size() != count * numbers_per_link) {
+    throw FileError("it is damaged: its bolts are not whole");
+  }
   for (std::size_t k = 0; k < count; ++k) {
     const auto c = counts.subspan(k * counts_per_link, counts_per_link);
     const auto x = numbers.subspan(k * numbers_per_link, numbers_per_link);

@@ -1,5 +1,7 @@
 #include "gcpdda/simulation/stages.hpp"
 
+#include "gcpdda/base/check.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -77,18 +79,42 @@ StageNumbers to_numbers(const StageState &state) {
 }
 
 StageState to_state(const StageNumbers &numbers) {
+  // How many results, loads and ids follow: a list cannot be longer than what holds it.
+  const auto length = [&](std::size_t list) {
+    const std::int64_t count = list < numbers.counts.size() ? numbers.counts[list] : -1;
+    if (count < 0 || count > std::ssize(numbers.counts)) {
+      throw FileError("it is damaged: its stages are not whole");
+    }
+    return static_cast<std::size_t>(count);
+  };
   StageState state;
-  state.results.resize(static_cast<std::size_t>(numbers.counts.at(0)));
-  state.unloading.resize(static_cast<std::size_t>(numbers.counts.at(1)));
-  state.removed.resize(static_cast<std::size_t>(numbers.counts.at(2)));
+  state.results.resize(length(0));
+  state.unloading.resize(length(1));
+  state.removed.resize(length(2));
+  std::size_t num_counts = 3;
+  std::size_t num_reals = 0;
+  visit_all(
+      state, [&](const auto &) { ++num_counts; }, [&](double) { ++num_reals; });
+  if (num_counts != numbers.counts.size() || num_reals != numbers.reals.size()) {
+    throw FileError("it is damaged: its stages are not whole");
+  }
   std::size_t next_count = 3;
   std::size_t next_real = 0;
   visit_all(
       state,
-      [&](auto &x) {
-        x = static_cast<std::remove_reference_t<decltype(x)>>(numbers.counts.at(next_count++));
-      },
-      [&](double &x) { x = numbers.reals.at(next_real++); });
+      [&](auto &x) { x = static_cast<std::remove_reference_t<decltype(x)>>(numbers.counts[next_count++]); },
+      [&](double &x) { x = numbers.reals[next_real++]; });
+  const std::int64_t num_results = std::ssize(state.results);
+  const auto is_known = [](Verdict verdict) {
+    return Verdict::undecided <= verdict && verdict <= Verdict::done;
+  };
+  if (state.index < 0 || num_results < state.index || num_results > state.index + 1 ||
+      !is_known(state.verdict) ||
+      !std::all_of(state.results.begin(), state.results.end(),
+                   [&](const StageResult &result) { return is_known(result.verdict); }) ||
+      !std::is_sorted(state.removed.begin(), state.removed.end())) {
+    throw FileError("it is damaged: its stages do not follow from each other");
+  }
   return state;
 }
 

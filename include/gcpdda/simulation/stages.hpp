@@ -81,6 +81,7 @@ struct StageNumbers {
   std::vector<double> reals;
 };
 StageNumbers to_numbers(const StageState &state);
+/// @throws FileError where the numbers are not those of a state
 StageState to_state(const StageNumbers &numbers);
 
 } // namespace gcpdda
