@@ -44,7 +44,7 @@ TEXT_COLUMNS = {"problem", "compared", "factor", "value"}
 def read(path):
     with open(path, newline="") as file:
         rows = [{k: v if k in TEXT_COLUMNS else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
-    return rows or sys.exit(f"plot_accuracy.py: {path} has no rows")
+    return rows
 
 
 def front(points, cost):
@@ -109,9 +109,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     folder = parser.parse_args().folder
-    rows = read(folder / "accuracy.csv")
+    rows = read(folder / "accuracy.csv") or sys.exit(f"plot_accuracy.py: {folder / 'accuracy.csv'} has no rows")
     peers = folder / "peers.csv"
-    rows += read(peers) if peers.exists() else []
+    rows += read(peers) if peers.exists() else []  # no rows where no other engine is installed
     problems = list(dict.fromkeys(row["problem"] for row in rows))
     draw(rows, problems, "cpu_s", "CPU time of the steps, ms", folder / "accuracy", 2)
     draw(rows, [p for p in OVERVIEW if p in problems], "cpu_s", "CPU time of the steps, ms", folder / "accuracy_overview", 2)

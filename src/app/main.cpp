@@ -46,6 +46,7 @@ struct Arguments {
   std::string count; ///< of [ensemble]
   int ranks = 0;
   bool overwrite = false;
+  bool accepts_gaps = false;
 };
 
 constexpr int most_subdomains = 1 << 20;
@@ -140,7 +141,9 @@ int restart(const Communicator &world, Arguments arguments) {
   const SceneReading before = read_scene(read_scene_on_root(world, arguments.scene), arguments.scene, {});
   return with_scene(world, has_errors(before.diagnostics) ? unchanged : arguments, [&](const Scene &after) {
     judge_before_work(world, arguments, after);
-    return restart_scene(world, before.scene, after, arguments.directory);
+    return restart_scene(world, before.scene, after, arguments.directory,
+                         arguments.accepts_gaps ? EarlierResults::may_have_gaps
+                                                : EarlierResults::must_be_whole);
   });
 }
 
@@ -309,6 +312,9 @@ int dispatch(const Communicator &world, int argc, char **argv) {
       "restart", "go on with a stopped or broken run from its newest checkpoint, on any number of ranks");
   restart_command->add_option("DIR", arguments.directory, "result folder")->required();
   take_sets(restart_command, arguments);
+  restart_command->add_flag(
+      "--accept-gaps", arguments.accepts_gaps,
+      "go on though histories or frames from before the checkpoint are missing or damaged");
   CLI::App *inspect_command =
       app.add_subcommand("inspect", "tell what a scene holds, costs and how it would be cut");
   take_scene(inspect_command, arguments);

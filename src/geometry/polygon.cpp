@@ -295,11 +295,15 @@ std::vector<Vec2> convex_hull(std::span<const Vec2> points) {
   std::sort(sorted.begin(), sorted.end(),
             [](Vec2 a, Vec2 b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
   std::vector<Vec2> hull;
+  // Where a side has vertices in a line, rounding alone makes corners of them: they are none.
+  constexpr double least_turn = 1e-12;
+  const auto turns = [](Vec2 along, Vec2 next) {
+    return cross(along, next) > least_turn * norm(along) * norm(next);
+  };
   const auto add_chain = [&](auto first, auto last) {
     const std::size_t begin = hull.size();
     for (auto p = first; p != last; ++p) {
-      while (hull.size() >= begin + 2 &&
-             cross(hull.back() - hull[hull.size() - 2], *p - hull.back()) <= 0.0) {
+      while (hull.size() >= begin + 2 && !turns(hull.back() - hull[hull.size() - 2], *p - hull.back())) {
         hull.pop_back();
       }
       hull.push_back(*p);

@@ -52,6 +52,26 @@ inline constexpr std::array real_lists{ListFact<double>{"/run/frame_times", &Run
 inline constexpr std::array whole_lists{ListFact<std::int64_t>{"/stage/counts", &RunFacts::stage_counts},
                                         ListFact<std::int64_t>{"/bolt/counts", &RunFacts::bolt_counts}};
 
+/// RunFacts::results, a row for each file.
+struct ResultLists {
+  std::vector<std::uint8_t> names; ///< each with a line end behind it
+  std::vector<std::int64_t> bytes;
+  std::vector<std::int64_t> rows;
+};
+inline constexpr const char *result_names = "/result/names";
+inline constexpr const char *result_bytes = "/result/bytes";
+inline constexpr const char *result_rows = "/result/rows";
+inline ResultLists to_lists(const std::vector<ResultFile> &results) {
+  ResultLists lists;
+  for (const ResultFile &file : results) {
+    lists.names.insert(lists.names.end(), file.name.begin(), file.name.end());
+    lists.names.push_back('\n');
+    lists.bytes.push_back(file.bytes);
+    lists.rows.push_back(file.rows);
+  }
+  return lists;
+}
+
 struct WholeFact {
   const char *name;
   std::int64_t value;
@@ -65,6 +85,8 @@ inline std::array<WholeFact, 6> whole_facts(const RunFacts &facts) {
            {"/scene/blocks", static_cast<std::int64_t>(facts.scene.blocks)},
            {"/scene/materials", static_cast<std::int64_t>(facts.scene.materials)}}};
 }
+
+inline constexpr const char *scene_parts = "/scene/parts"; ///< i64, in the order of gcpdda::scene_parts
 
 inline constexpr const char *block_ids = "/block/id";
 inline constexpr const char *block_kinds = "/block/kind";
@@ -228,8 +250,8 @@ static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
 static_assert(sizeof(Deformation) == 7 * 64);
 static_assert(sizeof(RegionMemory) == 11 * sizeof(double));
 
-inline constexpr std::array<const char *, 8> groups{"/clock", "/run",   "/stage",       "/bolt",
-                                                    "/scene", "/block", "/deformation", "/region"};
+inline constexpr std::array<const char *, 9> groups{"/clock",  "/run",   "/stage",       "/bolt",  "/scene",
+                                                    "/result", "/block", "/deformation", "/region"};
 inline constexpr const char *checksum = "/checksum";
 
 /// A checksum of numbers in named places: summed modulo 2^64, so that it may be summed over ranks in any

@@ -36,6 +36,23 @@ std::int64_t only_number(const hdf5::File &file, const char *name) {
   return values.front();
 }
 
+std::vector<ResultFile> read_results(const hdf5::File &file) {
+  const auto names = hdf5::read_numbers<std::uint8_t>(file, checkpoint::result_names);
+  const auto bytes = hdf5::read_numbers<std::int64_t>(file, checkpoint::result_bytes);
+  const auto rows = hdf5::read_numbers<std::int64_t>(file, checkpoint::result_rows);
+  if (std::count(names.begin(), names.end(), '\n') != std::ssize(bytes) || rows.size() != bytes.size()) {
+    throw FileError(fmt::format("{} and its sizes are not equally many", checkpoint::result_names));
+  }
+  std::vector<ResultFile> results(bytes.size());
+  auto begin = names.begin();
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const auto end = std::find(begin, names.end(), '\n');
+    results[k] = {std::string(begin, end), bytes[k], rows[k]};
+    begin = end + 1;
+  }
+  return results;
+}
+
 /// By one process alone, of a file whose bytes are those that were written.
 Found look_at(const fs::path &path) {
   const hdf5::QuietErrors quiet;
@@ -45,9 +62,16 @@ Found look_at(const fs::path &path) {
   RunFacts &facts = found.facts;
   facts.step = only_number(file, "/clock/step");
   facts.contact_steps = only_number(file, "/run/contact_steps");
-  facts.scene = {only_number(file, "/scene/num_blocks"), only_number(file, "/scene/num_mobile"),
+  facts.scene = {only_number(file, "/scene/num_blocks"),
+                 only_number(file, "/scene/num_mobile"),
                  static_cast<std::uint64_t>(only_number(file, "/scene/blocks")),
-                 static_cast<std::uint64_t>(only_number(file, "/scene/materials"))};
+                 static_cast<std::uint64_t>(only_number(file, "/scene/materials")),
+                 {}};
+  const auto parts = hdf5::read_numbers<std::int64_t>(file, checkpoint::scene_parts);
+  if (parts.size() != facts.scene.parts.size()) {
+    throw FileError(fmt::format("{} has {} numbers", checkpoint::scene_parts, parts.size()));
+  }
+  std::copy(parts.begin(), parts.end(), facts.scene.parts.begin());
   for (const auto &[name, member] : checkpoint::real_facts) {
     const auto values = hdf5::read_numbers<double>(file, name);
     if (values.size() != 1) {
@@ -61,6 +85,7 @@ Found look_at(const fs::path &path) {
   for (const auto &[name, member] : checkpoint::whole_lists) {
     facts.*member = hdf5::read_numbers<std::int64_t>(file, name);
   }
+  facts.results = read_results(file);
   found.checksum = only_number(file, checkpoint::checksum);
   return found;
 }
@@ -138,6 +163,12 @@ private:
     for (const auto &[name, member] : checkpoint::real_facts) {
       sum_.add(name, 0, std::span<const double>(&(facts.*member), 1));
     }
+    const checkpoint::ResultLists results = checkpoint::to_lists(facts.results);
+    sum_.add(checkpoint::result_names, 0, std::span<const std::uint8_t>(results.names));
+    sum_.add(checkpoint::result_bytes, 0, std::span<const std::int64_t>(results.bytes));
+    sum_.add(checkpoint::result_rows, 0, std::span<const std::int64_t>(results.rows));
+    const ScenePrints &parts = facts.scene.parts;
+    sum_.add(checkpoint::scene_parts, 0, std::span<const std::uint64_t>(parts));
     for (const auto &[name, member] : checkpoint::real_lists) {
       sum_.add(name, 0, std::span<const double>(facts.*member));
     }
@@ -364,6 +395,20 @@ Found look_at_sealed(const Communicator &communicator, Sealed file) {
   return found;
 }
 
+/// What is wrong with the results in a folder, for the root.
+/// @throws FileError on all ranks where they have to be whole and are not
+void find_gaps(const Communicator &communicator, const fs::path &directory,
+               const std::vector<ResultFile> &results, EarlierResults demand,
+               std::vector<std::string> &gaps) {
+  on_root(communicator, [&] {
+    gaps = demand == EarlierResults::are_not_looked_at ? std::vector<std::string>()
+                                                       : gaps_in(directory, results);
+    if (demand == EarlierResults::must_be_whole && !gaps.empty()) {
+      throw FileError("results before it are not whole: " + words_on_gaps(gaps));
+    }
+  });
+}
+
 } // namespace
 
 std::vector<fs::path> checkpoint_files(const fs::path &directory) {
@@ -406,7 +451,8 @@ void expect_readable_checkpoint(const Communicator &communicator, const fs::path
 
 Restored restore_newest_checkpoint(const Communicator &communicator, const fs::path &directory,
                                    const SceneIdentity &scene, BlockSystem &blocks,
-                                   const std::function<void(const RunFacts &)> &prepare) {
+                                   const std::function<void(const RunFacts &)> &prepare,
+                                   EarlierResults results) {
   Restored restored;
   std::vector<Sealed> files;
   on_root(communicator, [&] { files = sealed_files(directory, restored.rejected); });
@@ -420,6 +466,7 @@ Restored restore_newest_checkpoint(const Communicator &communicator, const fs::p
       if (prepare) {
         prepare(candidate.facts);
       }
+      find_gaps(communicator, directory, candidate.facts.results, results, restored.gaps);
       restored.memory = StateReader(communicator, candidate).restore(blocks);
       restored.path = candidate.path;
       restored.facts = candidate.facts;
@@ -437,6 +484,9 @@ Restored restore_newest_checkpoint(const Communicator &communicator, const fs::p
     for (const std::string &why : restored.rejected) {
       text += "\n  " + why;
     }
+    text += restored.gaps.empty() ? ""
+                                  : "\nbring the files back that are missing, or go on without them: gcpdda "
+                                    "restart --accept-gaps";
   }
   communicator.broadcast(text);
   throw FileError(text);

@@ -4,6 +4,8 @@
 #include "hdf5_collective_file.hpp"
 #include "numbered_name.hpp"
 
+#include "gcpdda/base/input_file.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -84,8 +86,8 @@ void put_seal(const Communicator &communicator, const fs::path &unfinished, std:
 }
 
 Seal read_seal(const fs::path &path) {
-  if (!fs::is_regular_file(path)) { // a pipe would keep its reader waiting
-    throw FileError("it is no file");
+  if (const InputFile file = look_at_input_file(path.string()); !file.trouble.empty()) {
+    throw FileError(file.trouble);
   }
   std::string text(static_cast<std::size_t>(seal_size), '\0');
   std::ifstream stream(path, std::ios::binary);

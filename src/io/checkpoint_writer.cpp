@@ -125,8 +125,9 @@ public:
 private:
   /// The root's values.
   template <class T> void list(const char *name, const std::vector<T> &values) {
-    const std::int64_t total = std::ssize(values);
-    const std::vector<T> mine = communicator_.is_root() ? values : std::vector<T>();
+    rows_of_root(name, communicator_.is_root() ? values : std::vector<T>(), std::ssize(values));
+  }
+  template <class T> void rows_of_root(const char *name, const std::vector<T> &mine, std::int64_t total) {
     sum_.add(name, 0, std::span<const T>(mine));
     file_.dataset(name, {0, std::ssize(mine), total}, mine);
   }
@@ -211,12 +212,26 @@ private:
     for (const auto &[name, member] : checkpoint::real_facts) {
       list(name, std::vector{facts.*member});
     }
+    const ScenePrints &parts = facts.scene.parts;
+    list(checkpoint::scene_parts, std::vector<std::int64_t>(parts.begin(), parts.end()));
+    write_results(facts);
     for (const auto &[name, member] : checkpoint::real_lists) {
       list(name, facts.*member);
     }
     for (const auto &[name, member] : checkpoint::whole_lists) {
       list(name, facts.*member);
     }
+  }
+
+  /// The root alone knows how long they are.
+  void write_results(const RunFacts &facts) {
+    const checkpoint::ResultLists mine =
+        checkpoint::to_lists(communicator_.is_root() ? facts.results : std::vector<ResultFile>());
+    std::array<std::int64_t, 2> lengths{std::ssize(mine.names), std::ssize(mine.bytes)};
+    communicator_.max(std::span<std::int64_t>(lengths));
+    rows_of_root(checkpoint::result_names, mine.names, lengths[0]);
+    rows_of_root(checkpoint::result_bytes, mine.bytes, lengths[1]);
+    rows_of_root(checkpoint::result_rows, mine.rows, lengths[1]);
   }
 
   void write_blocks(std::int64_t num_mobile, const BlockSystem &blocks) {

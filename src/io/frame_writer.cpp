@@ -304,6 +304,7 @@ void FrameWriter::write(int index, double time, const FrameSource &source) {
 
 void FrameWriter::publish_behind(CollectiveFile &file, const std::filesystem::path &path) {
   file.complete();
+  files_.push_back({"frames/" + path.filename().string(), -1, -1});
   all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
   if (communicator_.is_root()) {
     behind_->add([path] { publish(path); });
@@ -338,6 +339,7 @@ void FrameWriter::write_topology(const Topology &topology, const FrameSource &so
   file.group("/VTKHDF/CellData");
   write_strips<TopologyTables>(file, topology, source);
   file.publish();
+  files_.push_back({"frames/" + topology_name(topology.first_frame), -1, -1});
   all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
   topologies_.push_back(topology);
 }
@@ -353,13 +355,17 @@ void FrameWriter::write_indices_behind() {
   if (!communicator_.is_root()) {
     return;
   }
+  std::vector<std::pair<int, double>> frames;
+  std::copy_if(frames_.begin(), frames_.end(), std::back_inserter(frames), [&](const auto &frame) {
+    return !std::binary_search(lost_.begin(), lost_.end(), frame.first);
+  });
   std::vector<std::pair<const char *, std::string>> indices{
-      {"run.hdf.series", series_index(frames_, "frame")}};
+      {"run.hdf.series", series_index(frames, "frame")}};
   if (!bolt_frames_.empty()) {
     indices.emplace_back("bolts.hdf.series", series_index(bolt_frames_, "bolts"));
   }
   std::vector<IndexedFrame> indexed;
-  for (const auto &[index, time] : frames_) {
+  for (const auto &[index, time] : frames) {
     const Topology &topology = topology_of(index);
     indexed.push_back(
         {index, time, topology.num_cells, topology.num_points, topology_name(topology.first_frame)});
@@ -388,6 +394,13 @@ void FrameWriter::sync() {
       sync_file(directory_ / "bolts.hdf.series");
     }
   });
+}
+
+const std::vector<ResultFile> &FrameWriter::files() {
+  for (auto file = files_.rbegin(); file != files_.rend() && file->bytes < 0; ++file) {
+    file->bytes = static_cast<std::int64_t>(std::filesystem::file_size(directory_ / file->name));
+  }
+  return files_;
 }
 
 std::vector<double> FrameWriter::times() const {
@@ -440,7 +453,7 @@ void remove_frames_from(const std::filesystem::path &folder, std::ptrdiff_t coun
 } // namespace
 
 // The indices first: none ever tells of a frame that is gone.
-void FrameWriter::continue_behind(const std::vector<double> &times) {
+void FrameWriter::continue_behind(const std::vector<double> &times, const std::vector<ResultFile> &files) {
   expect(!times.empty() && frames_.empty(), "frames to go on behind, before any are written");
   for (const double time : times) {
     frames_.emplace_back(static_cast<int>(frames_.size()), time);
@@ -449,7 +462,15 @@ void FrameWriter::continue_behind(const std::vector<double> &times) {
   std::vector<std::int64_t> numbers;
   on_root(communicator_, [&] {
     numbers = list_topologies(folder, std::ssize(times));
+    for (const ResultFile &file : files) {
+      if (file.name.starts_with("frames/") && damage_of(directory_, file).empty()) {
+        files_.push_back(file);
+      }
+    }
     for (const auto &[index, time] : frames_) {
+      if (!std::filesystem::exists(folder / frame_name(index))) {
+        lost_.push_back(index);
+      }
       if (std::filesystem::exists(folder / fmt::format("bolts_{:06}.hdf", index))) {
         bolt_frames_.emplace_back(index, time);
       }

@@ -69,6 +69,11 @@ std::string rows_until(const std::filesystem::path &path, const std::string &hea
   return text.substr(header.size(), end - header.size());
 }
 
+void note_appended(ResultFile &file, const std::string &rows) {
+  file.bytes += std::ssize(rows);
+  file.rows += std::count(rows.begin(), rows.end(), '\n');
+}
+
 } // namespace
 
 HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, bool has_bolts)
@@ -85,8 +90,10 @@ HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monito
   make_directory(directory_ / "history");
   for (std::size_t i = 0; i < pending_.size(); ++i) {
     const std::string header = header_of(i);
+    files_.push_back({"history/" + path_of(i).filename().string(), std::ssize(header), 0});
     if (std::isfinite(last_time)) {
       const std::string rows = rows_until(path_of(i), header, last_time);
+      note_appended(files_.back(), rows);
       write_file(path_of(i), header + rows);
       if (i > monitors_.size()) {
         note_bolts(rows);
@@ -187,9 +194,14 @@ void HistoryWriter::flush() {
   for (std::size_t i = 0; i < pending_.size(); ++i) {
     if (!pending_[i].empty()) {
       write_to(path_of(i), pending_[i], std::ios::app);
+      note_appended(files_[i], pending_[i]);
       pending_[i].clear();
     }
   }
+}
+
+std::vector<ResultFile> HistoryWriter::files() const {
+  return files_;
 }
 
 void HistoryWriter::sync() const {

@@ -36,7 +36,7 @@ bool is_own_file(const fs::path &folder, const fs::path &path) {
            is_numbered(name, "bolts", ".hdf") || is_numbered(name, "topology", ".h5");
   }
   if (folder == "checkpoints") {
-    return is_numbered(name, "checkpoint", ".h5");
+    return is_numbered(name, "checkpoint", ".h5") || name == "past_scenes.txt";
   }
   if (folder == "decomposition") {
     return is_numbered(name, "owners", ".csv");

@@ -399,16 +399,17 @@ private:
     };
     bool are_few = true;
     for (const JointSet &set : region_.joint_sets) {
-      are_few &= expect_few(expected_traces(set, region_), set.name, "joints",
-                            "use a larger spacing or longer traces, or look for a vertex gone astray");
+      are_few &=
+          expect_few(expected_traces(set, region_), set.name, "joints",
+                     "use a larger spacing or longer traces, or look for a vertex with a wrong coordinate");
     }
     for (const VoronoiCells &cells : region_.voronoi) {
       are_few &= expect_few(expected_cells(cells, region_), "the Voronoi pattern", "cells",
-                            "use a larger size, or look for a vertex gone astray");
+                            "use a larger size, or look for a vertex with a wrong coordinate");
     }
     for (const BrickPattern &bricks : region_.bricks) {
       are_few &= expect_few(expected_bricks(bricks, region_), "the brick pattern", "bricks",
-                            "use a larger block_size, or look for a vertex gone astray");
+                            "use a larger block_size, or look for a vertex with a wrong coordinate");
     }
     if (!are_few) {
       return;

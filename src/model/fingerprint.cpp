@@ -1,6 +1,8 @@
 #include "gcpdda/model/fingerprint.hpp"
 
 #include <initializer_list>
+#include <iterator>
+#include <type_traits>
 
 namespace gcpdda {
 
@@ -29,13 +31,172 @@ public:
     add({row.time});
     add(row.velocity);
   }
+  void add(const LoadRow &row) { add({row.time, row.factor}); }
+  void add(const RecordRow &row) { add({row.time, row.value.x, row.value.y}); }
+  void add(const Mat2 &x) { add({x.xx, x.xy, x.yx, x.yy}); }
+  void add(const Boundary &side) { add({side.normal.x, side.normal.y, side.reach}); }
+  void add(std::int64_t x) { add(static_cast<std::uint64_t>(x)); }
+  void add(std::int32_t x) { add(std::int64_t{x}); }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void add(Enum x) { add(static_cast<std::uint64_t>(x)); }
   [[nodiscard]] std::uint64_t value() const { return value_; }
 
 private:
   std::uint64_t value_;
 };
 
+// A field that is added to one of these must join its function below, or the words over fingerprints().
+static_assert(sizeof(RunSettings) == 136);
+static_assert(sizeof(JointLaw) == 160);
+static_assert(sizeof(PointLoad) == 72);
+static_assert(sizeof(Water) == 96);
+static_assert(sizeof(SupportType) == 128);
+static_assert(sizeof(InSituStress) == 160);
+static_assert(sizeof(Earthquake) == 176);
+static_assert(sizeof(Stage) == 240);
+
+void add(Chain &chain, const RunSettings &run) {
+  chain.add({run.gravity.x, run.gravity.y, run.gravity_ramp, run.spectral_radius, run.contact_damping,
+             run.rayleigh.mass_damping, run.rayleigh.stiffness_damping, run.local_damping});
+  chain.add(run.scheme);
+  chain.add(run.contact_time);
+  chain.add(run.potential);
+  chain.add(run.initial_friction);
+  chain.add(run.elasticity);
+  chain.add(std::uint64_t{run.plane_strain});
+}
+
+void add(Chain &chain, const JointLaws &joints) {
+  for (const JointLaw &law : joints.laws) {
+    chain.add({law.normal_stiffness, law.allowed_overlap, law.tangential_ratio, law.tan_friction,
+               law.cohesion, law.tension, law.residual_tan_friction, law.residual_cohesion, law.tan_dilation,
+               law.dilation_limit, law.roughness, law.reduction, law.strength});
+    chain.add(std::uint64_t{law.has_bonds});
+    chain.add(std::uint64_t{law.is_barton_bandis});
+  }
+  chain.add(joints.of_material);
+}
+
+void add(Chain &chain, const std::vector<SceneBlock> &blocks) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    for (const PointLoad &load : blocks[i].loads) {
+      chain.add(std::uint64_t{i});
+      chain.add(load.point);
+      chain.add(load.force);
+      chain.add({load.ramp});
+      chain.add(load.table);
+    }
+    chain.add(std::uint64_t{blocks[i].fixed});
+    chain.add(std::uint64_t{blocks[i].driven});
+  }
+}
+
+void add(Chain &chain, const std::vector<Water> &water) {
+  for (const Water &w : water) {
+    chain.add(w.phreatic);
+    chain.add(w.joints);
+    chain.add({w.density});
+    chain.add(std::uint64_t{w.active});
+  }
+}
+
+void add(Chain &chain, const SupportType &type) {
+  chain.add(type.kind);
+  chain.add({type.axial_stiffness, type.axial_rigidity, type.axial_yield, type.shear_stiffness,
+             type.shear_yield, type.rupture_strain, type.pretension, type.active_length, type.bond_strength,
+             type.spacing});
+  chain.add(std::uint64_t{type.plate});
+}
+
+// Further ones may come later.
+void add_bolts_in_place(Chain &chain, const Scene &scene) {
+  for (std::size_t i = 0; i < scene.bolts.size(); ++i) {
+    const Bolt &bolt = scene.bolts[i];
+    if (bolt.active) {
+      chain.add(std::uint64_t{i});
+      chain.add(bolt.from);
+      chain.add(bolt.to);
+      add(chain, scene.supports[static_cast<std::size_t>(bolt.support)]);
+    }
+  }
+}
+
+void add(Chain &chain, const InSituStress &stress) {
+  chain.add(std::uint64_t{stress.present});
+  chain.add(stress.at_level);
+  chain.add(stress.growth);
+  chain.add(stress.down);
+  chain.add({stress.level});
+  chain.add(stress.boundaries);
+}
+
+void add(Chain &chain, const Earthquake &quake) {
+  chain.add(quake.quantity);
+  chain.add(quake.baseline);
+  chain.add({quake.scale, quake.start, quake.p_wave_speed, quake.s_wave_speed});
+  chain.add(quake.stage);
+  chain.add(quake.record);
+  chain.add(quake.viscous);
+  chain.add(std::uint64_t{quake.is_compliant});
+}
+
+void add(Chain &chain, const Stage &stage) {
+  chain.add(stage.kind);
+  chain.add({stage.local_damping, stage.relax, stage.ramp});
+  chain.add(std::uint64_t{stage.mass_scaling});
+  chain.add(std::uint64_t{stage.kinetic_damping});
+  chain.add(std::uint64_t{stage.changes_stress});
+  chain.add(stage.excavated.blocks);
+  chain.add(stage.excavated.region);
+  for (const std::size_t opening : stage.excavated.openings) {
+    chain.add(std::uint64_t{opening});
+  }
+}
+
 } // namespace
+
+ScenePrints fingerprints(const Scene &start, std::span<const Stage> stages) {
+  std::vector<Chain> chains;
+  for (std::size_t part = 0; part < scene_parts.size(); ++part) {
+    chains.emplace_back(part);
+  }
+  auto &run = chains[0], &joint = chains[1], &material = chains[2], &block = chains[3], &water = chains[4],
+       &bolt = chains[5], &stress = chains[6], &ground = chains[7], &stage = chains[8];
+  const auto add_scene = [&](const Scene &scene) {
+    add(run, scene.run);
+    add(joint, scene.joints);
+    material.add(fingerprint(scene.materials));
+    add(block, scene.blocks);
+    add(water, scene.water);
+    add_bolts_in_place(bolt, scene);
+    add(stress, scene.in_situ);
+  };
+  add_scene(start);
+  // One that has not begun has done nothing.
+  if (start.earthquake.shakes() && start.earthquake.stage < std::ssize(stages)) {
+    add(ground, start.earthquake);
+  }
+  for (const Stage &next : stages) {
+    add(stage, next);
+    if (next.after) {
+      add_scene(*next.after);
+    }
+  }
+  ScenePrints prints{};
+  for (std::size_t part = 0; part < prints.size(); ++part) {
+    prints[part] = chains[part].value();
+  }
+  return prints;
+}
+
+std::uint64_t fingerprint(const ScenePrints &prints) {
+  Chain chain(prints.size());
+  for (const std::uint64_t print : prints) {
+    chain.add(print);
+  }
+  return chain.value();
+}
 
 std::uint64_t fingerprint(std::int64_t id, const SceneBlock &block) {
   Chain chain(static_cast<std::uint64_t>(id));

@@ -39,7 +39,8 @@ double width_along(const std::vector<Vec2> &outline, Vec2 direction) {
 }
 
 /// Width of the region across the joints of a set. Of a compact region the root of its area says it well
-/// enough; one that reaches far, by a vertex gone astray perhaps, is crossed by as many joints as it is wide.
+/// enough; one that reaches far, by a vertex with a wrong coordinate perhaps, is crossed by as many joints as
+/// it is wide.
 double width_across(const RockRegion &region, const JointSet &set) {
   const double compact = std::sqrt(signed_area(region.outline));
   const Vec2 across{-std::sin(set.dip.mean), std::cos(set.dip.mean)};

@@ -166,7 +166,7 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
 }
 
 int restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
-                  const std::filesystem::path &directory) {
+                  const std::filesystem::path &directory, EarlierResults earlier) {
   if (const Diagnostics faults = unfit_changes(before, after); !faults.empty()) {
     throw SceneError(faults);
   }
@@ -176,7 +176,12 @@ int restart_scene(const Communicator &communicator, const Scene &before, const S
     }
     return 0;
   }
-  return run_scene(communicator, after, {directory, false, true});
+  RunOptions run;
+  run.directory = directory;
+  run.restart = true;
+  run.computed_with = &before;
+  run.earlier = earlier;
+  return run_scene(communicator, after, run);
 }
 
 } // namespace gcpdda

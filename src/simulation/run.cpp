@@ -35,6 +35,11 @@ double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+Beginning beginning_of(const RunOptions &options) {
+  return options.restart ? Beginning{options.directory, options.computed_with, options.earlier}
+                         : Beginning{options.from, options.computed_with, EarlierResults::are_not_looked_at};
+}
+
 /// A run with its files.
 class SceneRun {
 public:
@@ -42,7 +47,7 @@ public:
   SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
       : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
         is_once_(options.once), bolts_at_start_(scene.bolts),
-        simulation_(communicator, scene, options.restart ? options.directory : options.from) {
+        simulation_(communicator, scene, beginning_of(options)) {
     if (!options.restart) {
       begin_results(scene, options);
     } else if (!simulation_.finished()) {
@@ -123,16 +128,8 @@ private:
 
   void log_stage() {
     const StageResult result = simulation_.stage_results().back();
-    const std::string name = simulation_.stages()[static_cast<std::size_t>(simulation_.stage().index)].name;
-    if (result.verdict == Verdict::done) {
-      log_->line(
-          fmt::format("stage '{}' at t = {:.9g} s, {} blocks removed", name, result.time, result.removed));
-      return;
-    }
-    log_->line(fmt::format("stage '{}' {} at t = {:.9g} s after {} steps: unbalanced {:.2e}, largest motion "
-                           "{:.3g} of a block's size",
-                           name, word_of(result.verdict), result.time, result.steps, result.unbalanced_ratio,
-                           result.moved));
+    log_->line(words_on_stage(simulation_.stages()[static_cast<std::size_t>(simulation_.stage().index)].name,
+                              result));
   }
 
   /// 7 where a limit was reached without a verdict.
@@ -159,9 +156,15 @@ private:
   // What was written after the checkpoint goes: it will be written again.
   void continue_results(const Scene &scene, const Restored &restored) {
     const RunFacts &facts = restored.facts;
-    on_root(communicator_, [&] { reopen_result_directory(directory_, scene.resolved); });
+    on_root(communicator_, [&] {
+      if (const auto before = simulation_.changed_from();
+          !before.empty()) { // first: a restart may be repeated
+        remember_scenes(directory_, before);
+      }
+      reopen_result_directory(directory_, scene.resolved);
+    });
     frames_.emplace(communicator_, directory_, simulation_.num_blocks());
-    frames_->continue_behind(facts.frame_times);
+    frames_->continue_behind(facts.frame_times, facts.results);
     on_root(communicator_, [&] {
       histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step,
                          !scene.bolts.empty());
@@ -169,6 +172,9 @@ private:
     log_.emplace(communicator_.is_root(), directory_, std::ios::app);
     for (const std::string &rejected : restored.rejected) {
       log_->line("warning: a checkpoint is not used, " + rejected);
+    }
+    for (const std::string &gap : restored.gaps) {
+      log_->line("warning: earlier results have a gap that stays: " + gap);
     }
     log_->line(fmt::format("restart from {}: t = {:.9g} s, step {}, {} frames", restored.path.string(),
                            facts.time, facts.step, facts.frame_times.size()));
@@ -197,14 +203,7 @@ private:
         simulation_.plan().time_step, simulation_.plan().num_steps, simulation_.plan().duration,
         bound.time_step, bound.safety, bound.limit, bound.omega_max));
     for (const JointLaw &law : scene.joints.laws) {
-      log_->line(fmt::format(
-          "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
-          "cohesion {:g} Pa",
-          law.name, law.normal_stiffness,
-          law.allowed_overlap > 0.0
-              ? fmt::format(" for an allowed overlap of {:g} block sizes", law.allowed_overlap)
-              : "",
-          law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion));
+      log_->line(words_on_law(law));
     }
     report_fidelity(scene.run);
     tell_of_bolts();
@@ -314,6 +313,10 @@ private:
     on_root(communicator_, [&] { histories_->sync(); });
     frames_->sync();
     RunFacts facts = simulation_.facts();
+    on_root(communicator_, [&] {
+      facts.results = histories_->files();
+      facts.results.insert(facts.results.end(), frames_->files().begin(), frames_->files().end());
+    });
     ledger_->tell(facts);
     facts.frame_times = frames_->times();
     checkpoints_->write(facts, simulation_.blocks(), SimulationContacts(simulation_));

@@ -1,6 +1,7 @@
 #include "run_words.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace gcpdda {
@@ -109,6 +110,27 @@ void tell_end(const Simulation &simulation, const std::filesystem::path &directo
     summary.verdict = "completed";
     summary.message = fmt::format("reached t = {:g} s", simulation.time());
   }
+}
+
+std::string words_on_law(const JointLaw &law) {
+  return fmt::format(
+      "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
+      "cohesion {:g} Pa",
+      law.name, law.normal_stiffness,
+      law.allowed_overlap > 0.0
+          ? fmt::format(" for an allowed overlap of {:g} block sizes", law.allowed_overlap)
+          : "",
+      law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion);
+}
+
+std::string words_on_stage(const std::string &name, const StageResult &result) {
+  if (result.verdict == Verdict::done) {
+    return fmt::format("stage '{}' at t = {:.9g} s, {} blocks removed", name, result.time, result.removed);
+  }
+  return fmt::format("stage '{}' {} at t = {:.9g} s after {} steps: unbalanced {:.2e}, largest motion "
+                     "{:.3g} of a block's size",
+                     name, word_of(result.verdict), result.time, result.steps, result.unbalanced_ratio,
+                     result.moved);
 }
 
 std::string words_on_loads(const std::vector<BoltLoad> &loads) {

@@ -15,6 +15,11 @@ std::string fault_message(const Simulation &simulation);
 /// Which blocks are rigid, and what that leaves out.
 std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_error);
 
+std::string words_on_law(const JointLaw &law);
+
+/// How a stage has ended.
+std::string words_on_stage(const std::string &name, const StageResult &result);
+
 /// How far a run is, from the last row of energies and the time of a step, s. A stage that waits for its
 /// verdict says how near to rest it was when it was looked at last: nobody knows when it will be there.
 std::string words_on_progress(const Simulation &simulation, const EnergyRow &energy, double per_step);

@@ -148,7 +148,7 @@ private:
 
   /// The state an earlier search has settled; of no cost to this one.
   int take_settled() {
-    const Simulation found(world_, settling_scene(scene_, options_.settled_factor), options_.settled);
+    const Simulation found(world_, settling_scene(scene_, options_.settled_factor), {options_.settled});
     num_blocks_ = found.num_blocks();
     start_time_ = found.time();
     report_.settled.factor = options_.settled_factor;
@@ -217,7 +217,9 @@ private:
         scene_.resolved;
     const fs::path directory = trial_directory(factor);
     const bool shows = !options_.quiet && group_number_ == 0; // of trials at once the first one's
+    const Scene settled = settling_scene(scene_, report_.settled.factor);
     RunOptions options{directory, false, false, settled_directory(), true};
+    options.computed_with = &settled;
     options.once = true;
     options.progress_of = shows ? fmt::format("factor {:.6g}: ", factor) : std::string();
     return run_and_tell(*group_, weakened, options);

@@ -2,14 +2,90 @@
 // neighbourhood was refreshed (a candidate that does not touch adds nothing, sums go in the order of ids), so
 // a run goes on from its blocks and the memory of its contacts alone: a restart begins with a refresh.
 
+#include "gcpdda/base/check.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/model/fingerprint.hpp"
 #include "gcpdda/simulation/simulation.hpp"
 
 #include <algorithm>
-#include <fmt/format.h>
+#include <iterator>
+#include <utility>
 
 namespace gcpdda {
+
+namespace {
+
+/// By the number of the stage that a state is in.
+std::vector<ScenePrints> prints_by_stage(const Scene &start, std::span<const Stage> stages) {
+  std::vector<ScenePrints> prints;
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    prints.push_back(fingerprints(start, stages.first(k + 1)));
+  }
+  return prints;
+}
+
+} // namespace
+
+void Simulation::take_prints(const Beginning &beginning) {
+  prints_ = prints_by_stage(scene_, stages_);
+  if (beginning.computed_with == nullptr) {
+    prints_before_ = prints_;
+    return;
+  }
+  Scene before = *beginning.computed_with;
+  before.earthquake.record = scene_.earthquake.record; // another one of this name is another earthquake
+  const std::vector<Stage> stages = std::exchange(before.stages, {});
+  prints_before_ = prints_by_stage(before, stages.empty() ? std::vector<Stage>(1) : stages);
+}
+
+std::vector<std::uint64_t> Simulation::changed_from() const {
+  std::vector<std::uint64_t> prints;
+  if (prints_before_ != prints_) {
+    std::transform(prints_before_.begin(), prints_before_.end(), std::back_inserter(prints),
+                   [](const ScenePrints &parts) { return fingerprint(parts); });
+  }
+  return prints;
+}
+
+void Simulation::expect_own_state(const ScenePrints &saved, std::int64_t stage,
+                                  std::span<const std::uint64_t> past) const {
+  if (std::find(past.begin(), past.end(), fingerprint(saved)) != past.end()) {
+    return;
+  }
+  if (stage >= std::min(std::ssize(prints_), std::ssize(prints_before_))) {
+    throw FileError("its stage is not in the scene");
+  }
+  const ScenePrints &own = prints_before_[static_cast<std::size_t>(stage)];
+  std::string different;
+  for (std::size_t part = 0; part < own.size(); ++part) {
+    if (saved[part] != own[part]) {
+      different += (different.empty() ? "" : ", ") + std::string(scene_parts[part]);
+    }
+  }
+  if (!different.empty()) {
+    throw FileError("it is of another scene: " + different +
+                    " had other values when it was computed; a change that is meant goes into gcpdda restart "
+                    "--set, not into scene.toml");
+  }
+}
+
+void Simulation::restore(const Beginning &beginning, ContactMemory &memory) {
+  std::vector<std::uint64_t> past;
+  if (communicator_.is_root()) {
+    past = past_scenes(beginning.folder);
+  }
+  past = communicator_.all_gather(past).front();
+  const Scene start = scene_;
+  const BlockSystem begin = blocks_;
+  const auto prepare = [&](const RunFacts &facts) {
+    const StageState saved = to_state({facts.stage_counts, facts.stage_numbers});
+    expect_own_state(facts.scene.parts, saved.index, past);
+    begin_as_restored(start, begin, saved, facts);
+  };
+  restored_ = restore_newest_checkpoint(communicator_, beginning.folder, identity_, blocks_, prepare,
+                                        beginning.results);
+  memory.others = std::move(restored_->memory);
+}
 
 void Simulation::identify(std::span<const SceneBlock> slab) {
   const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
@@ -22,9 +98,11 @@ void Simulation::identify(std::span<const SceneBlock> slab) {
       static_cast<std::int64_t>(sum & 0xffffffffU), static_cast<std::int64_t>(sum >> 32),
       std::count_if(slab.begin(), slab.end(), [](const SceneBlock &block) { return !block.fixed; })};
   communicator_.sum(parts);
-  identity_ = {num_blocks(), parts[2],
+  identity_ = {num_blocks(),
+               parts[2],
                static_cast<std::uint64_t>(parts[0]) + (static_cast<std::uint64_t>(parts[1]) << 32),
-               fingerprint(scene_.materials)};
+               fingerprint(scene_.materials),
+               {}};
 }
 
 void Simulation::go_on() {
@@ -45,6 +123,7 @@ void Simulation::go_on() {
 RunFacts Simulation::facts() const {
   RunFacts facts;
   facts.scene = identity_;
+  facts.scene.parts = prints_[static_cast<std::size_t>(stage_.index)];
   facts.more_mobile = stage_.more_mobile;
   facts.step = step_count_;
   StageNumbers numbers = to_numbers(stage_);

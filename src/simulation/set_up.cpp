@@ -61,8 +61,7 @@ Diagnostic on_viscous_sides(const Scene &scene, std::int64_t count) {
 
 } // namespace
 
-Simulation::Simulation(const Communicator &communicator, Scene scene,
-                       const std::filesystem::path &restart_from)
+Simulation::Simulation(const Communicator &communicator, Scene scene, const Beginning &beginning)
     : communicator_(communicator), scene_(std::move(scene)), balance_(communicator), ghosts_(communicator),
       contacts_(contact_parameters(scene_)),
       scheme_(make_scheme(scene_.run.scheme, scene_.run.spectral_radius, scene_.run.contact_time)) {
@@ -83,7 +82,7 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
   plan_all_stages();
   open_earthquake();
   stop_on_errors(notes_);
-  distribute(restart_from);
+  distribute(beginning);
   restored_ ? bolts_.take_laws(scene_) : change_bolts({});
   scale_masses();
   find_bound();
@@ -106,9 +105,10 @@ Simulation::Simulation(const Communicator &communicator, Scene scene,
 }
 
 // Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
-void Simulation::distribute(const std::filesystem::path &restart_from) {
+void Simulation::distribute(const Beginning &beginning) {
   stop_on_errors(open_block_file(communicator_, scene_));
   stop_on_errors(judge_size(communicator_, scene_));
+  take_prints(beginning); // of the scene as it was read
   std::vector<SceneBlock> slab = load_slab(cut_region());
   load_sides(slab);
   note_groups(slab);
@@ -133,13 +133,8 @@ void Simulation::distribute(const std::filesystem::path &restart_from) {
     apply_in_situ_stress();
   }
   ContactMemory memory;
-  if (!restart_from.empty()) { // rows are those of the slab still
-    const Scene start = scene_;
-    const BlockSystem begin = blocks_;
-    restored_ =
-        restore_newest_checkpoint(communicator_, restart_from, identity_, blocks_,
-                                  [&](const RunFacts &facts) { begin_as_restored(start, begin, facts); });
-    memory.others = std::move(restored_->memory);
+  if (!beginning.folder.empty()) { // rows are those of the slab still
+    restore(beginning, memory);
   }
   migrate(communicator_, map_, blocks_, memory);
   if (restored_) {

@@ -126,12 +126,12 @@ void Simulation::unscale_masses() {
   }
 }
 
-void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, const RunFacts &facts) {
+void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, const StageState &saved,
+                                   const RunFacts &facts) {
   scene_ = start;
   list_courses();
   blocks_ = rows;
   stage_ = {};
-  const StageState saved = to_state({facts.stage_counts, facts.stage_numbers});
   if (saved.index >= std::ssize(stages_)) {
     throw FileError("its stage is not in the scene");
   }
@@ -141,6 +141,11 @@ void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, 
   remove_blocks(saved.removed);
   stage_ = saved;
   bolts_ = Bolts::from_numbers(facts.bolt_counts, facts.bolt_numbers);
+  for (const BoltLink &link : bolts_.links()) {
+    if (link.bolt < 0 || link.bolt >= std::ssize(scene_.bolts)) {
+      throw FileError("a bolt of it is not in the scene");
+    }
+  }
   list_applied(blocks_, !scene_.water.empty() || !stage_.unloading.empty());
   blocks_.body = {{facts.gravity_x, facts.gravity_y}, {facts.shaking_x, facts.shaking_y}};
 }

@@ -14,13 +14,13 @@ case ${1:-} in
 esac
 seconds=${1:-20}
 targets=("${@:2}")
-[ ${#targets[@]} -gt 0 ] || targets=(scene_fuzz block_file_fuzz)
+[ ${#targets[@]} -gt 0 ] || targets=(scene_fuzz block_file_fuzz checkpoint_fuzz)
 preset=sanitize
 build=$top/build-sanitize
 build_targets "${targets[@]}"
 
 TMPDIR=$(mktemp -d)
-export TMPDIR # the block files
+export TMPDIR # the block files and checkpoints
 trap 'rm -rf "$TMPDIR"' EXIT
 mkdir -p "$build/findings"
 # A string of a dictionary has its quotes and backslashes escaped.
@@ -33,6 +33,7 @@ mkdir -p "$build/findings"
 declare -A options=(
   [scene_fuzz]="-max_len=10000 -malloc_limit_mb=256 -dict=$build/scene.dict $here/corpus/scene $top/run/scenes"
   [block_file_fuzz]="-max_len=300 -len_control=0"
+  [checkpoint_fuzz]="-max_len=1200 -len_control=0"
 )
 fuzz() {
   local target=$1 corpus=$build/corpus/$1 log=$build/$1.log

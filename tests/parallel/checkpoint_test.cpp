@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <fstream>
 
 namespace gcpdda::checkpoint_test {
 namespace {
@@ -196,7 +197,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
     }
   }
   RunFacts facts;
-  facts.scene = {count, count, 0xfedcba9876543210U, 7};
+  facts.scene = {count, count, 0xfedcba9876543210U, 7, {1, 2, 3}};
   facts.step = 12;
   facts.time = 0.5;
   facts.frame_times = {0.0, 0.25, 0.5};
@@ -239,6 +240,87 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
   EXPECT_GE(restored.memory.size(), world.size() > 1 ? 50U : 500U);
 }
 
+/// Two checkpoints of the same squares; the newer one is for damaging.
+class DamagedCheckpoint : public ::testing::Test {
+protected:
+  static constexpr std::int64_t count = 12;
+  DamagedCheckpoint()
+      : folder_(world_), blocks_(numbered_squares(
+                             count, [&](std::int64_t id) { return id % world_.size() == world_.rank(); })) {
+    facts_.scene = {count, count, 1, 1, {}};
+    CheckpointWriter writer(world_, folder_.path(""), {});
+    for (facts_.step = 7; facts_.step < 9; ++facts_.step) {
+      facts_.frame_times.push_back(0.1);
+      facts_.results.push_back({"frames/frame_000000.hdf", 5, -1});
+      writer.write(facts_, blocks_, KnownRegions());
+    }
+    if (world_.is_root()) {
+      good_ = file_text(newest_);
+    }
+    world_.broadcast(good_); // before the root changes it
+  }
+
+  /// The older one is taken, and every rank knows so.
+  void expect_older(const std::string &bytes, const std::string &told) {
+    if (world_.is_root()) {
+      std::ofstream(newest_, std::ios::binary) << bytes;
+    }
+    world_.barrier();
+    const std::int64_t first = slab_begin(count, world_.size(), world_.rank());
+    const std::int64_t last = slab_begin(count, world_.size(), world_.rank() + 1);
+    BlockSystem slab = numbered_squares(count, [&](std::int64_t id) { return first <= id && id < last; });
+    const Restored restored = restore_newest_checkpoint(world_, folder_.path(""), facts_.scene, slab);
+    EXPECT_EQ(restored.facts.step, 7);
+    EXPECT_EQ(restored.facts.frame_times.size(), 1U);
+    if (world_.is_root()) {
+      ASSERT_EQ(restored.rejected.size(), 1U);
+      EXPECT_NE(restored.rejected[0].find(told), std::string::npos) << restored.rejected[0];
+    }
+    world_.barrier();
+  }
+
+  Communicator world_ = Communicator::world();
+  testing::SharedFolder folder_;
+  BlockSystem blocks_;
+  RunFacts facts_;
+  fs::path newest_ = folder_.path("checkpoints/checkpoint_000000008.h5");
+  std::string good_;
+};
+
+TEST_F(DamagedCheckpoint, IsFoundWhereverItsBytesHaveChanged) {
+  constexpr std::size_t num_flips = 16;
+  for (std::size_t k = 0; k < num_flips; ++k) { // every bit of a byte once, in all of the file
+    std::string bytes = good_;
+    const std::size_t place = 512 + (good_.size() - 513) * k / (num_flips - 1);
+    bytes[place] = static_cast<char>(bytes[place] ^ (1 << (k % 8)));
+    expect_older(bytes, "it is damaged: its checksum is wrong");
+  }
+  for (std::size_t zeroed = 4096; zeroed + 2048 < good_.size(); zeroed += 16384) { // a page that was lost
+    std::string bytes = good_;
+    bytes.replace(zeroed, 2048, 2048, bytes[zeroed] == '\0' ? '\1' : '\0');
+    expect_older(bytes, "it is damaged: its checksum is wrong");
+  }
+}
+
+TEST_F(DamagedCheckpoint, IsFoundByItsSeal) {
+  for (const std::size_t size : {0, 5, 511}) {
+    expect_older(good_.substr(0, size), size < 5 ? "begin with no seal" : "");
+  }
+  expect_older(good_.substr(0, good_.size() - 1), "it is damaged: it has ");
+  expect_older(good_ + '\0', "it is damaged: it has ");
+  for (const char *word : {"version", "step", "bytes", "sum"}) { // the last digit of each
+    std::string bytes = good_;
+    const std::size_t place = bytes.find('\n', bytes.find(word)) - 1;
+    bytes[place] = static_cast<char>(bytes[place] == '1' ? '2' : '1');
+    expect_older(bytes, *word == 'v' ? "it has format version 1, this gcpdda reads version 8" : "it ");
+  }
+  std::string bytes = good_;
+  bytes[500] = 'x';
+  expect_older(bytes, "it is damaged: its seal is broken");
+  expect_older(file_text(folder_.path("checkpoints/checkpoint_000000007.h5")),
+               "it is the checkpoint of step 7 under the name of another");
+}
+
 TEST(CheckpointFile, WithMoreOrFewerRegionsThanCountedIsRefusedOnEveryRank) {
   const Communicator world = Communicator::world();
   const testing::SharedFolder folder(world);
@@ -246,7 +328,7 @@ TEST(CheckpointFile, WithMoreOrFewerRegionsThanCountedIsRefusedOnEveryRank) {
   const BlockSystem blocks =
       numbered_squares(count, [&](std::int64_t id) { return id % world.size() == world.rank(); });
   RunFacts facts;
-  facts.scene = {count, count, 1, 1};
+  facts.scene = {count, count, 1, 1, {}};
   KnownRegions regions;
   if (world.is_root()) {
     regions.records = {{BlockId{0}, BlockId{1}, {}}};

@@ -3,6 +3,7 @@
 
 #include "gcpdda/io/run_comparison.hpp"
 
+#include "checkpoints.hpp"
 #include "child_process.hpp"
 #include "sample_scenes.hpp"
 #include "support/block_file_writer.hpp"
@@ -11,15 +12,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <fmt/format.h>
 #include <fstream>
 #include <hdf5.h>
-#include <random>
-#include <thread>
 
 namespace gcpdda::restart_test {
 namespace {
@@ -37,197 +34,6 @@ using testing::summary_text;
 using testing::WorkFolder;
 
 const std::vector<std::string> none;
-
-std::vector<fs::path> checkpoints(const fs::path &run) {
-  std::vector<fs::path> found;
-  if (fs::exists(run / "checkpoints")) {
-    for (const fs::directory_entry &entry : fs::directory_iterator(run / "checkpoints")) {
-      found.push_back(entry.path());
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-void set_number(const fs::path &file, const char *dataset, std::int64_t value) {
-  const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t number = H5Dopen2(id, dataset, H5P_DEFAULT);
-  EXPECT_GE(H5Dwrite(number, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value), 0);
-  H5Dclose(number);
-  H5Fclose(id);
-}
-
-/// Rigid, deformable, non-convex and driven blocks with friction. One run that nobody stops and that writes
-/// no checkpoints, to compare with; and runs of the same scene that go through one or more of them.
-class RestartOfAWall : public ::testing::Test {
-protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<WorkFolder>();
-    folder_->write("wall.toml", testing::mixed_wall_toml(24, 14, 0.04));
-    outcome_ =
-        run_gcpdda(1, {"run", "wall.toml", "--out", "whole", "--set", "output.interval=0.01"}, *folder_);
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
-  void SetUp() override { ASSERT_EQ(outcome_.exit_code, 0) << outcome_.err; }
-
-  static fs::path whole() { return *folder_ / "whole"; }
-  static std::vector<std::string> run_to(const std::string &out, const std::string &interval) {
-    return {"run",   "wall.toml",
-            "--out", out,
-            "--set", "output.interval=0.01",
-            "--set", "output.checkpoint_interval=" + interval};
-  }
-  static void expect_crossing(const fs::path &run) {
-    EXPECT_GE(summary_number(run, "cross_rank_contacts"), 50);
-    EXPECT_GE(summary_number(run, "migrations"), 1);
-    EXPECT_GE(summary_number(run, "refreshes"), 1);
-  }
-
-  static std::unique_ptr<WorkFolder> folder_;
-  static Outcome outcome_;
-};
-
-std::unique_ptr<WorkFolder> RestartOfAWall::folder_;
-Outcome RestartOfAWall::outcome_;
-
-class RestartOnOtherRanks : public RestartOfAWall,
-                            public ::testing::WithParamInterface<std::pair<int, int>> {};
-
-INSTANTIATE_TEST_SUITE_P(Regression, RestartOnOtherRanks,
-                         ::testing::Values(std::pair(1, 3), std::pair(2, 1), std::pair(4, 7)),
-                         [](const auto &ranks) {
-                           return fmt::format("From{}To{}", ranks.param.first, ranks.param.second);
-                         });
-
-// The run reaches its end, then is put back to its middle: what was written later is in the way.
-TEST_P(RestartOnOtherRanks, GivesTheSameFiles) {
-  const auto [before, after] = GetParam();
-  const std::string name = fmt::format("from{}to{}", before, after);
-  const fs::path run = *folder_ / name;
-  const Outcome first = run_gcpdda(before, run_to(name, "0.02"), *folder_);
-  ASSERT_EQ(first.exit_code, 0) << first.err;
-  EXPECT_EQ(compare_runs(whole(), run), none) << "writing checkpoints changed the run";
-  if (before > 1) {
-    expect_crossing(run);
-  }
-  const std::vector<fs::path> files = checkpoints(run);
-  ASSERT_EQ(files.size(), 2U) << "one in the middle, one at the end";
-  const std::string last = file_text(files[1]);
-  fs::remove(files[1]);
-  std::ofstream(run / "history/energy.csv", std::ios::app) << "0.0401,3,4"; // killed in a row
-  std::ofstream(run / "frames/frame_000007.hdf") << "later";
-
-  const Outcome second = run_gcpdda(after, {"restart", name}, *folder_);
-  ASSERT_EQ(second.exit_code, 0) << second.err;
-  EXPECT_EQ(count_of(second.err, "restart from " + name + "/checkpoints/"), 1) << second.err;
-  EXPECT_EQ(compare_runs(whole(), run), none);
-  EXPECT_EQ(file_text(files[1]) == last, true) << "checkpoints of " << before << " and " << after << " ranks";
-  EXPECT_EQ(summary_number(run, "ranks"), after);
-  for (const char *fact : {"blocks", "steps", "time", "contacts", "contact_steps", "max_overlap", "energy"}) {
-    EXPECT_EQ(summary_text(run, fact), summary_text(whole(), fact)) << fact;
-  }
-  if (after > 1) {
-    expect_crossing(run);
-  }
-}
-
-// To mpirun, which passes it on; then to one rank alone, which takes the others along.
-TEST_F(RestartOfAWall, ASignalStopsAllRanksWithACheckpoint) {
-  Process both(gcpdda_words(2, run_to("signal", "0")), folder_->path());
-  both.wait_until([] { return fs::exists(*folder_ / "signal/frames/frame_000000.hdf"); });
-  kill(both.id(), SIGUSR1);
-  const Outcome stopped = both.wait();
-  EXPECT_EQ(stopped.exit_code, 6) << stopped.err;
-  EXPECT_EQ(count_of(stopped.err, "stopped by a signal at t = "), 1) << stopped.err;
-  EXPECT_EQ(summary_text(*folder_ / "signal", "verdict"), "\"stopped\"");
-  EXPECT_EQ(checkpoints(*folder_ / "signal").size(), 1U);
-
-  Process three(gcpdda_words(3, {"restart", "signal"}), folder_->path());
-  three.wait_until([] { return count_of(file_text(*folder_ / "signal/run.log"), "restart from") == 1; });
-  const std::vector<pid_t> ranks = three.children();
-  ASSERT_EQ(ranks.size(), 3U);
-  kill(ranks[1], SIGUSR1);
-  EXPECT_EQ(three.wait().exit_code, 6);
-
-  const Outcome rest = run_gcpdda(2, {"restart", "signal"}, *folder_);
-  EXPECT_EQ(rest.exit_code, 0) << rest.err;
-  EXPECT_EQ(compare_runs(whole(), *folder_ / "signal"), none);
-}
-
-// One rank, then all and mpirun, each at a random moment after the first checkpoint.
-TEST_F(RestartOfAWall, KilledAtRandomMomentsGoesOn) {
-  std::random_device random;
-  std::vector<std::string> words = run_to("killed", "0.0012");
-  const int num_ranks[] = {3, 2};
-  for (int kills = 0; kills < 2; ++kills) {
-    Process process(gcpdda_words(num_ranks[kills], words), folder_->path());
-    const std::string log = kills == 0 ? "" : file_text(*folder_ / "killed/run.log");
-    process.wait_until([&] {
-      return fs::exists(*folder_ / "killed/run.log") &&
-             count_of(file_text(*folder_ / "killed/run.log"), "checkpoint at t") >
-                 count_of(log, "checkpoint at t");
-    });
-    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 150));
-    const std::vector<pid_t> ranks = process.children();
-    ASSERT_EQ(ranks.size(), static_cast<std::size_t>(num_ranks[kills]))
-        << "the run ended before it was killed";
-    if (kills == 0) {
-      kill(ranks[random() % ranks.size()], SIGKILL);
-    } else {
-      kill(process.id(), SIGKILL);
-      for (const pid_t rank : ranks) {
-        kill(rank, SIGKILL);
-      }
-    }
-    EXPECT_NE(process.wait().exit_code, 0);
-    testing::wait_until([&] {
-      return std::all_of(ranks.begin(), ranks.end(), [](pid_t rank) { return kill(rank, 0) != 0; });
-    });
-    EXPECT_GE(checkpoints(*folder_ / "killed").size(), 1U);
-    words = {"restart", "killed"};
-  }
-  const Outcome rest = run_gcpdda(2, words, *folder_);
-  EXPECT_EQ(rest.exit_code, 0) << rest.err;
-  for (const std::string &name : listing(*folder_ / "killed/frames")) {
-    if (name.ends_with(".tmp")) {
-      fs::remove(*folder_ / "killed/frames" / name);
-    }
-  }
-  EXPECT_EQ(compare_runs(whole(), *folder_ / "killed"), none);
-}
-
-// No file may grow larger than this: what a full disk is to a checkpoint, the largest file of the run.
-TEST_F(RestartOfAWall, AFullDiskLeavesTheLastCheckpoint) {
-  const Outcome first = run_gcpdda(1, run_to("full", "0.03"), *folder_);
-  ASSERT_EQ(first.exit_code, 0) << first.err;
-  const std::vector<fs::path> files = checkpoints(*folder_ / "full");
-  ASSERT_EQ(files.size(), 2U);
-  const std::uintmax_t needed = fs::file_size(files[1]);
-  fs::remove(files[1]);
-  const std::string good = file_text(files[0]);
-  std::uintmax_t largest_frame = 0;
-  for (const fs::directory_entry &entry : fs::directory_iterator(*folder_ / "full/frames")) {
-    largest_frame = std::max(largest_frame, entry.file_size());
-  }
-  ASSERT_LT(largest_frame, needed - 65536);
-  // Where it ends is among rows, or in what HDF5 writes for itself.
-  for (const auto &[ranks, missing] : {std::pair("1", 4U), {"2", 4U}, {"2", 7U}, {"2", 12U}, {"2", 40U}}) {
-    // The ranks alone have the limit, and no shared memory, which would be under it.
-    const std::string limited =
-        fmt::format("trap '' XFSZ; ulimit -f {}; exec \"$0\" \"$@\"", needed / 1024 - missing);
-    const std::vector<std::string> words{
-        GCPDDA_MPIEXEC, "-n",   ranks, "--oversubscribe", "--bind-to",       "none",    "--mca", "btl",
-        "tcp,self",     "bash", "-c",  limited,           GCPDDA_EXECUTABLE, "restart", "full"};
-    const Outcome full = testing::run_program(words, folder_->path());
-    EXPECT_EQ(full.exit_code, 4) << full.err;
-    EXPECT_GE(count_of(full.err, files[1].filename().string()), 1) << full.err;
-    EXPECT_EQ(checkpoints(*folder_ / "full"), std::vector{files[0]}) << "what failed is gone";
-    EXPECT_EQ(file_text(files[0]) == good, true) << "the last good one is harmed";
-  }
-  const Outcome rest = run_gcpdda(2, {"restart", "full"}, *folder_);
-  EXPECT_EQ(rest.exit_code, 0) << rest.err;
-  EXPECT_EQ(compare_runs(whole(), *folder_ / "full"), none);
-}
 
 /// A short run of two blocks with two checkpoints, at 0.05 s and at the end, 0.1 s.
 class Restart : public ::testing::Test {
@@ -326,17 +132,18 @@ TEST_F(Restart, WithoutAValidCheckpointIsRefused) {
   std::string bytes(reinterpret_cast<const char *>(&speed), sizeof(speed));
   overwrite(files_[1], good.find(bytes), static_cast<char>(good[good.find(bytes)] ^ 1));
   expect_refusal(2, {"restart", "run"}, 4,
-                 {"cannot restart run: no checkpoint can be used", old + ": cannot open ",
+                 {"cannot restart run: no checkpoint can be used",
+                  old + ": it is damaged or no checkpoint of gcpdda: its 0 bytes begin with no seal",
                   last + ": it is damaged: its checksum is wrong"});
   std::ofstream(files_[0], std::ios::binary) << "notes";
   fs::copy_file(folder_ / "run/frames/frame_000000.hdf", files_[1], fs::copy_options::overwrite_existing);
   expect_refusal(0, {"restart", "run"}, 4,
-                 {old + ": cannot open ", last + ": it is an HDF5 file, but no checkpoint of gcpdda"});
+                 {old + ": it is damaged or no checkpoint of gcpdda: its 5 bytes begin with no seal",
+                  last + ": it is an HDF5 file, but no checkpoint of gcpdda"});
   fs::remove(files_[0]);
   std::ofstream(files_[1], std::ios::binary) << good;
-  set_number(files_[1], "/version", 1000);
-  expect_refusal(0, {"restart", "run"}, 4,
-                 {last + ": it has format version 1000, this gcpdda reads version 7"});
+  overwrite(files_[1], good.find("version 8") + 8, '7');
+  expect_refusal(0, {"restart", "run"}, 4, {last + ": it has format version 7, this gcpdda reads version 8"});
   fs::remove_all(folder_ / "run/checkpoints");
   fs::remove(folder_ / "run/summary.json");
   expect_refusal(0, {"restart", "run"}, 4, {"there is no checkpoint in run/checkpoints"});
@@ -359,9 +166,105 @@ TEST_F(Restart, OfAForeignCheckpointIsRefused) {
   replace_by_run_with("material.rock.density=2601");
   expect_refusal(2, {"restart", "run"}, 4,
                  {last + ": it is of another scene: a material has another density"});
+  for (const auto &[set, part] : {std::pair("joint.default.friction_angle_deg=20", "[joint]"),
+                                  {"run.gravity=[0, -9.8]", "[run]"},
+                                  {"block.slider.load=[{point=[0.5, 0.5], force=[1, 0]}]", "[[block]]"}}) {
+    replace_by_run_with(set);
+    expect_refusal(0, {"restart", "run"}, 4,
+                   {last + ": it is of another scene: " + part + " had other values when it was computed"});
+  }
   replace_by_run_with("block.tower.fixed=true");
   expect_refusal(0, {"restart", "run"}, 4,
                  {last + ": it is of another scene: 3 blocks of which 1 can move, this one has 3 and 2"});
+}
+
+// A length in a checkpoint that a bit flip has made enormous is not believed, on any rank.
+TEST_F(Restart, OfACheckpointWithAnAbsurdLengthTakesTheOneBefore) {
+  const hid_t file = H5Fopen(files_[1].c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t counts = H5Dopen2(file, "/stage/counts", H5P_DEFAULT);
+  const haddr_t place = H5Dget_offset(counts);
+  H5Dclose(counts);
+  H5Fclose(file);
+  for (const std::size_t byte : {3, 5}) {
+    fs::remove_all(folder_ / "run");
+    fs::copy(folder_ / "whole", folder_ / "run", fs::copy_options::recursive);
+    overwrite(files_[1], place + byte, '\x40');
+    const Outcome outcome = run_gcpdda(2, {"restart", "run"}, folder_);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(count_of(outcome.err, "it is damaged: its checksum is wrong"), 1) << outcome.err;
+    EXPECT_EQ(compare_runs(folder_ / "whole", folder_ / "run"), none);
+  }
+}
+
+// What is missing behind the older checkpoint is computed again; what is missing before it cannot be.
+TEST_F(Restart, NoticesResultsThatAreNotWhole) {
+  const auto lose = [&](const char *what) {
+    fs::remove_all(folder_ / "run");
+    fs::copy(folder_ / "whole", folder_ / "run", fs::copy_options::recursive);
+    const std::string text = file_text(folder_ / "run/history/energy.csv");
+    if (std::string(what) == "frame") {
+      fs::remove(folder_ / "run/frames/frame_000002.hdf");
+    } else if (std::string(what) == "contacts") {
+      fs::resize_file(folder_ / "run/frames/contacts_000002.hdf", 1000);
+    } else {
+      std::ofstream(folder_ / "run/history/energy.csv", std::ios::binary) << text.substr(0, text.size() - 9);
+    }
+  };
+  const std::string last = fs::path("run/checkpoints") / files_[1].filename();
+  for (const auto &[what, told] : {std::pair("frame", "frames/frame_000002.hdf is missing"),
+                                   {"contacts", "frames/contacts_000002.hdf is damaged, it has 1000 of "},
+                                   {"history", "history/energy.csv is cut short, it has 8 of 9 rows"}}) {
+    lose(what);
+    const Outcome outcome = run_gcpdda(2, {"restart", "run"}, folder_);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(count_of(outcome.err, "warning: a checkpoint is not used, " + last +
+                                        ": results before it are not whole: " + told),
+              1)
+        << outcome.err;
+    EXPECT_EQ(compare_runs(folder_ / "whole", folder_ / "run"), none);
+    EXPECT_EQ(file_text(folder_ / "run/history/energy.csv"), file_text(folder_ / "whole/history/energy.csv"));
+  }
+  lose("frame");
+  fs::remove(files_[0]);
+  expect_refusal(2, {"restart", "run"}, 4,
+                 {"cannot restart run: no checkpoint can be used", "frames/frame_000002.hdf is missing",
+                  "or go on without them: gcpdda restart --accept-gaps"});
+  const Outcome accepted =
+      run_gcpdda(2, {"restart", "run", "--accept-gaps", "--set", "run.duration=0.15"}, folder_);
+  EXPECT_EQ(accepted.exit_code, 0) << accepted.err;
+  EXPECT_EQ(count_of(accepted.err, "warning: earlier results have a gap that stays: frames/frame_000002.hdf "
+                                   "is missing"),
+            1)
+      << accepted.err;
+  const std::string index = file_text(folder_ / "run/run.hdf.series");
+  EXPECT_EQ(count_of(index, "frame_000002.hdf"), 0) << "an index tells of files that are there";
+  EXPECT_EQ(count_of(index, "frame_000003.hdf"), 1);
+  // A gap is told once: the checkpoints behind it do not miss the file.
+  EXPECT_EQ(run_gcpdda(0, {"restart", "run", "--set", "run.duration=0.2"}, folder_).exit_code, 0);
+}
+
+// Friction and the like are changed by --set; the state from before the change stays one of this run.
+TEST_F(Restart, GoesOnAfterAChangeThatHasNoCheckpointYet) {
+  fs::remove(files_[1]);
+  const std::string old = file_text(files_[0]);
+  const std::vector<std::string> changed{"restart", "run", "--set", "joint.default.friction_angle_deg=40"};
+  ASSERT_EQ(run_gcpdda(0, changed, folder_).exit_code, 0);
+  const std::string whole = file_text(folder_ / "run/history/energy.csv");
+  fs::remove(checkpoints(folder_ / "run")[1]); // as if it had been killed before its first
+  ASSERT_EQ(file_text(files_[0]) == old, true);
+  const Outcome again = run_gcpdda(2, {"restart", "run"}, folder_);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(file_text(folder_ / "run/history/energy.csv"), whole);
+  // In scene.toml nobody can tell it from a foreign checkpoint.
+  const std::string scene = file_text(folder_ / "whole/scene.toml");
+  fs::remove_all(folder_ / "run");
+  fs::copy(folder_ / "whole", folder_ / "run", fs::copy_options::recursive);
+  std::string edited = scene;
+  edited.insert(edited.find("[run]\n") + 6, "gravity_ramp = 0.5\n");
+  std::ofstream(folder_ / "run/scene.toml", std::ios::binary) << edited;
+  const Outcome refused = run_gcpdda(0, {"restart", "run"}, folder_);
+  EXPECT_EQ(refused.exit_code, 4) << refused.err;
+  EXPECT_EQ(count_of(refused.err, "a change that is meant goes into gcpdda restart --set"), 2) << refused.err;
 }
 
 TEST_F(Restart, RefusesChangesUnderWhichTheStateMeansNothing) {

@@ -216,6 +216,24 @@ TEST(NarrowestWidth, DoesNotDependOnPlaceOrDirection) {
   EXPECT_NEAR(narrowest_width(mapped(plate, Rotation::of(0.7))), 0.25, 1e-14);
 }
 
+// Rounding makes hundreds of tiny corners of vertices in a line: none of them is a side of the hull.
+TEST(NarrowestWidth, DoesNotDependOnVerticesInALine) {
+  const Polygon corners{{0.0, 0.0}, {10.0, 0.0}, {10.0, 0.25}, {0.0, 0.25}};
+  for (const int extra : {20, 100, 500}) {
+    Polygon plate;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vec2 begin = corners[i];
+      const Vec2 along = corners[(i + 1) % corners.size()] - begin;
+      for (int k = 0; k <= extra; ++k) {
+        plate.push_back(begin + (k / (extra + 1.0)) * along);
+      }
+    }
+    for (const double angle : {0.0, 0.35, 0.7, 1.4, 3.0}) {
+      EXPECT_NEAR(narrowest_width(mapped(plate, Rotation::of(angle))), 0.25, 1e-12) << extra << " " << angle;
+    }
+  }
+}
+
 TEST(NarrowestWidth, OfAConcaveShapeIsThatOfItsThinnestPart) {
   EXPECT_NEAR(narrowest_width(l_shape), 1.0, rounding) << "the legs";
   const Polygon thin_leg{{0.0, 0.0}, {3.0, 0.0}, {3.0, 0.2}, {1.0, 0.2}, {1.0, 3.0}, {0.0, 3.0}};

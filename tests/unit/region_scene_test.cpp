@@ -190,7 +190,7 @@ TEST(RegionScene, SetReachesJointSetsByName) {
   EXPECT_EQ(good(text, {"joint_set.beds.spacing=2"}).region.joint_sets.at(0).spacing.mean, 2.0);
 }
 
-// A vertex gone astray makes a wide box of a small region.
+// A wrong coordinate makes a wide box of a small region.
 TEST(RegionScene, SizeIsJudgedByExtentAndSpacing) {
   const std::string needle = "[region]\nmaterial = \"rock\"\npolygon = [[0, 0], [1, 0], [1e6, 1e6]]\n";
   EXPECT_EQ(
@@ -200,12 +200,13 @@ TEST(RegionScene, SizeIsJudgedByExtentAndSpacing) {
   EXPECT_EQ(
       faults(head + needle + "[[voronoi]]\nsize = 10\n"),
       (Strings{"11:1: error: the Voronoi pattern would have about 1e+10 cells, a set has at most 1e+08 in "
-               "the bounding box of the region, use a larger size, or look for a vertex gone astray"}));
+               "the bounding box of the region, use a larger size, or look for a vertex with a wrong "
+               "coordinate"}));
   EXPECT_EQ(
       faults(head + needle + "[[joint_set]]\ndip_deg = 135\nspacing = 1\ntrace_length = 1\ngap = 1\n"),
       (Strings{"11:1: error: joint_set 'joint_set0' would have about 1e+12 joints, a set has at most 1e+08 "
                "in the bounding box of the region, use a larger spacing or longer traces, or look for a "
-               "vertex gone astray"}));
+               "vertex with a wrong coordinate"}));
 }
 
 TEST(RegionScene, FaultsAreNamedWithTheirPlaces) {

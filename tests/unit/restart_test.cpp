@@ -7,7 +7,6 @@
 #include "gcpdda/io/folder_lock.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/io/run_comparison.hpp"
-#include "gcpdda/model/fingerprint.hpp"
 #include "gcpdda/simulation/time_plan.hpp"
 #include "scene_texts.hpp"
 #include "support/frame_data.hpp"
@@ -18,8 +17,6 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <limits>
-#include <set>
 
 namespace gcpdda::restart_test {
 namespace {
@@ -106,31 +103,6 @@ TEST(UnfitChanges, AreNamedEachWithReasonAndHint) {
     EXPECT_EQ(faults[0].what, "a restart cannot change " + named);
     EXPECT_FALSE(faults[0].why.empty() || faults[0].hint.empty()) << set;
   }
-}
-
-// Every one of these is another block; a sum over blocks tells them apart wherever they stand.
-TEST(Fingerprint, TellsBlocksApart) {
-  SceneBlock block;
-  block.vertices = {{0, 0}, {1, 0}, {1, 1}};
-  std::set<std::uint64_t> seen{fingerprint(0, block), fingerprint(1, block)};
-  const auto add = [&](auto change) {
-    SceneBlock changed = block;
-    change(changed);
-    seen.insert(fingerprint(0, changed));
-  };
-  add([](SceneBlock &b) { b.vertices[2].y = std::nextafter(1.0, 2.0); });
-  add([](SceneBlock &b) { std::swap(b.vertices[0], b.vertices[1]); });
-  add([](SceneBlock &b) { b.material = 1; });
-  add([](SceneBlock &b) { b.fixed = true; });
-  add([](SceneBlock &b) { b.driven = true; });
-  add([](SceneBlock &b) { b.velocity[2] = 1e-300; });
-  add([](SceneBlock &b) { b.velocity_table = {{0.0, {1, 0, 0}}}; });
-  add([](SceneBlock &b) { b.fixed_points = {{0, 0}}; });
-  EXPECT_EQ(seen.size(), 10U);
-  SceneBlock renamed = block;
-  renamed.name = "new";
-  renamed.loads = {{{0, 0}, {1, 1}}};
-  EXPECT_EQ(fingerprint(0, renamed), fingerprint(0, block));
 }
 
 TimePlan plan_of(double time_step, double checkpoint_interval, Diagnostics &notes) {
@@ -220,6 +192,42 @@ TEST_F(CutResults, HistoriesKeepWholeRowsUpToTheTime) {
   }
 }
 
+TEST_F(CutResults, AreToldByTheirSizesAndRows) {
+  Monitor point;
+  point.name = "roof";
+  point.is_point = true;
+  HistoryWriter writer(folder_, {point});
+  for (int k = 0; k < 3; ++k) {
+    writer.write_monitor(0, 0.1 * k, {});
+    writer.write_energy(0.1 * k, {});
+  }
+  writer.flush();
+  const ResultFile roof = writer.files().front();
+  EXPECT_EQ(roof.name, "history/roof.csv");
+  EXPECT_EQ(roof.rows, 3);
+  const std::string text = file_text(folder_ / roof.name);
+  EXPECT_EQ(roof.bytes, std::ssize(text));
+  const HistoryWriter resumed(folder_, {point}, 0.15);
+  EXPECT_EQ(resumed.files().front().rows, 2);
+  const auto damage = [&](const std::string &now) {
+    write(roof.name, now);
+    return damage_of(folder_, roof);
+  };
+  EXPECT_EQ(damage(text), "");
+  EXPECT_EQ(damage(text + "0.3,1,2,3,4\n0.4,"), "") << "rows that came later";
+  EXPECT_EQ(damage(text.substr(0, text.size() - 3)), "history/roof.csv is cut short, it has 2 of 3 rows");
+  EXPECT_EQ(damage(""), "history/roof.csv is cut short, it has 0 of 3 rows");
+  std::string joined = text;
+  joined[joined.find("\n0.1")] = ' ';
+  EXPECT_TRUE(damage(joined).starts_with("history/roof.csv has changed"));
+  fs::remove(folder_ / roof.name);
+  EXPECT_EQ(damage_of(folder_, roof), "history/roof.csv is missing");
+  write("frames/frame_000000.hdf", "12345");
+  EXPECT_EQ(damage_of(folder_, {"frames/frame_000000.hdf", 5, -1}), "");
+  EXPECT_EQ(damage_of(folder_, {"frames/frame_000000.hdf", 6, -1}),
+            "frames/frame_000000.hdf is damaged, it has 5 of 6 bytes");
+}
+
 FrameData two_triangles(double rotation) {
   FrameData data{{FrameRow{}, FrameRow{}}, {{0, 0}, {1, 0}, {0, 1}, {0, 0}, {1, 0}, {0, 1}}};
   data.rows[0].num_vertices = 3;
@@ -272,6 +280,7 @@ TEST_F(CutResults, LoadsOfBoltsGoOnAsIfNeverStopped) {
 }
 
 TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
+  std::vector<ResultFile> files;
   for (const char *run : {"whole", "cut"}) {
     FrameWriter writer(Communicator::self(), folder_ / run, 2);
     HistoryWriter history(folder_ / run, {});
@@ -281,11 +290,14 @@ TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
       writer.write_bolts(k, 0.1 * k, one_bolt(k));
     }
     EXPECT_EQ(writer.times(), (std::vector<double>{0.0, 0.1, 0.2, 0.1 * 3}));
+    writer.finish();
+    files = writer.files();
+    EXPECT_EQ(files.size(), 13U) << "a topology, and frame, contacts and bolts of four times";
   }
   write("cut/frames/frame_000123.hdf", "of a failure");
   write("cut/frames/frame_000002.txt", "a person's");
   FrameWriter writer(Communicator::self(), folder_ / "cut", 2);
-  writer.continue_behind({0.0, 0.1});
+  writer.continue_behind({0.0, 0.1}, {files.begin(), files.begin() + 7});
   EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/run.hdf.series"), "\"name\""), 2);
   EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/bolts.hdf.series"), "\"name\""), 2);
   EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/run.xdmf"), "<Time "), 2);
@@ -300,6 +312,7 @@ TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
     writer.write_bolts(k, 0.1 * k, one_bolt(k));
   }
   writer.finish();
+  EXPECT_EQ(writer.files(), files);
   EXPECT_EQ(compare_runs(folder_ / "whole", folder_ / "cut"), std::vector<std::string>());
 }
 

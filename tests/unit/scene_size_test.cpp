@@ -69,7 +69,7 @@ TEST(SceneSize, ThatTakesLongIsSaidBefore) {
   EXPECT_TRUE(judge_size({1e7, 9e9, 600.0}, {64, 64e9}).empty()) << "ten seconds";
 }
 
-// One vertex gone astray: by its area alone the region would have few blocks.
+// One wrong coordinate: by its area alone the region would have few blocks.
 TEST(SceneSize, OfARegionCountsItsReachAcrossTheJoints) {
   const std::string needle = "[[0, 0], [1e6, 14], [21, 19], [-0.5, 0.9]]";
   const double across = 1e6 * 0.8660254037844386; // of joints that dip 120 degrees

@@ -3,10 +3,13 @@
 // DIR/checkpoints/checkpoint_<step>.h5: everything of a run that its scene does not say and that cannot be
 // computed again. Rows are in BlockId order, so the bytes do not depend on the number of ranks, and neither
 // does the number that reads them. The file appears under its name only when it is complete and on the disk;
-// the two newest are kept. A checksum over all numbers tells a damaged one.
+// the two newest are kept. A sum over all bytes is compared before anything else of a file is believed; one
+// that is damaged, or of another scene, or whose results are not whole, is named and the one before is taken.
 
+#include "gcpdda/io/result_manifest.hpp"
 #include "gcpdda/model/block_system.hpp"
 #include "gcpdda/model/contact_history.hpp"
+#include "gcpdda/model/fingerprint.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
 #include <cstdint>
@@ -22,6 +25,7 @@ struct SceneIdentity {
   std::int64_t num_mobile = 0;
   std::uint64_t blocks = 0; ///< sum of the fingerprints of all
   std::uint64_t materials = 0;
+  ScenePrints parts{}; ///< of the scene with the stages up to that of the state
 
   friend bool operator==(const SceneIdentity &, const SceneIdentity &) = default;
 };
@@ -49,6 +53,7 @@ struct RunFacts {
   std::vector<std::int64_t> bolt_counts; ///< links of the bolts in place (simulation/bolts.hpp)
   std::vector<double> bolt_numbers;
   std::vector<double> frame_times; ///< of the frames written, s
+  std::vector<ResultFile> results; ///< files written so far; known to the root alone
 };
 
 /// Where the memory of contacts comes from: each rank hands over what it has, strip by strip, so that nobody
@@ -94,6 +99,7 @@ struct Restored {
   RunFacts facts;
   std::vector<RegionRecord> memory;  ///< of all contacts of the rows
   std::vector<std::string> rejected; ///< newer checkpoints that could not be used, and why
+  std::vector<std::string> gaps;     ///< what is wrong with results before this one; known to the root alone
 };
 
 /// Put the newest checkpoint of a run's folder that is whole and fits into the rows of `blocks`. Collective.
@@ -102,16 +108,23 @@ struct Restored {
 /// @param blocks  owned: the mobile ones of this rank's slab of ids (result_files.hpp), ascending; shapes and
 ///                constants as the scene says
 /// @param prepare  what these rows need to be those of a checkpoint with these facts; called before each one
-///                 is tried
+///                 is tried; rejects it by a FileError on all ranks
 /// @throws FileError with every file that was tried and why it was rejected
 Restored restore_newest_checkpoint(const Communicator &communicator, const std::filesystem::path &directory,
                                    const SceneIdentity &scene, BlockSystem &blocks,
-                                   const std::function<void(const RunFacts &)> &prepare = {});
+                                   const std::function<void(const RunFacts &)> &prepare = {},
+                                   EarlierResults results = EarlierResults::are_not_looked_at);
 
 /// Reads a checkpoint again and compares its checksum: not every file system tells of a write that failed.
 /// Collective.
 /// @throws FileError where it is not whole
 void expect_readable_checkpoint(const Communicator &communicator, const std::filesystem::path &path);
+
+/// Scenes that a run has left behind: `restart --set` changes a scene under a state, and the state stays one
+/// of this run. DIR/checkpoints/past_scenes.txt has a fingerprint a line. By the root alone.
+std::vector<std::uint64_t> past_scenes(const std::filesystem::path &directory);
+/// Adds these; throws FileError.
+void remember_scenes(const std::filesystem::path &directory, const std::vector<std::uint64_t> &prints);
 
 /// Names of the files in DIR/checkpoints that are called like complete checkpoints; by one rank alone.
 std::vector<std::filesystem::path> checkpoint_files(const std::filesystem::path &directory);

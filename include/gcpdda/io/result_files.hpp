@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/io/result_manifest.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
@@ -111,9 +112,11 @@ public:
               std::int64_t ids_per_strip = 0);
   ~FrameWriter(); ///< waits for frames that are on their way
 
-  /// Go on behind the first frames of a run: later ones are removed, the indices tell of those that stay.
+  /// Go on behind the first frames of a run: later ones are removed, the indices tell of those that stay and
+  /// are there.
   /// @param times  of frames 0, 1, ... that stay, s
-  void continue_behind(const std::vector<double> &times);
+  /// @param files  files() when they were written; known to the root
+  void continue_behind(const std::vector<double> &times, const std::vector<ResultFile> &files = {});
 
   /// Frame number `index` (0, 1, ...); exactly one rank has each block. From one frame to the next blocks may
   /// go, none may come.
@@ -130,6 +133,8 @@ public:
   [[nodiscard]] bool all_writes_collective() const { return all_writes_collective_; }
   /// Of all frames, s; frame k is the k-th.
   [[nodiscard]] std::vector<double> times() const;
+  /// Everything in frames/, in the order it was written; after finish(), by the root alone.
+  [[nodiscard]] const std::vector<ResultFile> &files();
 
 private:
   void publish_behind(CollectiveFile &file, const std::filesystem::path &path);
@@ -162,6 +167,8 @@ private:
   std::vector<Topology> topologies_; ///< by first frame
   std::vector<Place> places_;        ///< empty where nobody has looked yet
   bool all_writes_collective_ = true;
+  std::vector<ResultFile> files_; ///< without a size until somebody asks
+  std::vector<int> lost_;         ///< frames that were not there when a restart went on behind them
   std::vector<std::pair<int, double>> frames_;
   std::vector<std::pair<int, double>> bolt_frames_; ///< known to the root
 };
@@ -236,6 +243,8 @@ public:
   void flush();
   /// What has been flushed is on the disk. Throws FileError.
   void sync() const;
+  /// All histories as they are after flush().
+  [[nodiscard]] std::vector<ResultFile> files() const;
 
 private:
   [[nodiscard]] std::string header_of(std::size_t history) const;
@@ -249,6 +258,7 @@ private:
   std::vector<BoltLoad> bolt_loads_;
   std::unordered_map<std::string, std::size_t> load_of_; ///< by name
   std::vector<std::string> pending_; ///< text not yet appended, per monitor, of energy, and of bolts if any
+  std::vector<ResultFile> files_;    ///< what has been appended, in the same order
 };
 
 /// Everything summary.json holds.

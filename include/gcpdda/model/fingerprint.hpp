@@ -1,10 +1,11 @@
 #pragma once
 
-// What a state belongs to. A checkpoint holds no shapes, densities or names: it fits one set of blocks only,
-// and says which by two numbers made of everything that may not change under a state.
+// What a state belongs to. A checkpoint holds no shapes, densities or laws: it fits one scene only, and says
+// which by numbers made of everything in it that the state depends on.
 
 #include "gcpdda/model/scene.hpp"
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <span>
@@ -25,6 +26,24 @@ std::uint64_t fingerprint(std::int64_t id, const SceneBlock &block);
 
 /// Constants of all materials in their order.
 std::uint64_t fingerprint(std::span<const Material> materials);
+
+/// Parts of a scene with a fingerprint each, so that a message can name what is different: keys of the scene.
+inline constexpr std::array scene_parts{"[run]",    "[joint]",   "[material]",   "[[block]]", "[water]",
+                                        "[[bolt]]", "[in_situ]", "[earthquake]", "[[stage]]"};
+using ScenePrints = std::array<std::uint64_t, scene_parts.size()>;
+
+/// Of what a state depends on besides its blocks, once a scene has gone through its first stages: settings of
+/// the run, laws, materials, loads, water, bolts in place, stress, ground motion, and what those stages did.
+///
+/// Left out is what says nothing of a state: names, duration and limits, the time step (a checkpoint holds
+/// its own), what is written how often, monitors, bolts that have not been put in, stages to come.
+///
+/// @param start   before its first stage, as it was read; its record, if any, has been opened
+/// @param stages  the first ones
+ScenePrints fingerprints(const Scene &start, std::span<const Stage> stages);
+
+/// All parts in one.
+std::uint64_t fingerprint(const ScenePrints &prints);
 
 /// Of a number that stands in a place of its own.
 inline std::uint64_t fingerprint(std::uint64_t place, double value) {

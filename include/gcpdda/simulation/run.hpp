@@ -20,6 +20,9 @@ struct RunOptions {
   bool quiet = false; ///< the log goes to its file alone
   bool bare = false;  ///< no frames, histories and checkpoints: what the summary says is all that is wanted
   bool once = false;  ///< nobody goes on from it: no checkpoints, and a last frame where the signal stops it
+  /// The scene that the state to begin with was computed with; null: that of the run.
+  const Scene *computed_with = nullptr;
+  EarlierResults earlier = EarlierResults::must_be_whole; ///< of the run that a restart goes on with
   std::string progress_of = {}; ///< what lines of progress of a quiet run begin with; empty for no such lines
   /// What else the root has to make or to remove once the scene is accepted, before the run writes anything.
   std::function<void()> prepare = {};

@@ -96,15 +96,21 @@ inline ContactParameters contact_parameters(const Scene &scene) {
   return {scene.joints, scene.run.contact_damping, scene.run.potential, scene.run.rayleigh.stiffness_damping};
 }
 
+/// Where a run begins.
+struct Beginning {
+  std::filesystem::path folder{};       ///< with whose newest checkpoint; empty: at t = 0
+  const Scene *computed_with = nullptr; ///< that state, as it was read; null: the scene of the run
+  EarlierResults results = EarlierResults::are_not_looked_at; ///< of that folder
+};
+
 /// One run in memory: the state of this rank's blocks and the step. Construction distributes the blocks and
 /// finds the consistent initial state; all public members are collective unless const.
 class Simulation {
 public:
   /// @param scene  valid by itself, the same on all ranks
-  /// @param restart_from  result folder whose newest checkpoint is the initial state; empty for t = 0
   /// @throws SceneError with all that is wrong with the block file, the overlaps, the monitors and the step
-  /// @throws FileError where that folder has no checkpoint that fits
-  Simulation(const Communicator &communicator, Scene scene, const std::filesystem::path &restart_from = {});
+  /// @throws FileError where the folder it begins with has no checkpoint that fits
+  Simulation(const Communicator &communicator, Scene scene, const Beginning &beginning = {});
 
   /// Advance all blocks from t_n to t_{n+1}.
   void step();
@@ -188,6 +194,8 @@ public:
   [[nodiscard]] std::int64_t num_blocks() const { return gcpdda::num_blocks(scene_); }
   /// The checkpoint this run began with; none for a run from t = 0.
   [[nodiscard]] const std::optional<Restored> &restored() const { return restored_; }
+  /// The scene of the state this run began with was another one: its fingerprints by stage, else none.
+  [[nodiscard]] std::vector<std::uint64_t> changed_from() const;
   /// Everything a checkpoint holds besides the blocks and their contacts, but what the output knows.
   [[nodiscard]] RunFacts facts() const;
   /// @param region  of this candidate
@@ -226,7 +234,8 @@ public:
   }
 
 private:
-  void begin_as_restored(const Scene &start, const BlockSystem &rows, const RunFacts &facts);
+  void begin_as_restored(const Scene &start, const BlockSystem &rows, const StageState &saved,
+                         const RunFacts &facts);
   void plan_all_stages();
   void plan_stage();
   void scale_masses();
@@ -259,7 +268,11 @@ private:
   void adopt_loads(std::size_t row, const std::vector<PointLoad> &before,
                    const std::vector<PointLoad> &after);
   [[nodiscard]] bool loads_are_changing() const;
-  void distribute(const std::filesystem::path &restart_from);
+  void distribute(const Beginning &beginning);
+  void take_prints(const Beginning &beginning);
+  void restore(const Beginning &beginning, ContactMemory &memory);
+  void expect_own_state(const ScenePrints &saved, std::int64_t stage,
+                        std::span<const std::uint64_t> past) const;
   void identify(std::span<const SceneBlock> slab);
   void go_on();
   [[nodiscard]] std::vector<SceneBlock> cut_region();
@@ -403,6 +416,8 @@ private:
   bool stop_asked_ = false;
   bool stop_agreed_ = false;
   SceneIdentity identity_;
+  std::vector<ScenePrints> prints_;        ///< of this scene, by stage
+  std::vector<ScenePrints> prints_before_; ///< of the scene that the state it began with was computed with
   std::optional<Restored> restored_;
   ForceReport force_report_;
   ContactCount contact_count_; ///< at the last evaluation
