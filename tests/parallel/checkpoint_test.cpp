@@ -303,7 +303,7 @@ TEST_F(DamagedCheckpoint, IsFoundWhereverItsBytesHaveChanged) {
 }
 
 TEST_F(DamagedCheckpoint, IsFoundByItsSeal) {
-  for (const std::size_t size : {0, 5, 511}) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{511}}) {
     expect_older(good_.substr(0, size), size < 5 ? "begin with no seal" : "");
   }
   expect_older(good_.substr(0, good_.size() - 1), "it is damaged: it has ");

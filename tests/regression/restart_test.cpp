@@ -185,7 +185,7 @@ TEST_F(Restart, OfACheckpointWithAnAbsurdLengthTakesTheOneBefore) {
   const haddr_t place = H5Dget_offset(counts);
   H5Dclose(counts);
   H5Fclose(file);
-  for (const std::size_t byte : {3, 5}) {
+  for (const std::size_t byte : {std::size_t{3}, std::size_t{5}}) {
     fs::remove_all(folder_ / "run");
     fs::copy(folder_ / "whole", folder_ / "run", fs::copy_options::recursive);
     overwrite(files_[1], place + byte, '\x40');
