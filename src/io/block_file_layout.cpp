@@ -3,7 +3,6 @@
 #include "hdf5_input.hpp"
 #include "scene_faults.hpp"
 
-#include "gcpdda/base/edit_distance.hpp"
 #include "gcpdda/base/input_file.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +19,30 @@ namespace gcpdda::block_file {
 
 namespace {
 
-constexpr std::size_t most_members = 256; ///< of a file that are worth a "did you mean"
+/// All names that are one edit away: a character left out, added or replaced, or two neighbours exchanged.
+std::vector<std::string> spellings_near(const std::string &name) {
+  std::vector<std::string> spellings;
+  for (std::size_t i = 0; i <= name.size(); ++i) {
+    const std::string before = name.substr(0, i);
+    const std::string from = name.substr(i);
+    for (char c = 1; c < 127; ++c) {
+      if (c == '/') { // of a path
+        continue;
+      }
+      spellings.push_back(before + c + from);
+      if (!from.empty()) {
+        spellings.push_back(before + c + from.substr(1));
+      }
+    }
+    if (!from.empty()) {
+      spellings.push_back(before + from.substr(1));
+    }
+    if (from.size() > 1) {
+      spellings.push_back(before + from[1] + from[0] + from.substr(2));
+    }
+  }
+  return spellings;
+}
 
 std::string type_in_words(const hdf5::Datatype &type) {
   const std::size_t bits = 8 * H5Tget_size(type.get());
@@ -44,7 +66,7 @@ public:
 
   Overview take() {
     if (open()) {
-      list_members();
+      count_other_members();
       for (std::size_t i = 0; i < count; ++i) {
         look_at_dataset(static_cast<Dataset>(i));
       }
@@ -85,22 +107,38 @@ private:
     return true;
   }
 
-  void list_members() {
-    const auto append = [](hid_t, const char *name, const H5L_info_t *, void *names) -> herr_t {
-      auto &list = *static_cast<std::vector<std::string> *>(names);
-      list.emplace_back(name);
-      return list.size() < most_members ? 0 : 1;
-    };
-    H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append, &members_);
-    std::erase_if(members_, [](const std::string &name) {
-      return std::any_of(layout.begin(), layout.end(), [&](const auto &rule) { return rule.name == name; });
-    });
+  [[nodiscard]] bool has_member(const std::string &name) const {
+    return H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0;
+  }
+
+  // HDF5 1.10 frees memory that it never set when it fails to list the members of a damaged group, so nothing
+  // is listed: members are counted and asked for by name.
+  void count_other_members() {
+    H5G_info_t group{};
+    if (H5Gget_info(file_.get(), &group) < 0) {
+      return;
+    }
+    const auto known = std::count_if(layout.begin(), layout.end(),
+                                     [&](const auto &rule) { return has_member(std::string(rule.name)); });
+    has_other_members_ = group.nlinks > static_cast<hsize_t>(known);
+  }
+
+  /// A member that is meant by `name`, or "".
+  [[nodiscard]] std::string misspelt_member(const std::string &name) const {
+    if (has_other_members_) {
+      for (std::string &spelling : spellings_near(name)) {
+        if (has_member(spelling)) {
+          return std::move(spelling);
+        }
+      }
+    }
+    return "";
   }
 
   void look_at_dataset(Dataset which) {
     const DatasetRule &rule = layout[which];
     const std::string name(rule.name);
-    if (H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) <= 0) {
+    if (!has_member(name)) {
       report_missing(rule);
       return;
     }
@@ -126,10 +164,7 @@ private:
 
   void report_missing(const DatasetRule &rule) {
     const std::string name(rule.name);
-    std::string near;
-    for (const std::string &member : members_) {
-      near = near.empty() && nearest_word(member, {name}) == name ? member : near;
-    }
+    const std::string near = misspelt_member(name);
     if (rule.required) {
       fault(fmt::format("'/{}' is missing", name),
             fmt::format("it must hold {} {}", words_of(rule.number), shape_of(rule)),
@@ -200,7 +235,7 @@ private:
   const BlockFile *block_file_;
   const hdf5::QuietErrors quiet_;
   hdf5::File file_;
-  std::vector<std::string> members_;     ///< of the file, those that are not in the layout
+  bool has_other_members_ = false;       ///< than those of the layout
   std::map<Dataset, std::int64_t> rows_; ///< of the datasets without faults of shape
   Overview overview_;
 };

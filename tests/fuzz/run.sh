@@ -32,7 +32,7 @@ mkdir -p "$build/findings"
 } >"$build/scene.dict"
 declare -A options=(
   [scene_fuzz]="-max_len=10000 -malloc_limit_mb=256 -dict=$build/scene.dict $here/corpus/scene $top/run/scenes"
-  [block_file_fuzz]="-max_len=300 -len_control=0"
+  [block_file_fuzz]="-max_len=300 -len_control=0 $here/corpus/block_file"
   [checkpoint_fuzz]="-max_len=1200 -len_control=0"
 )
 fuzz() {
