@@ -1,6 +1,6 @@
-#include "gcpdda/partition/domain_map.hpp"
+#include "partition/domain_map.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 
 #include <algorithm>
 #include <cmath>

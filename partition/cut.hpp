@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gcpdda/partition/domain_map.hpp"
+#include "partition/domain_map.hpp"
 
 #include <cstdint>
 #include <optional>

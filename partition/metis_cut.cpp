@@ -1,6 +1,6 @@
-#include "cut.hpp"
+#include "partition/cut.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 
 #include <metis.h>
 

@@ -1,8 +1,8 @@
 // Which cells hold work, who cuts them, and who gets the empty ones.
 
-#include "cut.hpp"
+#include "partition/cut.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 
 #include <algorithm>
 #include <limits>

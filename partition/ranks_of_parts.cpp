@@ -1,4 +1,4 @@
-#include "gcpdda/partition/domain_map.hpp"
+#include "partition/domain_map.hpp"
 
 #include <algorithm>
 #include <tuple>

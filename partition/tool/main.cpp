@@ -1,10 +1,10 @@
 // gcpdda-partition: cell weights in, owners out. For trying decompositions without a run; the library does
 // not touch files.
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
+#include "base/input_file.hpp"
 #include "gcpdda/base/diagnostic.hpp"
-#include "gcpdda/base/input_file.hpp"
-#include "gcpdda/partition/domain_map.hpp"
+#include "partition/domain_map.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,6 +1,6 @@
 #include "accuracy_problems.hpp"
 
-#include "gcpdda/contact/overlap.hpp"
+#include "contact/geometry/overlap.hpp"
 #include "support/incline.hpp"
 #include "support/jointed_bar.hpp"
 #include "support/setting.hpp"

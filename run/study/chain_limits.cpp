@@ -1,7 +1,6 @@
 #include "chain_limits.hpp"
 
 #include "amplification_matrix.hpp"
-
 #include "support/eigenvalues.hpp"
 #include "support/setting.hpp"
 

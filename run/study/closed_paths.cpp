@@ -1,7 +1,7 @@
 #include "closed_paths.hpp"
 
-#include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/model/block_system.hpp"
+#include "contact/contact_forces.hpp"
+#include "model/block_system.hpp"
 #include "support/setting.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "friction_variants.hpp"
 
 #include "one_block.hpp"
-
 #include "support/incline.hpp"
 #include "support/setting.hpp"
 

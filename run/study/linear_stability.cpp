@@ -3,7 +3,6 @@
 #include "amplification_matrix.hpp"
 #include "chain_limits.hpp"
 #include "stability.hpp"
-
 #include "support/eigenvalues.hpp"
 #include "support/setting.hpp"
 

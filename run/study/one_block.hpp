@@ -3,9 +3,9 @@
 // One rigid block on a fixed one, stepped by the default scheme with the program's contact integral, and a
 // friction and a dashpot of its own whose rejected forms can be switched on.
 
-#include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/dynamics/integrate.hpp"
-#include "gcpdda/dynamics/scheme.hpp"
+#include "contact/contact_forces.hpp"
+#include "dynamics/integrate.hpp"
+#include "dynamics/scheme.hpp"
 
 #include <vector>
 

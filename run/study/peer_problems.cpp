@@ -1,9 +1,8 @@
 // The problems of the accuracy chart that engines for rigid bodies can compute.
 
 #include "accuracy_problems.hpp"
+#include "model/generators.hpp"
 #include "peers/peers.hpp"
-
-#include "gcpdda/model/generators.hpp"
 #include "support/incline.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "closed_paths.hpp"
 #include "friction_variants.hpp"
 #include "stability.hpp"
-
 #include "support/setting.hpp"
 
 #include <fmt/format.h>

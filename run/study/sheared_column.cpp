@@ -1,9 +1,8 @@
 #include "sheared_column.hpp"
 
+#include "model/block_system.hpp"
 #include "support/eigenvalues.hpp"
 #include "support/setting.hpp"
-
-#include "gcpdda/model/block_system.hpp"
 
 #include <array>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "stability.hpp"
 
-#include "gcpdda/simulation/energy_ledger.hpp"
+#include "simulation/energy_ledger.hpp"
 #include "support/setting.hpp"
 
 #include <fmt/format.h>

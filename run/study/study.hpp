@@ -2,7 +2,7 @@
 
 // What the studies share: tables, the cost of stepping, and the rule by which every scene gets its stiffness.
 
-#include "gcpdda/simulation/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,20 +1,19 @@
 // gcpdda blocks: cut, check and draw without a run. Every rank cuts its share of the tiles; only counts, the
 // worst blocks and, for the picture, drawings travel.
 
-#include "blocks.hpp"
+#include "app/blocks.hpp"
 
-#include "root_file.hpp"
-
-#include "gcpdda/blockgen/drawing.hpp"
-#include "gcpdda/blockgen/joint_map.hpp"
-#include "gcpdda/blockgen/quality.hpp"
-#include "gcpdda/blockgen/region_cutter.hpp"
-#include "gcpdda/geometry/polygon.hpp"
-#include "gcpdda/io/block_file.hpp"
+#include "app/root_file.hpp"
+#include "blockgen/drawing.hpp"
+#include "blockgen/joint_map.hpp"
+#include "blockgen/quality.hpp"
+#include "blockgen/region_cutter.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/model/generators.hpp"
-#include "gcpdda/simulation/region_slabs.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "geometry/polygon.hpp"
+#include "io/blocks/block_file.hpp"
+#include "model/generators.hpp"
+#include "simulation/region_slabs.hpp"
+#include "simulation/simulation.hpp"
 
 #include <fmt/format.h>
 

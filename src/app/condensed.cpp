@@ -1,4 +1,4 @@
-#include "condensed.hpp"
+#include "app/condensed.hpp"
 
 #include <fmt/format.h>
 

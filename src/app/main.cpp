@@ -1,23 +1,22 @@
 // The command line: sub-commands, the MPI scope, exceptions to exit codes.
 
-#include "blocks.hpp"
-#include "condensed.hpp"
-#include "root_file.hpp"
-
-#include "gcpdda/base/check.hpp"
+#include "app/blocks.hpp"
+#include "app/condensed.hpp"
+#include "app/root_file.hpp"
+#include "base/check.hpp"
+#include "driver/ensemble.hpp"
+#include "driver/inspect.hpp"
+#include "driver/restart.hpp"
+#include "driver/safety_factor.hpp"
+#include "driver/stop_signal.hpp"
+#include "gcpdda/driver/run.hpp"
 #include "gcpdda/io/scene_reader.hpp"
-#include "gcpdda/io/scene_reference.hpp"
-#include "gcpdda/io/unclosed_files.hpp"
 #include "gcpdda/parallel/communicator.hpp"
-#include "gcpdda/simulation/ensemble.hpp"
-#include "gcpdda/simulation/inspect.hpp"
-#include "gcpdda/simulation/plausibility.hpp"
-#include "gcpdda/simulation/restart.hpp"
-#include "gcpdda/simulation/run.hpp"
-#include "gcpdda/simulation/safety_factor.hpp"
-#include "gcpdda/simulation/scene_size.hpp"
-#include "gcpdda/simulation/simulation.hpp"
-#include "gcpdda/simulation/stop_signal.hpp"
+#include "io/hdf5/unclosed_files.hpp"
+#include "io/scene/scene_reference.hpp"
+#include "simulation/plausibility.hpp"
+#include "simulation/scene_size.hpp"
+#include "simulation/simulation.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,7 +1,7 @@
-#include "root_file.hpp"
+#include "app/root_file.hpp"
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/base/input_file.hpp"
+#include "base/check.hpp"
+#include "base/input_file.hpp"
 
 #include <fstream>
 #include <utility>

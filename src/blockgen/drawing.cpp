@@ -1,6 +1,6 @@
-#include "gcpdda/blockgen/drawing.hpp"
+#include "blockgen/drawing.hpp"
 
-#include "gcpdda/geometry/aabb.hpp"
+#include "geometry/aabb.hpp"
 
 #include <fmt/format.h>
 

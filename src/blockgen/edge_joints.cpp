@@ -1,4 +1,4 @@
-#include "edge_joints.hpp"
+#include "blockgen/edge_joints.hpp"
 
 #include <algorithm>
 #include <cmath>

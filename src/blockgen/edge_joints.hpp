@@ -1,6 +1,6 @@
 #pragma once
 
-#include "traces.hpp"
+#include "blockgen/traces.hpp"
 
 #include <span>
 #include <vector>

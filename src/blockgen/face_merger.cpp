@@ -1,7 +1,7 @@
-#include "face_merger.hpp"
+#include "blockgen/face_merger.hpp"
 
-#include "gcpdda/blockgen/quality.hpp"
-#include "gcpdda/model/fingerprint.hpp"
+#include "blockgen/quality.hpp"
+#include "model/fingerprint.hpp"
 
 #include <algorithm>
 #include <bit>

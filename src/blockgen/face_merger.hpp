@@ -1,8 +1,7 @@
 #pragma once
 
-#include "planar_graph.hpp"
-
-#include "gcpdda/geometry/aabb.hpp"
+#include "blockgen/planar_graph.hpp"
+#include "geometry/aabb.hpp"
 
 #include <cstdint>
 #include <unordered_map>

@@ -1,6 +1,6 @@
-#include "gcpdda/blockgen/joint_map.hpp"
+#include "blockgen/joint_map.hpp"
 
-#include "gcpdda/base/text.hpp"
+#include "base/text.hpp"
 
 #include <geos_c.h>
 

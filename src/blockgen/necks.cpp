@@ -1,7 +1,7 @@
-#include "necks.hpp"
+#include "blockgen/necks.hpp"
 
-#include "gcpdda/geometry/edge_tree.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/edge_tree.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <array>

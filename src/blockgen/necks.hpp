@@ -1,6 +1,6 @@
 #pragma once
 
-#include "planar_graph.hpp"
+#include "blockgen/planar_graph.hpp"
 
 #include <vector>
 

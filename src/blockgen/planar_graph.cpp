@@ -1,7 +1,7 @@
-#include "planar_graph.hpp"
+#include "blockgen/planar_graph.hpp"
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "base/check.hpp"
+#include "geometry/polygon.hpp"
 
 #include <geos_c.h>
 

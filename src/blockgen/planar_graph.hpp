@@ -2,8 +2,7 @@
 
 // The wall around GEOS: segments in, faces out.
 
-#include "traces.hpp"
-
+#include "blockgen/traces.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <memory>

@@ -1,6 +1,6 @@
-#include "gcpdda/blockgen/quality.hpp"
+#include "blockgen/quality.hpp"
 
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

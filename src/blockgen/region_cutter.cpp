@@ -1,9 +1,8 @@
-#include "gcpdda/blockgen/region_cutter.hpp"
+#include "blockgen/region_cutter.hpp"
 
-#include "tile.hpp"
-
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "base/check.hpp"
+#include "blockgen/tile.hpp"
+#include "geometry/polygon.hpp"
 
 #include <fmt/format.h>
 

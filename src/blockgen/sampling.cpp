@@ -1,4 +1,4 @@
-#include "gcpdda/blockgen/sampling.hpp"
+#include "blockgen/sampling.hpp"
 
 #include <algorithm>
 #include <cmath>

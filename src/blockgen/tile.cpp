@@ -1,8 +1,7 @@
-#include "tile.hpp"
+#include "blockgen/tile.hpp"
 
-#include "necks.hpp"
-
-#include "gcpdda/geometry/polygon.hpp"
+#include "blockgen/necks.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "edge_joints.hpp"
-#include "face_merger.hpp"
-
-#include "gcpdda/blockgen/region_cutter.hpp"
+#include "blockgen/edge_joints.hpp"
+#include "blockgen/face_merger.hpp"
+#include "blockgen/region_cutter.hpp"
 
 #include <functional>
 #include <span>

@@ -1,8 +1,7 @@
-#include "traces.hpp"
+#include "blockgen/traces.hpp"
 
-#include "gcpdda/blockgen/sampling.hpp"
-
-#include "gcpdda/geometry/holds_point.hpp"
+#include "blockgen/sampling.hpp"
+#include "geometry/holds_point.hpp"
 
 #include <algorithm>
 #include <cmath>

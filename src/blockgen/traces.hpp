@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gcpdda/geometry/aabb.hpp"
 #include "gcpdda/model/rock_region.hpp"
+#include "geometry/aabb.hpp"
 
 #include <functional>
 #include <vector>

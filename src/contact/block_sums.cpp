@@ -1,6 +1,6 @@
-#include "gcpdda/contact/block_sums.hpp"
+#include "contact/block_sums.hpp"
 
-#include "plain_batch.hpp"
+#include "contact/lanes/plain_batch.hpp"
 
 #include <algorithm>
 #include <array>

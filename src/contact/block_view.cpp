@@ -1,6 +1,6 @@
 // Rows of the system as the contact integrals see them.
 
-#include "gcpdda/contact/contact_forces.hpp"
+#include "contact/contact_forces.hpp"
 
 namespace gcpdda {
 

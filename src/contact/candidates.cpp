@@ -1,6 +1,6 @@
-#include "gcpdda/contact/candidates.hpp"
+#include "contact/candidates.hpp"
 
-#include "gcpdda/contact/region_law.hpp"
+#include "contact/laws/region_law.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,10 +6,10 @@
 // operations in the same order, but without another slide; so a group of pairs is evaluated once more, read,
 // and overwritten by the next one. Regions of other pairs are kept with all that is known of them.
 
-#include "gcpdda/contact/contact_forces.hpp"
+#include "contact/contact_forces.hpp"
 
-#include "pair_motion.hpp"
-#include "plain_batch.hpp"
+#include "contact/lanes/plain_batch.hpp"
+#include "contact/pair_motion.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,10 @@
-#include "gcpdda/contact/contact_forces.hpp"
+#include "contact/contact_forces.hpp"
 
-#include "bond_work.hpp"
-#include "pair_motion.hpp"
-#include "plain_batch.hpp"
-
-#include "gcpdda/base/prefetch.hpp"
-#include "gcpdda/contact/region_law.hpp"
+#include "base/prefetch.hpp"
+#include "contact/lanes/plain_batch.hpp"
+#include "contact/laws/bond_work.hpp"
+#include "contact/laws/region_law.hpp"
+#include "contact/pair_motion.hpp"
 
 #include <algorithm>
 #include <array>

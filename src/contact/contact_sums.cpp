@@ -1,4 +1,4 @@
-#include "gcpdda/contact/contact_forces.hpp"
+#include "contact/contact_forces.hpp"
 
 namespace gcpdda {
 

@@ -1,4 +1,4 @@
-#include "gcpdda/contact/candidates.hpp"
+#include "contact/candidates.hpp"
 
 #include <algorithm>
 #include <cmath>

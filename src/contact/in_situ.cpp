@@ -1,8 +1,8 @@
-#include "gcpdda/contact/in_situ.hpp"
+#include "contact/in_situ.hpp"
 
-#include "gcpdda/contact/bonds.hpp"
-#include "gcpdda/contact/region_law.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "contact/laws/bonds.hpp"
+#include "contact/laws/region_law.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "gcpdda/contact/pair_energies.hpp"
+#include "contact/pair_energies.hpp"
 
-#include "plain_batch.hpp"
+#include "contact/lanes/plain_batch.hpp"
 
 #include <algorithm>
 #include <limits>

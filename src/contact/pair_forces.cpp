@@ -1,11 +1,10 @@
 // One pair after the other, any shapes: what the plain pairs' lanes (plain_kernel.hpp) are not for.
 
-#include "bond_work.hpp"
-#include "grip.hpp"
-#include "pair_motion.hpp"
-
-#include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/contact/region_law.hpp"
+#include "contact/contact_forces.hpp"
+#include "contact/laws/bond_work.hpp"
+#include "contact/laws/grip.hpp"
+#include "contact/laws/region_law.hpp"
+#include "contact/pair_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gcpdda/contact/contact_forces.hpp"
+#include "contact/contact_forces.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "gcpdda/contact/stiffness_bound.hpp"
+#include "contact/stiffness_bound.hpp"
 
 #include <algorithm>
 

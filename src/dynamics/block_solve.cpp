@@ -1,9 +1,9 @@
-#include "block_solve.hpp"
+#include "dynamics/block_solve.hpp"
 
-#include "gcpdda/dynamics/block_matrix.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/dynamics/viscous_sides.hpp"
-#include "own_springs.hpp"
+#include "dynamics/block_matrix.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/own_springs.hpp"
+#include "dynamics/viscous_sides.hpp"
 
 #include <array>
 #include <cmath>

@@ -2,10 +2,9 @@
 
 // The step of blocks with a matrix of their own: deformable, or with anchors or dashpots.
 
-#include "block_lanes.hpp"
-
-#include "gcpdda/base/instructions.hpp"
-#include "gcpdda/dynamics/integrate.hpp"
+#include "base/instructions.hpp"
+#include "dynamics/integrate.hpp"
+#include "dynamics/lanes/block_lanes.hpp"
 
 namespace gcpdda {
 

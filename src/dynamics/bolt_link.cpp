@@ -1,4 +1,4 @@
-#include "gcpdda/dynamics/bolt_link.hpp"
+#include "dynamics/bolt_link.hpp"
 
 #include <algorithm>
 #include <cmath>

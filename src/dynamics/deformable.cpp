@@ -1,4 +1,4 @@
-#include "gcpdda/dynamics/deformable.hpp"
+#include "dynamics/deformable.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
-#include "gcpdda/dynamics/eigenvalues.hpp"
+#include "dynamics/eigenvalues.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 
 #include <Eigen/Eigenvalues>
 

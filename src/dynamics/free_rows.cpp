@@ -1,6 +1,6 @@
-#include "block_solve.hpp"
+#include "dynamics/block_solve.hpp"
 
-#include "gcpdda/base/prefetch.hpp"
+#include "base/prefetch.hpp"
 
 #include <bit>
 

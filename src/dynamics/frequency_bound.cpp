@@ -1,4 +1,4 @@
-#include "gcpdda/dynamics/frequency_bound.hpp"
+#include "dynamics/frequency_bound.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,4 +1,4 @@
-#include "gcpdda/dynamics/ground_motion.hpp"
+#include "dynamics/ground_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "block_lanes.hpp"
+#include "dynamics/lanes/block_lanes.hpp"
 
 namespace gcpdda {
 

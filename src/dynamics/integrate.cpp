@@ -1,10 +1,10 @@
-#include "gcpdda/dynamics/integrate.hpp"
+#include "dynamics/integrate.hpp"
 
-#include "block_lanes.hpp"
-#include "block_solve.hpp"
-#include "gcpdda/base/prefetch.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
-#include "own_springs.hpp"
+#include "base/prefetch.hpp"
+#include "dynamics/block_solve.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/lanes/block_lanes.hpp"
+#include "dynamics/own_springs.hpp"
 
 #include <algorithm>
 #include <array>

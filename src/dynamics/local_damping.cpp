@@ -35,8 +35,8 @@
 // (From W^2 = 2/(1 + a) on one more motion loses nothing, x* = 0, X, 0, -X. What lies beside it, x* = e in
 // place of 0, takes 2 a W^2 e from X in every four steps.)
 
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/dynamics/integrate.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/integrate.hpp"
 
 #include <cmath>
 

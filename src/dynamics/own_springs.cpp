@@ -1,6 +1,6 @@
-#include "own_springs.hpp"
+#include "dynamics/own_springs.hpp"
 
-#include "gcpdda/dynamics/block_matrix.hpp"
+#include "dynamics/block_matrix.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // What a block's own matrix holds: its elasticity and viscosity, the springs of its anchors and the dashpots
 // of viscous sides, taken implicitly.
 
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/dynamics/scheme.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/scheme.hpp"
 
 #include <span>
 

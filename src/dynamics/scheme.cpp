@@ -1,7 +1,7 @@
-#include "gcpdda/dynamics/scheme.hpp"
+#include "dynamics/scheme.hpp"
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/dynamics/eigenvalues.hpp"
+#include "base/check.hpp"
+#include "dynamics/eigenvalues.hpp"
 
 #include <Eigen/Core>
 

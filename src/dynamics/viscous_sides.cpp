@@ -1,6 +1,6 @@
-#include "gcpdda/dynamics/viscous_sides.hpp"
+#include "dynamics/viscous_sides.hpp"
 
-#include "gcpdda/dynamics/block_matrix.hpp"
+#include "dynamics/block_matrix.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "gcpdda/dynamics/water_pressure.hpp"
+#include "dynamics/water_pressure.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 // polygon add up to zero, x_f may be taken off: what remains is -sum s_e s_f max(x_e - x_f, 0). Its integral
 // over the height is the common area.
 
-#include "gcpdda/geometry/common_area.hpp"
+#include "geometry/common_area.hpp"
 
 #include <algorithm>
 #include <vector>

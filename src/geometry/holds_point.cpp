@@ -1,6 +1,6 @@
-#include "gcpdda/geometry/holds_point.hpp"
+#include "geometry/holds_point.hpp"
 
-#include "gcpdda/geometry/aabb.hpp"
+#include "geometry/aabb.hpp"
 
 #include <algorithm>
 #include <limits>

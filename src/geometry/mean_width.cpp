@@ -1,6 +1,6 @@
-#include "gcpdda/geometry/mean_width.hpp"
+#include "geometry/mean_width.hpp"
 
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 
-#include "gcpdda/geometry/edge_tree.hpp"
+#include "geometry/edge_tree.hpp"
 
 #include <algorithm>
 #include <limits>

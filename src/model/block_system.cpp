@@ -1,6 +1,6 @@
-#include "gcpdda/model/block_system.hpp"
+#include "model/block_system.hpp"
 
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "gcpdda/model/draw.hpp"
+#include "model/draw.hpp"
 
 #include <cmath>
 #include <numbers>

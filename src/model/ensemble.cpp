@@ -1,7 +1,7 @@
 #include "gcpdda/model/ensemble.hpp"
 
-#include "gcpdda/model/draw.hpp"
-#include "gcpdda/model/statistics.hpp"
+#include "model/draw.hpp"
+#include "model/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "gcpdda/model/fidelity.hpp"
+#include "model/fidelity.hpp"
 
 namespace gcpdda {
 

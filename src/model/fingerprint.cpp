@@ -1,4 +1,4 @@
-#include "gcpdda/model/fingerprint.hpp"
+#include "model/fingerprint.hpp"
 
 #include <initializer_list>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "gcpdda/model/generators.hpp"
+#include "model/generators.hpp"
 
 #include <charconv>
 #include <system_error>

@@ -1,7 +1,7 @@
 #include "gcpdda/model/rock_region.hpp"
 
-#include "gcpdda/geometry/aabb.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "gcpdda/model/statistics.hpp"
+#include "model/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>

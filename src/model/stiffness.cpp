@@ -1,6 +1,6 @@
-#include "gcpdda/model/stiffness.hpp"
+#include "model/stiffness.hpp"
 
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "gcpdda/model/support.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "gcpdda/parallel/ghosts.hpp"
+#include "parallel/ghosts.hpp"
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/parallel/packing.hpp"
+#include "base/check.hpp"
+#include "parallel/packing.hpp"
 
 #include <algorithm>
 #include <cmath>

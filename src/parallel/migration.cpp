@@ -1,6 +1,6 @@
-#include "gcpdda/parallel/migration.hpp"
+#include "parallel/migration.hpp"
 
-#include "gcpdda/parallel/packing.hpp"
+#include "parallel/packing.hpp"
 
 #include <algorithm>
 #include <numeric>

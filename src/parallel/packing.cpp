@@ -1,6 +1,6 @@
-#include "gcpdda/parallel/packing.hpp"
+#include "parallel/packing.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "gcpdda/simulation/balance.hpp"
+#include "simulation/balance.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // Where a bolt crosses which blocks.
 
-#include "gcpdda/geometry/aabb.hpp"
-#include "gcpdda/geometry/holds_point.hpp"
-#include "gcpdda/simulation/bolts.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/holds_point.hpp"
+#include "simulation/bolts.hpp"
 
 #include <algorithm>
 #include <limits>

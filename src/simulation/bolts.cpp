@@ -1,7 +1,7 @@
-#include "gcpdda/simulation/bolts.hpp"
+#include "simulation/bolts.hpp"
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/contact/contact_forces.hpp"
+#include "base/check.hpp"
+#include "contact/contact_forces.hpp"
 
 #include <algorithm>
 #include <cmath>

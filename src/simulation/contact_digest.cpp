@@ -1,4 +1,4 @@
-#include "gcpdda/simulation/contact_digest.hpp"
+#include "simulation/contact_digest.hpp"
 
 namespace gcpdda {
 

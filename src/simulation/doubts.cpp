@@ -1,13 +1,13 @@
 // What is implausible of the blocks of a valid scene together: warnings, one line for each kind.
 
-#include "gcpdda/base/edit_distance.hpp"
-#include "gcpdda/contact/stiffness_bound.hpp"
-#include "gcpdda/geometry/mean_width.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "base/edit_distance.hpp"
+#include "contact/stiffness_bound.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/simulation/plausibility.hpp"
-#include "gcpdda/simulation/simulation.hpp"
-#include "rank_facts.hpp"
+#include "geometry/mean_width.hpp"
+#include "geometry/polygon.hpp"
+#include "simulation/plausibility.hpp"
+#include "simulation/rank_facts.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

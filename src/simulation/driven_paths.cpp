@@ -1,8 +1,8 @@
-#include "driven_paths.hpp"
+#include "simulation/driven_paths.hpp"
 
-#include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/dynamics/integrate.hpp"
-#include "gcpdda/model/generators.hpp"
+#include "contact/contact_forces.hpp"
+#include "dynamics/integrate.hpp"
+#include "model/generators.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gcpdda/model/block_system.hpp"
 #include "gcpdda/model/scene.hpp"
+#include "model/block_system.hpp"
 
 namespace gcpdda {
 

@@ -1,12 +1,12 @@
 // The ground motion of a Simulation and the sides through which it comes and goes
 // (dynamics/ground_motion.hpp, dynamics/viscous_sides.hpp).
 
-#include "gcpdda/contact/stiffness_bound.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/dynamics/viscous_sides.hpp"
-#include "gcpdda/io/record_file.hpp"
-#include "gcpdda/model/stiffness.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "contact/stiffness_bound.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/viscous_sides.hpp"
+#include "io/scene/record_file.hpp"
+#include "model/stiffness.hpp"
+#include "simulation/simulation.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "gcpdda/simulation/energy_ledger.hpp"
+#include "simulation/energy_ledger.hpp"
 
-#include "gcpdda/base/exact_sum.hpp"
-#include "gcpdda/contact/bonds.hpp"
-#include "gcpdda/contact/pair_energies.hpp"
-#include "gcpdda/contact/region_law.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
+#include "base/exact_sum.hpp"
+#include "contact/laws/bonds.hpp"
+#include "contact/laws/region_law.hpp"
+#include "contact/pair_energies.hpp"
+#include "dynamics/deformable.hpp"
 
 #include <algorithm>
 #include <cmath>

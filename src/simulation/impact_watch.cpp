@@ -1,6 +1,6 @@
-#include "gcpdda/simulation/impact_watch.hpp"
+#include "simulation/impact_watch.hpp"
 
-#include "gcpdda/base/exact_sum.hpp"
+#include "base/exact_sum.hpp"
 
 #include <algorithm>
 #include <cmath>

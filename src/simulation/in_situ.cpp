@@ -4,10 +4,10 @@
 // before a restart puts blocks where they have come to: the slab's blocks go to the owners of their places
 // for a moment, and what they swell by comes back.
 
-#include "gcpdda/dynamics/deformable.hpp"
+#include "dynamics/deformable.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/parallel/migration.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "parallel/migration.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -9,8 +9,8 @@
 // Between blocks that keep their motion no contact acts, and supports may overlap on purpose. The same of
 // them twice is a slip all the same.
 
-#include "gcpdda/geometry/common_area.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "geometry/common_area.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // The consistent initial state of a Simulation.
 
-#include "gcpdda/contact/bonds.hpp"
-#include "gcpdda/contact/initial_friction.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "contact/laws/bonds.hpp"
+#include "contact/laws/initial_friction.hpp"
+#include "simulation/simulation.hpp"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 // of each says when it acts. Those of point loads follow. A row's point loads stand before those of its
 // sides, in the order of SceneBlock::loads.
 
-#include "gcpdda/simulation/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

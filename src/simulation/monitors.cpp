@@ -1,8 +1,8 @@
 // Which blocks the monitored points of a scene follow.
 
-#include "gcpdda/geometry/holds_point.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "geometry/holds_point.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <array>

@@ -12,7 +12,7 @@
 // alone and are sent before the rows themselves are predicted. Each row does the same operations on the same
 // numbers whenever it does them, so that the order changes no bit.
 
-#include "gcpdda/simulation/simulation.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

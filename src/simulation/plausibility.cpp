@@ -1,8 +1,8 @@
-#include "gcpdda/simulation/plausibility.hpp"
+#include "simulation/plausibility.hpp"
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/geometry/aabb.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "base/check.hpp"
+#include "geometry/aabb.hpp"
+#include "geometry/polygon.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "gcpdda/simulation/plausibility.hpp"
+#include "simulation/plausibility.hpp"
 
 #include <fmt/format.h>
 

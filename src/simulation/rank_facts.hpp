@@ -2,7 +2,7 @@
 
 // What a run tells of all its ranks.
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
 #include <algorithm>

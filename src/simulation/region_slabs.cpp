@@ -1,9 +1,9 @@
-#include "gcpdda/simulation/region_slabs.hpp"
+#include "simulation/region_slabs.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/model/block_source.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "model/block_source.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
-#include "gcpdda/simulation/results.hpp"
+#include "simulation/results.hpp"
 
-#include "gcpdda/dynamics/deformable.hpp"
+#include "dynamics/deformable.hpp"
 
 #include <algorithm>
 #include <utility>

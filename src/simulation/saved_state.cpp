@@ -2,10 +2,10 @@
 // neighbourhood was refreshed (a candidate that does not touch adds nothing, sums go in the order of ids), so
 // a run goes on from its blocks and the memory of its contacts alone: a restart begins with a refresh.
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/model/fingerprint.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "model/fingerprint.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,8 +1,8 @@
-#include "gcpdda/simulation/scene_size.hpp"
+#include "simulation/scene_size.hpp"
 
-#include "gcpdda/base/free_memory.hpp"
-#include "gcpdda/model/block_source.hpp"
-#include "gcpdda/model/generators.hpp"
+#include "base/free_memory.hpp"
+#include "model/block_source.hpp"
+#include "model/generators.hpp"
 
 #include <cmath>
 #include <fmt/format.h>

@@ -4,25 +4,24 @@
 // what is said of all of them (region, smallest, median) is agreed on by reductions. From the slabs blocks
 // migrate to the owners of their cells; fixed ones go to everybody.
 
-#include "gcpdda/simulation/simulation.hpp"
+#include "simulation/simulation.hpp"
 
-#include "driven_paths.hpp"
-#include "gcpdda/base/free_memory.hpp"
-#include "rank_facts.hpp"
-
-#include "gcpdda/contact/stiffness_bound.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/dynamics/frequency_bound.hpp"
-#include "gcpdda/geometry/polygon.hpp"
-#include "gcpdda/io/block_file.hpp"
+#include "base/free_memory.hpp"
+#include "contact/stiffness_bound.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/frequency_bound.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/model/fidelity.hpp"
-#include "gcpdda/model/stiffness.hpp"
-#include "gcpdda/parallel/migration.hpp"
-#include "gcpdda/parallel/packing.hpp"
-#include "gcpdda/simulation/plausibility.hpp"
-#include "gcpdda/simulation/region_slabs.hpp"
-#include "gcpdda/simulation/scene_size.hpp"
+#include "geometry/polygon.hpp"
+#include "io/blocks/block_file.hpp"
+#include "model/fidelity.hpp"
+#include "model/stiffness.hpp"
+#include "parallel/migration.hpp"
+#include "parallel/packing.hpp"
+#include "simulation/driven_paths.hpp"
+#include "simulation/plausibility.hpp"
+#include "simulation/rank_facts.hpp"
+#include "simulation/region_slabs.hpp"
+#include "simulation/scene_size.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "gcpdda/simulation/simulation.hpp"
+#include "simulation/simulation.hpp"
 
-#include "gcpdda/parallel/migration.hpp"
+#include "parallel/migration.hpp"
 
 #include <algorithm>
 #include <array>

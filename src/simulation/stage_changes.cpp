@@ -1,15 +1,15 @@
 // What stages do at once: blocks go, parameters change. Every change is made in the same order by a run and
 // by a restart into a later stage, so that both have the same bits.
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/contact/stiffness_bound.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/dynamics/frequency_bound.hpp"
-#include "gcpdda/geometry/holds_point.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "base/check.hpp"
+#include "contact/stiffness_bound.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/frequency_bound.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/model/fidelity.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "geometry/holds_point.hpp"
+#include "geometry/polygon.hpp"
+#include "model/fidelity.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // Stages of a Simulation: their plan, the looks at them, how one ends and the next begins.
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/base/exact_sum.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/dynamics/frequency_bound.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "base/check.hpp"
+#include "base/exact_sum.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/frequency_bound.hpp"
+#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <array>
@@ -193,8 +193,8 @@ void Simulation::stop_at_energy_peak() {
 // coming evaluation. By Cauchy and Schwarz (x - x*) M (x - x*) <= (32/63) dt^2 (v M v/2 + (7/72) dt^2 a M a),
 // so that the energy falls up to W = dt omega = sqrt(63/16) = 1.98. Elasticity K that acts implicitly
 // remembers two steps, and the energy is a state's own again only at rest, where it is x (k + K) x/2: no
-// stop, after whatever number of steps from rest, raises it. tests/unit/kinetic_stop_test.cpp tries that for
-// k and K at random up to 0.9 of the limit, which settle stages keep.
+// stop, after whatever number of steps from rest, raises it. tests/unit/dynamics/kinetic_stop_test.cpp tries
+// that for k and K at random up to 0.9 of the limit, which settle stages keep.
 void Simulation::book_stop() {
   const double dt = plan_.time_step;
   const double by_velocity = scheme_.trial_velocity * dt;

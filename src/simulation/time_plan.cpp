@@ -1,4 +1,4 @@
-#include "gcpdda/simulation/time_plan.hpp"
+#include "simulation/time_plan.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "gcpdda/simulation/stages.hpp"
+#include "simulation/stages.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 
 #include "support/scenes.hpp"
 
-#include "gcpdda/contact/overlap.hpp"
-#include "gcpdda/dynamics/integrate.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "contact/geometry/overlap.hpp"
+#include "dynamics/integrate.hpp"
+#include "simulation/simulation.hpp"
 
 #include <benchmark/benchmark.h>
 

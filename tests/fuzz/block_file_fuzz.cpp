@@ -1,11 +1,10 @@
 // Any HDF5 file is a block file or gets faults. The bytes say how a good file is changed: which datasets it
 // has, their types, shapes and values, what stands in their place, and what is broken in the written file.
 
-#include "fuzz/scene_checks.hpp"
+#include "base/check.hpp"
+#include "io/blocks/block_file.hpp"
+#include "scene_checks.hpp"
 #include "support/block_file_writer.hpp"
-
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/io/block_file.hpp"
 
 #include <fuzzer/FuzzedDataProvider.h>
 
@@ -329,8 +328,9 @@ void run(Bytes bytes) {
 } // namespace
 } // namespace gcpdda::fuzz
 
-/// The leak checker stumbles over the threads of MPI. A damaged header may ask HDF5 for gigabytes: its malloc gets none,
-/// as on a small machine, and HDF5 gives the file up. Where our own code asks for as much, operator new ends the run.
+/// The leak checker stumbles over the threads of MPI. A damaged header may ask HDF5 for gigabytes: its malloc
+/// gets none, as on a small machine, and HDF5 gives the file up. Where our own code asks for as much,
+/// operator new ends the run.
 extern "C" const char *__asan_default_options() {
   return "detect_leaks=0:max_allocation_size_mb=256:allocator_may_return_null=1";
 }

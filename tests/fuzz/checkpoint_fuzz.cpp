@@ -1,13 +1,13 @@
 // A checkpoint is the one that was written, or the one before is taken: whatever happens to its bytes. The
 // input says how the newer of two is damaged, or which odd numbers are written into a whole one.
 
-#include "fuzz/require.hpp"
+#include "require.hpp"
 
-#include "gcpdda/base/check.hpp"
-#include "gcpdda/io/checkpoint.hpp"
-#include "gcpdda/io/passing_files.hpp"
-#include "gcpdda/simulation/bolts.hpp"
-#include "gcpdda/simulation/stages.hpp"
+#include "base/check.hpp"
+#include "io/checkpoint/checkpoint.hpp"
+#include "io/hdf5/passing_files.hpp"
+#include "simulation/bolts.hpp"
+#include "simulation/stages.hpp"
 
 #include <fuzzer/FuzzedDataProvider.h>
 #include <hdf5.h>

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "fuzz/require.hpp"
-
 #include "gcpdda/base/diagnostic.hpp"
-#include "gcpdda/geometry/polygon.hpp"
 #include "gcpdda/model/scene.hpp"
+#include "geometry/polygon.hpp"
+#include "require.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // Any text is a scene or gets faults with places in it. What follows a line "--set" are --set arguments, one
 // a line.
 
-#include "fuzz/scene_checks.hpp"
+#include "scene_checks.hpp"
 
 #include "gcpdda/io/scene_reader.hpp"
-#include "gcpdda/model/generators.hpp"
+#include "model/generators.hpp"
 
 #include <cstddef>
 #include <cstdint>

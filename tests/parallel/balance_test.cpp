@@ -1,8 +1,8 @@
 // Work stays even while blocks collapse, few blocks move for it, and a stray far away spoils nothing.
 
-#include "gcpdda/simulation/balance.hpp"
+#include "simulation/balance.hpp"
 
-#include "gcpdda/simulation/simulation.hpp"
+#include "simulation/simulation.hpp"
 #include "support/scenes.hpp"
 
 #include <gtest/gtest.h>

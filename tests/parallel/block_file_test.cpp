@@ -1,7 +1,7 @@
 // Each rank reads its part of a block file; faults are the same on all ranks, in the order of the blocks.
 
-#include "gcpdda/io/block_file.hpp"
-#include "gcpdda/model/generators.hpp"
+#include "io/blocks/block_file.hpp"
+#include "model/generators.hpp"
 #include "shared_folder.hpp"
 #include "support/block_file_writer.hpp"
 

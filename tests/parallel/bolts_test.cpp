@@ -1,10 +1,10 @@
 // Bolts on many ranks: the same bytes as on one, through migration, refresh, stages and a restart.
 
-#include "gcpdda/base/text.hpp"
-#include "gcpdda/io/checkpoint.hpp"
-#include "gcpdda/io/run_comparison.hpp"
-#include "gcpdda/simulation/restart.hpp"
-#include "gcpdda/simulation/run.hpp"
+#include "base/text.hpp"
+#include "driver/restart.hpp"
+#include "gcpdda/driver/run.hpp"
+#include "io/checkpoint/checkpoint.hpp"
+#include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"

@@ -1,11 +1,11 @@
 // A checkpoint has the same bytes on any number of ranks, and any number goes on from it to the same files.
 
-#include "gcpdda/io/checkpoint.hpp"
+#include "driver/restart.hpp"
+#include "driver/stop_signal.hpp"
+#include "gcpdda/driver/run.hpp"
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/io/run_comparison.hpp"
-#include "gcpdda/simulation/restart.hpp"
-#include "gcpdda/simulation/run.hpp"
-#include "gcpdda/simulation/stop_signal.hpp"
+#include "io/checkpoint/checkpoint.hpp"
+#include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"

@@ -3,7 +3,7 @@
 
 #include "gcpdda/parallel/communicator.hpp"
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // A slope whose sides become viscous when it begins to shake: the same on any number of ranks, and through a
 // restart in the middle of the shaking.
 
-#include "gcpdda/blockgen/region_cutter.hpp"
-#include "gcpdda/io/run_comparison.hpp"
-#include "gcpdda/simulation/restart.hpp"
-#include "gcpdda/simulation/run.hpp"
+#include "blockgen/region_cutter.hpp"
+#include "driver/restart.hpp"
+#include "gcpdda/driver/run.hpp"
+#include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"

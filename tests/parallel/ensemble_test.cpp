@@ -1,10 +1,10 @@
 // The same members whoever runs them, at once or one call after another.
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
+#include "driver/ensemble.hpp"
 #include "gcpdda/io/scene_reader.hpp"
-#include "gcpdda/simulation/ensemble.hpp"
-#include "gcpdda/simulation/simulation.hpp"
 #include "shared_folder.hpp"
+#include "simulation/simulation.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"
 

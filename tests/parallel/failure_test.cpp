@@ -1,12 +1,12 @@
 // A run that cannot go on: all ranks stop in the same step with the same words and leave files that can be
 // read.
 
-#include "gcpdda/geometry/polygon.hpp"
-#include "gcpdda/io/run_comparison.hpp"
-#include "gcpdda/simulation/balance.hpp"
-#include "gcpdda/simulation/run.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "gcpdda/driver/run.hpp"
+#include "geometry/polygon.hpp"
+#include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"
+#include "simulation/balance.hpp"
+#include "simulation/simulation.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"
 

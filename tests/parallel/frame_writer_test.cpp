@@ -2,8 +2,8 @@
 // the number of ranks. No fatal assertion: a rank that left early would leave the others waiting.
 
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/io/run_comparison.hpp"
-#include "parallel/shared_folder.hpp"
+#include "io/results/run_comparison.hpp"
+#include "shared_folder.hpp"
 #include "support/frame_data.hpp"
 
 #include <gtest/gtest.h>

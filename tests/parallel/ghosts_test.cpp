@@ -1,9 +1,9 @@
 // Who is seen by whom, against all pairs. Every rank builds the same whole system from a seed, keeps its part
 // of it, and checks its ghosts against the whole.
 
-#include "gcpdda/parallel/ghosts.hpp"
+#include "parallel/ghosts.hpp"
 
-#include "gcpdda/contact/candidates.hpp"
+#include "contact/candidates.hpp"
 #include "random_blocks.hpp"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // One rank and many write the same bytes. Each test also proves that there was something to get wrong: blocks
 // in contact across ranks, blocks that changed their rank, neighbourhoods made anew.
 
-#include "gcpdda/io/checkpoint.hpp"
-#include "gcpdda/io/run_comparison.hpp"
-#include "gcpdda/model/contact_history.hpp"
-#include "gcpdda/simulation/restart.hpp"
-#include "gcpdda/simulation/run.hpp"
+#include "driver/restart.hpp"
+#include "gcpdda/driver/run.hpp"
+#include "io/checkpoint/checkpoint.hpp"
+#include "io/results/run_comparison.hpp"
+#include "model/contact_history.hpp"
 #include "shared_folder.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"

@@ -1,11 +1,11 @@
 // Blocks on random walks over the ranks. Every rank walks the whole system along and knows what it must own.
 
-#include "gcpdda/parallel/migration.hpp"
+#include "parallel/migration.hpp"
 
-#include "gcpdda/contact/candidates.hpp"
-#include "gcpdda/parallel/ghosts.hpp"
-#include "gcpdda/simulation/balance.hpp"
+#include "contact/candidates.hpp"
+#include "parallel/ghosts.hpp"
 #include "random_blocks.hpp"
+#include "simulation/balance.hpp"
 
 #include <gtest/gtest.h>
 

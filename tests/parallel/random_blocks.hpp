@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gcpdda/model/block_system.hpp"
-#include "gcpdda/partition/domain_map.hpp"
+#include "model/block_system.hpp"
+#include "partition/domain_map.hpp"
 
 #include <bit>
 #include <cstdint>

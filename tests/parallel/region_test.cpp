@@ -1,8 +1,8 @@
 // A region cut by all ranks: the same blocks, byte for byte, and the same run.
 
 #include "gcpdda/io/result_files.hpp"
-#include "gcpdda/simulation/region_slabs.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "simulation/region_slabs.hpp"
+#include "simulation/simulation.hpp"
 #include "support/regions.hpp"
 #include "support/setting.hpp"
 

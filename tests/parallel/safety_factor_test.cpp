@@ -1,6 +1,6 @@
 // The same factor of safety whatever runs at once.
 
-#include "gcpdda/simulation/safety_factor.hpp"
+#include "driver/safety_factor.hpp"
 #include "shared_folder.hpp"
 #include "support/plane_failure.hpp"
 #include "support/run_facts.hpp"

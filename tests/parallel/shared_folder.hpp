@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
 #include <cstdlib>

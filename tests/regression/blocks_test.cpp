@@ -1,7 +1,7 @@
 // gcpdda blocks, and runs of scenes with a region, as a person sees them.
 
 #include "child_process.hpp"
-#include "gcpdda/io/run_comparison.hpp"
+#include "io/results/run_comparison.hpp"
 #include "support/run_facts.hpp"
 
 #include <gtest/gtest.h>

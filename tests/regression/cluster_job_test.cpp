@@ -1,6 +1,6 @@
 // run/cluster/job.sh without SLURM: srun and scontrol are stubs on the PATH, the test is the scheduler.
 
-#include "gcpdda/io/run_comparison.hpp"
+#include "io/results/run_comparison.hpp"
 
 #include "child_process.hpp"
 #include "support/run_facts.hpp"

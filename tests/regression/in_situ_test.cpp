@@ -3,7 +3,7 @@
 
 #include "child_process.hpp"
 
-#include "gcpdda/io/run_comparison.hpp"
+#include "io/results/run_comparison.hpp"
 #include "support/run_facts.hpp"
 
 #include <gtest/gtest.h>

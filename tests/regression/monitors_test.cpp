@@ -1,7 +1,7 @@
 // Histories of monitored blocks and points, and the order of a pair's contact regions, from the files of
 // runs.
 
-#include "gcpdda/io/run_comparison.hpp"
+#include "io/results/run_comparison.hpp"
 
 #include "child_process.hpp"
 #include "sample_scenes.hpp"

@@ -1,7 +1,7 @@
 // gcpdda restart: the same files as a run that was never stopped, whatever stopped it and on any number of
 // ranks; a clear refusal where that cannot be; nothing already written is harmed.
 
-#include "gcpdda/io/run_comparison.hpp"
+#include "io/results/run_comparison.hpp"
 
 #include "checkpoints.hpp"
 #include "child_process.hpp"

@@ -1,7 +1,7 @@
 // The files a run leaves: names, columns, keys, first and last times; and the same bytes for any ranks when
 // started as users start it.
 
-#include "gcpdda/io/run_comparison.hpp"
+#include "io/results/run_comparison.hpp"
 
 #include "child_process.hpp"
 #include "sample_scenes.hpp"

@@ -1,6 +1,6 @@
 // Runs that are stopped, killed or run out of disk go on to the same files.
 
-#include "gcpdda/io/run_comparison.hpp"
+#include "io/results/run_comparison.hpp"
 
 #include "checkpoints.hpp"
 #include "child_process.hpp"

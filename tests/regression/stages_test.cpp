@@ -1,7 +1,7 @@
 // A run in stages: what it writes, that a restart from any of them goes on with the same bits, its exit
 // codes.
 
-#include "gcpdda/io/run_comparison.hpp"
+#include "io/results/run_comparison.hpp"
 
 #include "child_process.hpp"
 #include "support/run_facts.hpp"

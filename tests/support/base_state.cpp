@@ -1,9 +1,8 @@
-#include "support/base_state.hpp"
+#include "base_state.hpp"
 
-#include "support/contact_regions.hpp"
-#include "support/eigenvalues.hpp"
-
-#include "gcpdda/dynamics/deformable.hpp"
+#include "contact_regions.hpp"
+#include "dynamics/deformable.hpp"
+#include "eigenvalues.hpp"
 
 #include <cmath>
 #include <complex>

@@ -17,8 +17,8 @@
 // with unit vector x, Im lambda = x^H (K - K^T) x/2i: growth is bounded by the norm of the skew part, and
 // none of it is left where K is symmetric.
 
-#include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "contact/contact_forces.hpp"
+#include "simulation/simulation.hpp"
 
 #include <Eigen/Core>
 

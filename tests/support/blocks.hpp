@@ -2,11 +2,11 @@
 
 // Blocks without a scene, for tests of single modules.
 
-#include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/model/block_system.hpp"
-#include "support/contact_regions.hpp"
-#include "support/memories.hpp"
-#include "support/shapes.hpp"
+#include "contact/contact_forces.hpp"
+#include "contact_regions.hpp"
+#include "memories.hpp"
+#include "model/block_system.hpp"
+#include "shapes.hpp"
 
 #include <gtest/gtest.h>
 

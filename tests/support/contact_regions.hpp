@@ -3,8 +3,8 @@
 // All contact regions of the last evaluation at once, which no run ever holds, and what follows from them one
 // block after the other.
 
-#include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/simulation/simulation.hpp"
+#include "contact/contact_forces.hpp"
+#include "simulation/simulation.hpp"
 
 #include <array>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "support/critical_path.hpp"
+#include "critical_path.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 // Two blocks that pass through a critical configuration, for tests of continuity.
 
-#include "support/shapes.hpp"
+#include "shapes.hpp"
 
 #include <functional>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gcpdda/blockgen/joint_map.hpp"
-#include "gcpdda/blockgen/region_cutter.hpp"
+#include "blockgen/joint_map.hpp"
+#include "blockgen/region_cutter.hpp"
 
 #include <fstream>
 #include <memory>

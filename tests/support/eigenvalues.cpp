@@ -1,6 +1,6 @@
-#include "support/eigenvalues.hpp"
+#include "eigenvalues.hpp"
 
-#include "gcpdda/dynamics/eigenvalues.hpp"
+#include "dynamics/eigenvalues.hpp"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,7 +1,7 @@
-#include "support/incline.hpp"
+#include "incline.hpp"
 
-#include "gcpdda/contact/contact_forces.hpp"
-#include "gcpdda/model/block_system.hpp"
+#include "contact/contact_forces.hpp"
+#include "model/block_system.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "support/setting.hpp"
+#include "setting.hpp"
 
 #include <string>
 #include <vector>

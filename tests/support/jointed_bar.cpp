@@ -1,7 +1,7 @@
-#include "support/jointed_bar.hpp"
+#include "jointed_bar.hpp"
 
-#include "support/eigenvalues.hpp"
-#include "support/setting.hpp"
+#include "eigenvalues.hpp"
+#include "setting.hpp"
 
 #include <cmath>
 

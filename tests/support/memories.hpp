@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gcpdda/model/contact_history.hpp"
+#include "model/contact_history.hpp"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
-#include "support/plane_failure.hpp"
+#include "plane_failure.hpp"
 
-#include "support/scenes.hpp"
-#include "support/setting.hpp"
+#include "scenes.hpp"
+#include "setting.hpp"
 
 #include <fmt/format.h>
 

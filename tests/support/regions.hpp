@@ -2,8 +2,8 @@
 
 // Regions of rock and their joints, for tests.
 
-#include "gcpdda/blockgen/region_cutter.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "blockgen/region_cutter.hpp"
+#include "geometry/polygon.hpp"
 
 #include <memory>
 #include <numbers>

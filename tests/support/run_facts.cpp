@@ -1,4 +1,4 @@
-#include "support/run_facts.hpp"
+#include "run_facts.hpp"
 
 #include <algorithm>
 #include <fstream>

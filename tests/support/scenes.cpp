@@ -1,4 +1,4 @@
-#include "support/scenes.hpp"
+#include "scenes.hpp"
 
 #include "gcpdda/io/scene_reader.hpp"
 

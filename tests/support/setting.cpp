@@ -1,4 +1,4 @@
-#include "support/setting.hpp"
+#include "setting.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 
 // What test problems and studies share: the head of a one-rock scene, and looks at a run in memory.
 
-#include "gcpdda/simulation/simulation.hpp"
-#include "support/scenes.hpp"
+#include "scenes.hpp"
+#include "simulation/simulation.hpp"
 
 #include <numbers>
 #include <string>

@@ -2,9 +2,9 @@
 
 // Polygons without a scene, for tests of the contact integral.
 
-#include "gcpdda/contact/overlap.hpp"
+#include "contact/geometry/overlap.hpp"
 #include "gcpdda/geometry/mat2.hpp"
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -2,9 +2,8 @@
 
 // Pairs of blocks that touch in a given way, for tests of what a contact does near one state.
 
+#include "model/block_system.hpp"
 #include "shapes.hpp"
-
-#include "gcpdda/model/block_system.hpp"
 
 #include <array>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/simulation/energy_ledger.hpp"
+#include "simulation/energy_ledger.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -2,10 +2,10 @@
 
 #include "problem.hpp"
 
+#include "geometry/polygon.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include "gcpdda/geometry/polygon.hpp"
 
 #include <cmath>
 #include <random>

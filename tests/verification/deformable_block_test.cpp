@@ -2,8 +2,8 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/dynamics/integrate.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/integrate.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/blockgen/region_cutter.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
+#include "blockgen/region_cutter.hpp"
+#include "dynamics/deformable.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -3,9 +3,8 @@
 
 #include "problem.hpp"
 
+#include "simulation/energy_ledger.hpp"
 #include "support/scenes.hpp"
-
-#include "gcpdda/simulation/energy_ledger.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/io/ensemble_report.hpp"
+#include "driver/ensemble.hpp"
 #include "gcpdda/io/scene_reader.hpp"
-#include "gcpdda/simulation/ensemble.hpp"
+#include "io/results/ensemble_report.hpp"
 #include "support/run_facts.hpp"
 
 #include <fmt/format.h>

@@ -3,8 +3,8 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/contact/bonds.hpp"
-#include "gcpdda/simulation/energy_ledger.hpp"
+#include "contact/laws/bonds.hpp"
+#include "simulation/energy_ledger.hpp"
 #include "support/blocks.hpp"
 #include "support/contact_regions.hpp"
 #include "support/memories.hpp"

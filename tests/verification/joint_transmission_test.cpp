@@ -20,7 +20,7 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/blockgen/region_cutter.hpp"
+#include "blockgen/region_cutter.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

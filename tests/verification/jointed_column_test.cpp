@@ -19,7 +19,7 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 #include "support/contact_regions.hpp"
 
 #include <fmt/format.h>

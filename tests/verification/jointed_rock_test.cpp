@@ -3,13 +3,12 @@
 
 #include "problem.hpp"
 
+#include "blockgen/region_cutter.hpp"
+#include "dynamics/deformable.hpp"
 #include "support/base_state.hpp"
 #include "support/contact_regions.hpp"
 #include "support/eigenvalues.hpp"
 #include "support/shapes.hpp"
-
-#include "gcpdda/blockgen/region_cutter.hpp"
-#include "gcpdda/dynamics/deformable.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

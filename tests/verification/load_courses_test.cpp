@@ -3,8 +3,7 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/simulation/energy_ledger.hpp"
-
+#include "simulation/energy_ledger.hpp"
 #include "support/contact_regions.hpp"
 #include "support/regions.hpp"
 

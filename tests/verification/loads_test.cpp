@@ -2,8 +2,8 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/dynamics/deformable.hpp"
-#include "gcpdda/simulation/energy_ledger.hpp"
+#include "dynamics/deformable.hpp"
+#include "simulation/energy_ledger.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

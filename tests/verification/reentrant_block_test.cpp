@@ -1,10 +1,9 @@
 // B3, B4 and A5 for blocks with re-entrant vertices, and a wedge in a re-entrant corner.
 
+#include "dynamics/deformable.hpp"
 #include "problem.hpp"
 #include "support/contact_regions.hpp"
 #include "support/incline.hpp"
-
-#include "gcpdda/dynamics/deformable.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

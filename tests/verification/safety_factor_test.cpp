@@ -2,8 +2,8 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/blockgen/region_cutter.hpp"
-#include "gcpdda/simulation/safety_factor.hpp"
+#include "blockgen/region_cutter.hpp"
+#include "driver/safety_factor.hpp"
 #include "support/plane_failure.hpp"
 #include "support/run_facts.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/simulation/energy_ledger.hpp"
+#include "simulation/energy_ledger.hpp"
 #include "support/cut_region.hpp"
 
 #include <fmt/format.h>

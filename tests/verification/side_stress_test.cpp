@@ -3,9 +3,8 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/simulation/energy_ledger.hpp"
-#include "gcpdda/simulation/results.hpp"
-
+#include "simulation/energy_ledger.hpp"
+#include "simulation/results.hpp"
 #include "support/contact_regions.hpp"
 #include "support/regions.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/simulation/energy_ledger.hpp"
+#include "simulation/energy_ledger.hpp"
 #include "support/memories.hpp"
 
 #include <fmt/format.h>
@@ -107,8 +107,8 @@ Swinging swing_deformable(double youngs_modulus) {
 }
 
 // Strain swings with the joint. The loss is what the skew part of the tangent leaves
-// (tests/unit/tangent_test.cpp), of the order of the strain of the stick spring, 2e-6. (Friction at the
-// centre of pressure leaves 1.4e-4.)
+// (tests/unit/contact/tangent_test.cpp), of the order of the strain of the stick spring, 2e-6. (Friction at
+// the centre of pressure leaves 1.4e-4.)
 TEST(Sticking, EnergyOfADeformableBlockIsBounded) {
   for (const double youngs_modulus : {1e9, 3e9}) {
     const Swinging swinging = swing_deformable(youngs_modulus);

@@ -4,8 +4,8 @@
 
 #include "problem.hpp"
 
-#include "gcpdda/blockgen/region_cutter.hpp"
-#include "gcpdda/simulation/energy_ledger.hpp"
+#include "blockgen/region_cutter.hpp"
+#include "simulation/energy_ledger.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,8 @@
 // Water: buoyancy, the period of a raft, and Hoek and Bray's slide with a water-filled tension crack.
 
+#include "geometry/polygon.hpp"
 #include "problem.hpp"
 #include "support/contact_regions.hpp"
-
-#include "gcpdda/geometry/polygon.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -29,13 +29,13 @@ struct JointLaw {
   double tan_friction = 0.0;     ///< tan of the friction angle
   double cohesion = 0.0;         ///< Pa
 
-  /// Edges that lie on each other at t = 0 are bonded (contact/bonds.hpp): friction and cohesion above are
-  /// those of the bond, what follows holds once it is broken and where there never was one.
+  /// Edges that lie on each other at t = 0 are bonded (contact/laws/bonds.hpp): friction and cohesion above
+  /// are those of the bond, what follows holds once it is broken and where there never was one.
   bool has_bonds = false;
   double tension = 0.0; ///< tensile strength of the bond, Pa
   double residual_tan_friction = 0.0;
   double residual_cohesion = 0.0; ///< Pa
-  /// Slip opens the joint by tan_dilation of it (contact/dilation.hpp), until it has slipped by
+  /// Slip opens the joint by tan_dilation of it (contact/laws/dilation.hpp), until it has slipped by
   /// dilation_limit.
   double tan_dilation = 0.0;
   double dilation_limit = 0.0; ///< m

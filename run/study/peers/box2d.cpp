@@ -1,8 +1,7 @@
 #include "peers.hpp"
 
 #include "../study.hpp"
-
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 
 #include <box2d/box2d.h>
 

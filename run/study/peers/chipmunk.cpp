@@ -1,8 +1,7 @@
 #include "peers.hpp"
 
 #include "../study.hpp"
-
-#include "gcpdda/geometry/polygon.hpp"
+#include "geometry/polygon.hpp"
 
 #include <chipmunk/chipmunk.h>
 

@@ -3,9 +3,8 @@
 
 #include "gcpdda/parallel/communicator.hpp"
 
-#include "idle_threads.hpp"
-
-#include "gcpdda/base/check.hpp"
+#include "base/check.hpp"
+#include "parallel/communicator/idle_threads.hpp"
 
 // Open MPI's and MPICH's old C++ interface would need a library of its own.
 #define OMPI_SKIP_MPICXX 1

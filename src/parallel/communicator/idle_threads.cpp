@@ -1,4 +1,4 @@
-#include "idle_threads.hpp"
+#include "parallel/communicator/idle_threads.hpp"
 
 #include <filesystem>
 #include <fstream>

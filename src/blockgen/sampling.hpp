@@ -1,0 +1,15 @@
+#pragma once
+
+#include "gcpdda/model/rock_region.hpp"
+#include "model/draw.hpp"
+
+namespace gcpdda::blockgen {
+
+/// A length: within [lowest_share, highest_share] of its mean, drawn again until it is.
+double sample_length(const Scattered &length, Draw draw);
+
+/// An angle, rad. Fisher: angle a between two directions with density ~ sin(a) exp(k cos(a)), inverse of its
+/// distribution in closed form (doi:10.1098/rspa.1953.0064), to either side alike.
+double sample_angle(const Scattered &angle, Draw draw);
+
+} // namespace gcpdda::blockgen

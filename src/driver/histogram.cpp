@@ -1,0 +1,146 @@
+#include "driver/histogram.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace gcpdda {
+
+namespace {
+
+/// The round number nearest to x, by ratio.
+double round_number(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const auto &[limit, number] :
+       {std::pair(std::sqrt(2.0), 1.0), std::pair(std::sqrt(10.0), 2.0), std::pair(std::sqrt(50.0), 5.0)}) {
+    if (x < limit * power) {
+      return number * power;
+    }
+  }
+  return 10.0 * power;
+}
+
+constexpr const char *mean_colour = "#2a7f3f";
+
+/// Bars on a page with an axis and lines of text above.
+class Chart {
+public:
+  Chart(const Bars &bars, std::int64_t highest)
+      : bars_(bars), highest_(static_cast<double>(highest)),
+        text_(fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+                          "font-family=\"sans-serif\" font-size=\"14\">\n"
+                          "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+                          width + 2.0 * margin, top + height + bottom)) {}
+
+  [[nodiscard]] double x_of(double value) const {
+    const double range = bars_.width * static_cast<double>(bars_.counts.size());
+    return margin + width * (value - bars_.begin) / range;
+  }
+
+  void write(double x, double y, const std::string &anchor, const std::string &text) {
+    text_ +=
+        fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, text);
+  }
+
+  void bar(std::size_t k, const std::string &colour) {
+    const double left = x_of(edge(k));
+    const double tall = height * static_cast<double>(bars_.counts[k]) / highest_;
+    const double right = x_of(edge(k + 1));
+    const double below = top + height;
+    text_ += fmt::format("<polygon fill=\"{0}\" stroke=\"#333\" stroke-width=\"0.5\" "
+                         "points=\"{1:.1f},{3:.1f} {2:.1f},{3:.1f} {2:.1f},{4:.1f} {1:.1f},{4:.1f}\"/>\n",
+                         colour, left, right, below, below - tall);
+    if (bars_.counts[k] > 0) {
+      write(0.5 * (left + right), top + height - tall - 5.0, "middle", fmt::format("{}", bars_.counts[k]));
+    }
+  }
+
+  void upright(double value, const std::string &colour) {
+    line(x_of(value), top - 12.0, x_of(value), top + height, colour);
+  }
+
+  void axis(const std::string &title) {
+    line(margin, top + height, margin + width, top + height, "#333");
+    const std::size_t every = bars_.counts.size() / 12 + 1;
+    for (std::size_t k = 0; k <= bars_.counts.size(); k += every) {
+      write(x_of(edge(k)), top + height + 18.0, "middle", fmt::format("{:.4g}", edge(k)));
+    }
+    write(margin + 0.5 * width, top + height + 40.0, "middle", title);
+  }
+
+  [[nodiscard]] double edge(std::size_t k) const {
+    return bars_.begin + bars_.width * static_cast<double>(k);
+  }
+  [[nodiscard]] std::string whole() const { return text_ + "</svg>\n"; }
+
+  static constexpr double margin = 40.0; // pixels, as all lengths here
+  static constexpr double width = 800.0;
+  static constexpr double height = 320.0;
+  static constexpr double top = 84.0;
+  static constexpr double bottom = 56.0;
+
+private:
+  void line(double x0, double y0, double x1, double y1, const std::string &colour) {
+    text_ += fmt::format("<path d=\"M {:.1f} {:.1f} L {:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"1.5\"/>\n",
+                         x0, y0, x1, y1, colour);
+  }
+
+  const Bars &bars_;
+  double highest_;
+  std::string text_;
+};
+
+} // namespace
+
+Bars bars_of(const std::vector<double> &values, double edge) {
+  const SampleMoments moments = sample_moments(values);
+  const double scott =
+      3.49 * moments.deviation / std::cbrt(static_cast<double>(std::max<std::size_t>(values.size(), 1)));
+  Bars bars;
+  bars.width = round_number(scott > 0.0 ? scott : 0.01);
+  const auto number_of_bar = [&](double x) { return std::floor((x - edge) / bars.width); };
+  const double first = number_of_bar(moments.least);
+  bars.begin = edge + bars.width * first;
+  bars.counts.resize(static_cast<std::size_t>(number_of_bar(moments.most) - first) + 1);
+  for (const double x : values) {
+    ++bars.counts[static_cast<std::size_t>(number_of_bar(x) - first)];
+  }
+  return bars;
+}
+
+std::string draw_histogram(const EnsembleReport &report) {
+  std::vector<double> factors;
+  for (const EnsembleMember &member : report.members) {
+    if (const std::optional<double> factor = member.factor()) {
+      factors.push_back(*factor);
+    }
+  }
+  const EnsembleStatistics found = statistics_of(report);
+  const Bars bars = bars_of(factors, 1.0);
+  Chart chart(bars, *std::max_element(bars.counts.begin(), bars.counts.end()));
+  for (std::size_t k = 0; k < bars.counts.size(); ++k) {
+    const bool below = chart.edge(k) + 0.5 * bars.width < 1.0;
+    chart.bar(k, below ? "#d1583f" : "#8aa9c8");
+  }
+  chart.axis("factor of safety");
+  const auto is_inside = [&](double x) { return chart.edge(0) <= x && x <= chart.edge(bars.counts.size()); };
+  if (is_inside(1.0)) {
+    chart.upright(1.0, "black");
+  }
+  chart.upright(found.factor.mean, mean_colour);
+  chart.write(Chart::margin, 22.0, "start",
+              fmt::format("{} members: mean {:.4g} (green), standard deviation {:.3g}", found.factor.number,
+                          found.factor.mean, found.factor.deviation));
+  chart.write(
+      Chart::margin, 42.0, "start",
+      fmt::format("probability of failure {:.3g}, {:.2g} to {:.2g} with 95 % confidence: {} of {} fail",
+                  found.probability, found.interval.low, found.interval.high, found.fails, found.trials()));
+  const std::int64_t aside = found.trials() - found.factor.number;
+  if (aside > 0) {
+    chart.write(Chart::margin, 62.0, "start",
+                fmt::format("{} members without a factor are not shown", aside));
+  }
+  return chart.whole();
+}
+
+} // namespace gcpdda

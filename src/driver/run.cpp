@@ -1,0 +1,502 @@
+#include "gcpdda/driver/run.hpp"
+
+#include "base/check.hpp"
+#include "driver/run_log.hpp"
+#include "driver/run_words.hpp"
+#include "driver/stop_signal.hpp"
+#include "gcpdda/io/result_files.hpp"
+#include "io/checkpoint/checkpoint.hpp"
+#include "io/results/folder_lock.hpp"
+#include "simulation/energy_ledger.hpp"
+#include "simulation/impact_watch.hpp"
+#include "simulation/rank_facts.hpp"
+#include "simulation/results.hpp"
+#include "simulation/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <fmt/format.h>
+#include <iostream>
+#include <optional>
+
+namespace gcpdda {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+Beginning beginning_of(const RunOptions &options) {
+  return options.restart ? Beginning{options.directory, options.computed_with, options.earlier}
+                         : Beginning{options.from, options.computed_with, EarlierResults::are_not_looked_at};
+}
+
+/// A run with its files.
+class SceneRun {
+public:
+  /// @param lock  of the folder, if there is one yet
+  SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
+      : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
+        is_once_(options.once), bolts_at_start_(scene.bolts),
+        simulation_(communicator, scene, beginning_of(options)) {
+    if (!options.restart) {
+      begin_results(scene, options);
+    } else if (!simulation_.finished()) {
+      continue_results(scene, *simulation_.restored());
+    }
+    on_root(communicator, [&] { lock.acquire(directory_); });
+    set_up_seconds_ = seconds_since(start_);
+  }
+
+  RunOutcome run() {
+    if (simulation_.finished() && simulation_.restored()) {
+      if (communicator_.is_root()) {
+        std::cerr << fmt::format("the run in {} is finished at t = {:g} s, {} goes on from there\n",
+                                 directory_.string(), simulation_.restored()->facts.time,
+                                 simulation_.is_staged() ? "a longer limit or a further stage"
+                                                         : "a longer run.duration");
+      }
+      return {exit_code_of_stages(), {}};
+    }
+    announce();
+    write_owners_of_blocks();
+    if (!simulation_.restored()) {
+      write_due();
+    }
+    const Clock::time_point loop_start = Clock::now();
+    const double cpu_start = cpu_seconds();
+    const double output_before = output_seconds();
+    const double output_cpu_before = output_cpu_seconds_;
+    first_step_ = simulation_.step_count();
+    begin_stages();
+    while (!simulation_.finished() && !simulation_.stop_agreed()) {
+      if (stop_signal_came()) {
+        simulation_.ask_to_stop();
+      }
+      simulation_.step();
+      end_stage_if_over();
+      if (!simulation_.is_staged() &&
+          simulation_.step_count() ==
+              std::min<std::int64_t>(first_step_ + steps_to_predict, simulation_.plan().num_steps)) {
+        predict_duration(seconds_since(loop_start));
+      }
+      write_due();
+      write_checkpoint_if_due();
+      show_progress(loop_start);
+      begin_stages();
+    }
+    loop_seconds_ = seconds_since(loop_start) - (output_seconds() - output_before);
+    cpu_seconds_ = cpu_seconds() - cpu_start - (output_cpu_seconds_ - output_cpu_before);
+    return finish();
+  }
+
+private:
+  static constexpr std::int64_t steps_to_predict = 20;
+
+  void end_stage_if_over() {
+    if (!simulation_.is_staged() || !simulation_.stage_is_over() || simulation_.fault()) {
+      return;
+    }
+    ledger_->note_end(simulation_);
+    simulation_.end_stage(); // a settled pile is set to rest
+    ledger_->step_over(simulation_);
+    log_stage();
+  }
+
+  /// Those that take no steps are over at once.
+  void begin_stages() {
+    while (simulation_.is_staged() && simulation_.stage_is_over() && !simulation_.finished() &&
+           !simulation_.stop_agreed()) {
+      simulation_.begin_next_stage();
+      ledger_->step_over(simulation_);
+      impacts_.forget();
+      tell_of_bolts();
+      if (simulation_.stage_is_over()) {
+        log_stage();
+      }
+    }
+  }
+
+  void log_stage() {
+    const StageResult result = simulation_.stage_results().back();
+    log_->line(words_on_stage(simulation_.stages()[static_cast<std::size_t>(simulation_.stage().index)].name,
+                              result));
+  }
+
+  /// 7 where a limit was reached without a verdict.
+  [[nodiscard]] int exit_code_of_stages() const {
+    const StageState &stage = simulation_.stage();
+    const bool waited = simulation_.stages()[static_cast<std::size_t>(stage.index)].until_verdict;
+    return waited && stage.verdict == Verdict::undecided ? 7 : 0;
+  }
+
+  void begin_results(const Scene &scene, const RunOptions &options) {
+    on_root(communicator_, [&] {
+      if (options.prepare) {
+        options.prepare();
+      }
+      prepare_result_directory(directory_, options.overwrite, scene.resolved);
+      histories_.emplace(directory_, scene.monitors, !scene.bolts.empty());
+    });
+    log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet, options.progress_of);
+    frames_.emplace(communicator_, directory_, simulation_.num_blocks());
+    simulation_.restored() ? ledger_.emplace(simulation_.restored()->facts) : ledger_.emplace(simulation_);
+    checkpoints_.emplace(communicator_, directory_, std::filesystem::path());
+  }
+
+  // What was written after the checkpoint goes: it will be written again.
+  void continue_results(const Scene &scene, const Restored &restored) {
+    const RunFacts &facts = restored.facts;
+    on_root(communicator_, [&] {
+      if (const auto before = simulation_.changed_from();
+          !before.empty()) { // first: a restart may be repeated
+        remember_scenes(directory_, before);
+      }
+      reopen_result_directory(directory_, scene.resolved);
+    });
+    frames_.emplace(communicator_, directory_, simulation_.num_blocks());
+    frames_->continue_behind(facts.frame_times, facts.results);
+    on_root(communicator_, [&] {
+      histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step,
+                         !scene.bolts.empty());
+    });
+    log_.emplace(communicator_.is_root(), directory_, std::ios::app);
+    for (const std::string &rejected : restored.rejected) {
+      log_->line("warning: a checkpoint is not used, " + rejected);
+    }
+    for (const std::string &gap : restored.gaps) {
+      log_->line("warning: earlier results have a gap that stays: " + gap);
+    }
+    log_->line(fmt::format("restart from {}: t = {:.9g} s, step {}, {} frames", restored.path.string(),
+                           facts.time, facts.step, facts.frame_times.size()));
+    ledger_.emplace(facts);
+    num_frames_ = static_cast<int>(facts.frame_times.size());
+    checkpoints_.emplace(communicator_, directory_, restored.path);
+  }
+
+  void announce() {
+    const auto owned =
+        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_owned));
+    const auto work =
+        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.candidates().pairs.size()));
+    const StepBound &bound = simulation_.bound();
+    const Scene &scene = simulation_.scene();
+    tell_notes();
+    const auto mobile = std::accumulate(owned.begin(), owned.end(), std::int64_t{0});
+    log_->line(fmt::format(
+        "gcpdda: {} rank{}, {} mobile and {} fixed blocks, {} to {} per rank, imbalance {:.3f} ({})",
+        communicator_.size(), communicator_.size() == 1 ? "" : "s", mobile, simulation_.num_blocks() - mobile,
+        *std::min_element(owned.begin(), owned.end()), *std::max_element(owned.begin(), owned.end()),
+        imbalance_of(work), simulation_.partition().by_metis ? "METIS" : "space-filling curve"));
+    log_->line(fmt::format(
+        "step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
+        "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
+        simulation_.plan().time_step, simulation_.plan().num_steps, simulation_.plan().duration,
+        bound.time_step, bound.safety, bound.limit, bound.omega_max));
+    for (const JointLaw &law : scene.joints.laws) {
+      log_->line(words_on_law(law));
+    }
+    report_fidelity(scene.run);
+    tell_of_bolts();
+  }
+
+  /// Whenever more or fewer are in place, and what is odd about new ones.
+  void tell_of_bolts() {
+    tell_notes();
+    const std::size_t links = simulation_.bolts().links().size();
+    if (links != num_links_) {
+      log_->line(words_on_bolts(simulation_));
+      num_links_ = links;
+    }
+  }
+
+  void tell_notes() {
+    for (; num_notes_ < simulation_.notes().size(); ++num_notes_) {
+      log_->diagnostic(simulation_.notes()[num_notes_]);
+    }
+  }
+
+  void report_fidelity(const RunSettings &run) {
+    const FidelityReport &fidelity = simulation_.fidelity();
+    log_->line(words_on_fidelity(fidelity, run.accepted_error));
+    if (fidelity.worst_rigid > run.accepted_error) {
+      log_->line("warning: the scene asks for rigid blocks that leave out more than is accepted "
+                 "(run.accepted_error), use fidelity = \"auto\"");
+    }
+    if (run.local_damping > 0.0) {
+      log_->line(fmt::format("warning: local damping {:g} is for static problems, speeds and times of this "
+                             "run are not physical",
+                             run.local_damping));
+    }
+  }
+
+  void predict_duration(double seconds) {
+    const auto steps = static_cast<double>(simulation_.step_count() - first_step_);
+    log_->line(
+        fmt::format("predicted time of the step loop: {:.3g} s",
+                    seconds / steps * static_cast<double>(simulation_.plan().num_steps - first_step_)));
+  }
+
+  void show_progress(Clock::time_point loop_start) {
+    if (!log_->progress_due()) {
+      return;
+    }
+    const double elapsed = seconds_since(loop_start);
+    const double per_step = elapsed / static_cast<double>(simulation_.step_count() - first_step_);
+    log_->progress(words_on_progress(simulation_, energy_, per_step));
+  }
+
+  void write_due() {
+    if (is_bare_) {
+      return;
+    }
+    const std::int64_t step = simulation_.stage_step();
+    const TimePlan &plan = simulation_.plan();
+    const bool failed = simulation_.fault().has_value();
+    const bool ended = (simulation_.is_staged() && simulation_.stage_is_over()) || // wherever it falls
+                       (is_once_ && simulation_.stop_agreed());
+    const bool output_due = failed || ended || plan.output_due(step);
+    const bool history_due = failed || ended || plan.history_due(step);
+    if (!output_due && !history_due) {
+      if (impacts_.lacks_reference(simulation_)) {
+        const auto scope = simulation_.phases().measure(Phase::output);
+        impacts_.look(simulation_, ledger_->row(simulation_));
+        simulation_.forget_contact_digest();
+      }
+      return;
+    }
+    const auto scope = simulation_.phases().measure(Phase::output);
+    const double cpu_start = cpu_seconds();
+    if (history_due && !failed) {          // the energies of a broken state say nothing
+      energy_ = ledger_->row(simulation_); // first: frames take what it has seen of the contacts
+      if (const auto gain = impacts_.look(simulation_, energy_)) {
+        log_->diagnostic(warning_of(simulation_, *gain));
+      }
+    }
+    if (output_due) {
+      const int index = num_frames_++;
+      frames_->write(index, simulation_.time(), SimulationFrame(simulation_));
+      if (simulation_.scene().output.contacts) {
+        frames_->write_contacts(index, simulation_.time(), SimulationContacts(simulation_));
+      }
+      if (!bolts_at_start_.empty()) {
+        frames_->write_bolts(index, simulation_.time(), collect_bolt_lines(simulation_));
+      }
+    }
+    if (history_due) {
+      write_history(failed);
+    }
+    simulation_.forget_contact_digest();
+    output_cpu_seconds_ += cpu_seconds() - cpu_start;
+  }
+
+  // After frames and histories of this step, so that a restart owes none.
+  void write_checkpoint_if_due() {
+    const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
+    const bool stage_ends = simulation_.is_staged() && simulation_.stage_is_over();
+    if (simulation_.fault() || is_bare_ || is_once_ ||
+        (!stopping && !stage_ends && !simulation_.plan().checkpoint_due(simulation_.stage_step()))) {
+      return;
+    }
+    const auto scope = simulation_.phases().measure(Phase::output);
+    const double cpu_start = cpu_seconds();
+    const Clock::time_point start = Clock::now();
+    on_root(communicator_, [&] { histories_->sync(); });
+    frames_->sync();
+    RunFacts facts = simulation_.facts();
+    on_root(communicator_, [&] {
+      facts.results = histories_->files();
+      facts.results.insert(facts.results.end(), frames_->files().begin(), frames_->files().end());
+    });
+    ledger_->tell(facts);
+    facts.frame_times = frames_->times();
+    checkpoints_->write(facts, simulation_.blocks(), SimulationContacts(simulation_));
+    log_->line(fmt::format("checkpoint at t = {:.9g} s, written in {:.3g} s", simulation_.time(),
+                           seconds_since(start)));
+    output_cpu_seconds_ += cpu_seconds() - cpu_start;
+  }
+
+  [[nodiscard]] double output_seconds() { return simulation_.phases().seconds(Phase::output); }
+
+  void write_history(bool failed) {
+    const std::vector<BlockHistoryRow> rows = collect_monitors(simulation_);
+    const std::vector<BoltHistoryRow> bolts = collect_bolts(simulation_);
+    contacts_at_end_ = count_contacts();
+    on_root(communicator_, [&] {
+      for (std::size_t m = 0; m < rows.size(); ++m) {
+        if (simulation_.is_removed(simulation_.scene().monitors[m].block)) {
+          continue;
+        }
+        histories_->write_monitor(m, simulation_.time(), rows[m]);
+      }
+      if (!failed) {
+        histories_->write_energy(simulation_.time(), energy_);
+      }
+      if (!bolts.empty()) {
+        histories_->write_bolts(simulation_.time(), bolts);
+      }
+      histories_->flush();
+    });
+  }
+
+  std::int64_t count_contacts() {
+    std::int64_t count = 0;
+    for (std::size_t k = 0; k < simulation_.candidates().pairs.size(); ++k) {
+      const bool counts = simulation_.counts_here(simulation_.candidates().pairs[k]);
+      count += counts && simulation_.history().is_living(k) ? 1 : 0;
+    }
+    return total(communicator_, count);
+  }
+
+  void write_owners_of_blocks() {
+    std::vector<std::int64_t> owner(static_cast<std::size_t>(simulation_.num_blocks()), -1);
+    for (std::size_t row = 0; row < simulation_.blocks().num_owned; ++row) {
+      owner[static_cast<std::size_t>(simulation_.blocks().properties[row].id.value)] = communicator_.rank();
+    }
+    communicator_.max(owner);
+    on_root(communicator_, [&] {
+      write_owners(directory_, simulation_.step_count(), {owner.begin(), owner.end()});
+    });
+  }
+
+  RunOutcome finish() {
+    const bool failed = simulation_.fault().has_value();
+    const bool stopped = !simulation_.finished();
+    RunSummary summary;
+    tell_end(simulation_, is_once_ ? std::filesystem::path() : directory_, summary);
+    if (stopped) {
+      contacts_at_end_ = count_contacts();
+    }
+    fill(summary);
+    for (const Diagnostic &warning : simulation_.warnings()) {
+      log_->line(to_string(warning));
+    }
+    frames_->sync();
+    on_root(communicator_, [&] { write_summary(directory_, summary); });
+    write_owners_of_blocks();
+    log_->line("wall seconds   min      mean       max over ranks");
+    for (const auto &[name, seconds] : summary.phases) {
+      log_->line(fmt::format("{:>8} {:9.3f} {:9.3f} {:9.3f}", name, seconds[0], seconds[1], seconds[2]));
+    }
+    log_->line(fmt::format(
+        "{} steps, {} contacts at the end, largest overlap {:.3g} m, energy residual {:.3g} J/m, "
+        "{:.3g} s in the step loop",
+        summary.steps, summary.contacts, summary.max_overlap, summary.energy.residual, summary.wall_s));
+    if (!summary.bolts.empty()) {
+      log_->line(words_on_loads(summary.bolts));
+    }
+    log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
+               directory_.string());
+    if (stopped) {
+      forget_stop_signal(); // one that came too late is for what follows
+    }
+    return {failed ? 5 : stopped ? 6 : exit_code_of_stages(), summary};
+  }
+
+  void fill(RunSummary &summary) {
+    const Counters &counters = simulation_.counters();
+    const TimePlan &plan = simulation_.plan();
+    summary.ranks = communicator_.size();
+    summary.blocks = total(communicator_, simulation_.blocks().num_owned);
+    summary.fixed_blocks = static_cast<std::int64_t>(simulation_.blocks().num_fixed);
+    summary.steps = simulation_.step_count();
+    summary.time = simulation_.time();
+    summary.time_step = plan.time_step;
+    summary.time_step_min = plan.time_step;
+    summary.contacts = contacts_at_end_;
+    summary.contact_steps = total(communicator_, counters.contact_steps);
+    summary.evaluations_per_rank = counts_by_rank(communicator_, counters.evaluations);
+    summary.imbalance = imbalance_of(summary.evaluations_per_rank);
+    summary.work_per_rank = counts_by_rank(communicator_, counters.evaluations + counters.block_steps);
+    summary.ghosts_per_rank =
+        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_ghosts));
+    summary.wall_s = spread(communicator_, loop_seconds_)[2];
+    const auto num_ranks = static_cast<double>(communicator_.size());
+    summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
+    summary.setup_wall_s = spread(communicator_, set_up_seconds_)[2];
+    summary.output_wall_s = spread(communicator_, output_seconds())[2];
+    summary.total_wall_s = spread(communicator_, seconds_since(start_))[2];
+    double max_overlap = counters.max_overlap;
+    communicator_.max(std::span(&max_overlap, 1));
+    summary.max_overlap = max_overlap;
+    if (const auto farthest = simulation_.permanent_displacement()) {
+      summary.permanent_displacement = farthest->distance;
+      summary.permanent_block = block_name(simulation_.scene(), farthest->block);
+    }
+    summary.energy = energy_;
+    const std::vector<BoltLoad> loads = histories_ ? histories_->bolt_loads() : std::vector<BoltLoad>();
+    summary.bolts = with_installation(loads, bolts_at_start_, simulation_); // of the root
+    if (simulation_.restored()) {
+      summary.restarted_at = simulation_.restored()->facts.time;
+    }
+    const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps - first_step_, 1));
+    summary.bytes_sent_per_step = static_cast<double>(total(communicator_, counters.bytes)) / steps;
+    summary.messages_per_step = static_cast<double>(total(communicator_, counters.messages)) / steps;
+    for (std::size_t p = 0; p < phase_names.size(); ++p) {
+      const double seconds = simulation_.phases().seconds(static_cast<Phase>(p));
+      summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
+    }
+    if (simulation_.is_staged()) {
+      for (const StageResult &result : simulation_.stage_results()) {
+        const Stage &stage = simulation_.stages()[summary.stages.size()];
+        summary.stages.push_back({stage.name, word_of(result.verdict), result});
+      }
+    }
+    const auto add = [&](const char *name, std::int64_t value) {
+      summary.counters.emplace_back(name, static_cast<double>(value));
+    };
+    add("migrations", total(communicator_, counters.migrations));
+    add("refreshes", counters.refreshes);
+    add("rebalances", counters.rebalances);
+    add("cross_rank_contacts", total(communicator_, counters.cross_rank_contacts));
+    add("cross_rank_contacts_formed", total(communicator_, counters.cross_rank_contacts_formed));
+    add("normals_undefined", total(communicator_, counters.normals_undefined));
+  }
+
+  Clock::time_point start_ = Clock::now();
+  Communicator communicator_;
+  std::filesystem::path directory_;
+  bool is_bare_;
+  bool is_once_;
+  std::vector<Bolt> bolts_at_start_;
+  Simulation simulation_;
+  std::optional<HistoryWriter> histories_;
+  std::optional<RunLog> log_;
+  std::optional<FrameWriter> frames_;
+  std::optional<EnergyLedger> ledger_;
+  std::optional<CheckpointWriter> checkpoints_;
+  ImpactWatch impacts_;
+  EnergyRow energy_;
+  int num_frames_ = 0;
+  std::size_t num_notes_ = 0; ///< that have been told
+  std::size_t num_links_ = 0;
+  std::int64_t first_step_ = 0; ///< of this part of the run
+  std::int64_t contacts_at_end_ = 0;
+  double set_up_seconds_ = 0.0;
+  double output_cpu_seconds_ = 0.0;
+  double loop_seconds_ = 0.0;
+  double cpu_seconds_ = 0.0;
+};
+
+} // namespace
+
+RunOutcome run_and_tell(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
+  FolderLock lock;
+  on_root(communicator, [&] { lock.acquire(options.directory); });
+  return SceneRun(communicator, scene, options, lock).run();
+}
+
+int run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
+  return run_and_tell(communicator, scene, options).exit_code;
+}
+
+} // namespace gcpdda

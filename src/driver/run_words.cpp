@@ -1,0 +1,162 @@
+#include "driver/run_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace gcpdda {
+
+namespace {
+
+/// What to try where blocks move too far in a step, with values that differ from those of this run.
+std::string words_on_shorter_step(const Simulation &simulation) {
+  const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
+  const double shorter = std::min(0.5 * simulation.plan().time_step, simulation.bound().time_step);
+  const std::string step = fmt::format("run.time_step = {:.2g}", shorter);
+  if (stage.kind != StageKind::settle) {
+    return step;
+  }
+  const std::string name = simulation.is_staged() ? fmt::format("in stage '{}' ", stage.name) : "";
+  return stage.kinetic_damping
+             ? fmt::format("local_damping = 0.8 {}in place of kinetic_damping, or {}", name, step)
+             : fmt::format("kinetic_damping = true {}in place of local_damping, or {}", name, step);
+}
+
+} // namespace
+
+std::string fault_message(const Simulation &simulation) {
+  const Fault &fault = *simulation.fault();
+  const auto name = [&](BlockId id) { return block_name(simulation.scene(), id.value); };
+  const std::string where = fmt::format("block '{}' at t = {:.9g} s", name(fault.block), simulation.time());
+  switch (fault.cause) {
+  case Fault::Cause::too_deep:
+    return fmt::format(
+        "{}: overlaps block '{}' by {:.4g} m, deeper than half the narrowest width {:.4g} m, where the "
+        "contact force reverses; try a larger joint.normal_stiffness, or {}",
+        where, name(fault.other), fault.value, fault.limit, words_on_shorter_step(simulation));
+  case Fault::Cause::too_fast:
+    return fmt::format(
+        "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "
+        "could pass through a block; try {}",
+        where, fault.value, fault.limit, words_on_shorter_step(simulation));
+  case Fault::Cause::not_finite:
+    break;
+  }
+  return fmt::format("{}: its state is no longer finite; try {}", where, words_on_shorter_step(simulation));
+}
+
+std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_error) {
+  const std::string deformable =
+      fidelity.num_deformable > 0 ? fmt::format("; of the deformable blocks it would leave out up to {:.2g}",
+                                                fidelity.worst_deformable)
+                                  : "";
+  return fmt::format(
+      "fidelity: {} rigid and {} deformable blocks; rigid leaves out up to {:.2g} of the joints' "
+      "compliance k_n L/(E + k_n L), accepted are {:g}{}",
+      fidelity.num_rigid, fidelity.num_deformable, fidelity.worst_rigid, accepted_error, deformable);
+}
+
+namespace {
+
+/// How near to rest a stage is that waits for its verdict. Large models are looked at seldom.
+std::string words_on_look(const Simulation &simulation, const Stage &stage) {
+  if (simulation.stage_step() < steps_between_verdicts(simulation.num_blocks())) {
+    return "not looked at yet";
+  }
+  const StageLook &last = simulation.stage().memory.last;
+  return fmt::format("unbalanced {:.1e}, {:.0e} at rest  moved {:.2g} of a block's size",
+                     last.unbalanced_ratio, stage.tolerance, last.moved);
+}
+
+} // namespace
+
+std::string words_on_progress(const Simulation &simulation, const EnergyRow &energy, double per_step) {
+  const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
+  const auto num_steps = static_cast<double>(simulation.plan().num_steps);
+  const double share = static_cast<double>(simulation.stage_step()) / num_steps;
+  constexpr std::size_t bar_length = 20;
+  const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_length));
+  const double remaining = per_step * (1.0 - share) * num_steps;
+  const std::string outlook =
+      stage.until_verdict ? fmt::format("limit in {:.0f} s  {}", remaining, words_on_look(simulation, stage))
+                          : fmt::format("remaining {:.0f} s  unbalanced {:.1e}  max speed {:.3g} m/s",
+                                        remaining, energy.unbalanced_ratio, energy.max_speed);
+  return fmt::format("[{:.<{}}] {:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  {}",
+                     std::string(filled, '='), bar_length, 100.0 * share, simulation.time(),
+                     simulation.step_count(), static_cast<double>(simulation.num_blocks()) / per_step,
+                     outlook);
+}
+
+void tell_end(const Simulation &simulation, const std::filesystem::path &directory, RunSummary &summary) {
+  const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
+  const Verdict verdict = simulation.stage().verdict;
+  if (simulation.fault()) {
+    summary.verdict = "failed";
+    summary.message = fault_message(simulation);
+  } else if (!simulation.finished()) {
+    summary.verdict = "stopped";
+    summary.message = fmt::format("stopped by a signal at t = {:g} s", simulation.time());
+    if (!directory.empty()) {
+      summary.message += fmt::format(", go on with gcpdda restart {}", directory.string());
+    }
+  } else if (simulation.is_staged() && stage.until_verdict) {
+    summary.verdict = word_of(verdict);
+    summary.message = fmt::format("stage '{}' {} at t = {:g} s", stage.name,
+                                  verdict == Verdict::undecided ? "reached its limit undecided"
+                                  : verdict == Verdict::failed  ? "has failed"
+                                                                : "has settled",
+                                  simulation.time());
+  } else {
+    summary.verdict = "completed";
+    summary.message = fmt::format("reached t = {:g} s", simulation.time());
+  }
+}
+
+std::string words_on_law(const JointLaw &law) {
+  return fmt::format(
+      "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
+      "cohesion {:g} Pa",
+      law.name, law.normal_stiffness,
+      law.allowed_overlap > 0.0
+          ? fmt::format(" for an allowed overlap of {:g} block sizes", law.allowed_overlap)
+          : "",
+      law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion);
+}
+
+std::string words_on_stage(const std::string &name, const StageResult &result) {
+  if (result.verdict == Verdict::done) {
+    return fmt::format("stage '{}' at t = {:.9g} s, {} blocks removed", name, result.time, result.removed);
+  }
+  return fmt::format("stage '{}' {} at t = {:.9g} s after {} steps: unbalanced {:.2e}, largest motion "
+                     "{:.3g} of a block's size",
+                     name, word_of(result.verdict), result.time, result.steps, result.unbalanced_ratio,
+                     result.moved);
+}
+
+std::string words_on_loads(const std::vector<BoltLoad> &loads) {
+  const auto most = [&](double BoltLoad::*force) {
+    return *std::max_element(loads.begin(), loads.end(),
+                             [force](const BoltLoad &a, const BoltLoad &b) { return a.*force < b.*force; });
+  };
+  const auto count = [&](std::int64_t BoltHistoryRow::*what) {
+    return std::count_if(loads.begin(), loads.end(),
+                         [what](const BoltLoad &load) { return load.last.*what > 0; });
+  };
+  const BoltLoad axial = most(&BoltLoad::axial);
+  const BoltLoad shear = most(&BoltLoad::shear);
+  return fmt::format(
+      "bolts: largest tension {:.4g} N in '{}', largest shear {:.4g} N in '{}'; of {} bolts {} "
+      "yielded and {} broke",
+      axial.axial, axial.last.name, shear.shear, shear.last.name, loads.size(),
+      count(&BoltHistoryRow::yielded), count(&BoltHistoryRow::broken));
+}
+
+std::string words_on_bolts(const Simulation &simulation) {
+  const StepBound &bound = simulation.bound();
+  return fmt::format("bolts: {} in the scene, springs in place: {}; omega_max {:.6g} rad/s with them, {:.6g} "
+                     "rad/s without",
+                     simulation.scene().bolts.size(), simulation.bolts().links().size(), bound.omega_max,
+                     bound.without_bolts);
+}
+
+} // namespace gcpdda

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "gcpdda/io/result_files.hpp"
+#include "simulation/simulation.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gcpdda {
+
+/// Why a run cannot go on.
+std::string fault_message(const Simulation &simulation);
+
+/// Which blocks are rigid, and what that leaves out.
+std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_error);
+
+std::string words_on_law(const JointLaw &law);
+
+/// How a stage has ended.
+std::string words_on_stage(const std::string &name, const StageResult &result);
+
+/// How far a run is, from the last row of energies and the time of a step, s. A stage that waits for its
+/// verdict says how near to rest it was when it was looked at last: nobody knows when it will be there.
+std::string words_on_progress(const Simulation &simulation, const EnergyRow &energy, double per_step);
+
+/// Tell in `summary` how a run has ended, and why.
+/// @param directory  of the run; empty where nobody can go on from it
+void tell_end(const Simulation &simulation, const std::filesystem::path &directory, RunSummary &summary);
+
+/// The most loaded bolts, and how many have yielded and broken.
+std::string words_on_loads(const std::vector<BoltLoad> &loads);
+
+/// How many bolts there are, and what they do to the step.
+std::string words_on_bolts(const Simulation &simulation);
+
+} // namespace gcpdda

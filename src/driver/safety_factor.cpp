@@ -1,0 +1,374 @@
+#include "driver/safety_factor.hpp"
+
+#include "base/check.hpp"
+#include "driver/stop_signal.hpp"
+#include "driver/svg.hpp"
+#include "gcpdda/driver/run.hpp"
+#include "geometry/polygon.hpp"
+#include "io/results/run_comparison.hpp"
+#include "model/generators.hpp"
+#include "simulation/rank_facts.hpp"
+#include "simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+
+namespace gcpdda {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What ranks tell each other of a trial; the strings are the root's of its group.
+struct TrialFacts {
+  double factor = 0.0;
+  std::int64_t verdict = 0;
+  double time = 0.0;
+  double moved = 0.0;
+  double unbalanced_ratio = 0.0;
+  std::int64_t steps = 0;
+  std::int64_t evaluations = 0;
+  double cpu_s = 0.0;
+  std::int64_t ranks = 0;
+  std::int64_t exit_code = 0;
+};
+
+std::int64_t sum_of(const std::vector<std::int64_t> &counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+}
+
+TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time) {
+  TrialFacts facts;
+  facts.factor = factor;
+  facts.exit_code = outcome.exit_code;
+  facts.ranks = outcome.summary.ranks;
+  facts.evaluations = sum_of(outcome.summary.evaluations_per_rank);
+  facts.cpu_s = outcome.summary.cpu_s;
+  facts.time = outcome.summary.time - start_time;
+  if (!outcome.summary.stages.empty()) {
+    const StageResult &stage = outcome.summary.stages.back().result;
+    facts.verdict = static_cast<std::int64_t>(outcome.exit_code == 0 ? stage.verdict : Verdict::undecided);
+    facts.moved = stage.moved;
+    facts.unbalanced_ratio = stage.unbalanced_ratio;
+    facts.steps = stage.steps;
+  }
+  return facts;
+}
+
+/// The last frame of a run.
+FrameContent last_frame(const fs::path &directory) {
+  fs::path last;
+  for (const fs::directory_entry &entry : fs::directory_iterator(directory / "frames")) {
+    const fs::path &path = entry.path();
+    if (path.filename().string().starts_with("frame_") && path.extension() == ".hdf" && path > last) {
+      last = path;
+    }
+  }
+  return read_frame(last);
+}
+
+class SafetyFactor {
+public:
+  SafetyFactor(const Communicator &world, const Scene &scene, const SafetyOptions &options)
+      : world_(world), scene_(scene), options_(options) {}
+
+  SafetyOutcome find() {
+    const int code = begin();
+    return {code == 0 ? search() : code, std::move(report_), std::move(message_)};
+  }
+
+private:
+  // A scene that is refused, or a state that cannot be taken, leaves no folder behind and removes nothing.
+  int begin() {
+    if (options_.settled.empty()) {
+      return settle_as_it_can();
+    }
+    const int code = take_settled();
+    if (code == 0) {
+      on_root(world_, [&] { prepare_directory(); });
+    }
+    return code;
+  }
+
+  void prepare_directory() const { prepare_safety_directory(options_.directory, options_.overwrite); }
+
+  int search() {
+    const std::size_t at_once = choose_groups();
+    while (true) {
+      const std::vector<double> factors = next_factors(
+          scene_.reduction, [&](double factor) { return verdict_of(factor); }, at_once);
+      if (factors.empty()) {
+        break;
+      }
+      if (run_trials(factors)) {
+        say(fmt::format("stopped by a signal in trial {}; a search does not go on from there\n",
+                        trials_.size()));
+        conclude(); // with what is known so far
+        return 6;
+      }
+    }
+    conclude();
+    return report_.is_found() ? 0 : 7;
+  }
+
+  void say(const std::string &text) const {
+    if (world_.is_root() && !options_.quiet) {
+      std::cerr << text << std::flush;
+    }
+  }
+
+  /// With full strength, or where the blocks do not come to rest so, with the most that is tried.
+  int settle_as_it_can() {
+    int code = settle(1.0, options_.overwrite, [this] { prepare_directory(); });
+    const double from = scene_.reduction.from;
+    if ((code == 0 || code == 7) && !has_settled() && from < 1.0) {
+      say(fmt::format("the blocks do not settle with their full strength, now with their strengths divided "
+                      "by fos.from = {:g}\n",
+                      from));
+      code = settle(from, true, {});
+    }
+    if (code == 0 && !has_settled()) {
+      code = 7;
+    }
+    if (code == 7) {
+      message_ =
+          "the blocks do not settle, not even with the largest strength tried: let them settle with "
+          "more (stage[].set) and bring it back in a stage of kind change, or give them a longer limit";
+      say(message_ + "\n");
+    }
+    return code;
+  }
+
+  /// The state an earlier search has settled; of no cost to this one.
+  int take_settled() {
+    const Simulation found(world_, settling_scene(scene_, options_.settled_factor), {options_.settled});
+    num_blocks_ = found.num_blocks();
+    start_time_ = found.time();
+    report_.settled.factor = options_.settled_factor;
+    report_.settled.verdict = found.finished() ? found.stage().verdict : Verdict::undecided;
+    report_.settled.time = found.time();
+    report_.settled.steps = found.step_count();
+    if (has_settled()) {
+      return 0;
+    }
+    message_ = fmt::format("the run in {} has not settled, let it go on (gcpdda restart) or leave --settled "
+                           "out",
+                           options_.settled.string());
+    say(message_ + "\n");
+    return 7;
+  }
+
+  [[nodiscard]] bool has_settled() const { return report_.settled.verdict == Verdict::settled; }
+
+  /// The settled state, on all ranks.
+  int settle(double factor, bool overwrite, const std::function<void()> &prepare) {
+    RunOptions options{settled_directory(), overwrite, false, {}, options_.quiet};
+    options.prepare = prepare;
+    const RunOutcome outcome = run_and_tell(world_, settling_scene(scene_, factor), options);
+    report_.settled = trial_of(facts_of(factor, outcome, 0.0));
+    report_.settled.steps = outcome.summary.steps;
+    start_time_ = outcome.summary.time;
+    num_blocks_ = outcome.summary.blocks;
+    message_ = outcome.exit_code == 5 ? outcome.summary.message : std::string();
+    return outcome.exit_code;
+  }
+
+  /// Trials at once.
+  std::size_t choose_groups() {
+    const std::int64_t per_trial =
+        std::clamp<std::int64_t>(num_blocks_ / options_.fewest_blocks_per_rank, 1, world_.size());
+    const std::int64_t groups = world_.size() / per_trial;
+    group_number_ = static_cast<int>(world_.rank() * groups / world_.size());
+    group_.emplace(world_.split(group_number_));
+    return static_cast<std::size_t>(groups);
+  }
+
+  /// Each group takes one; true if the signal came.
+  bool run_trials(const std::vector<double> &factors) {
+    std::vector<TrialFacts> mine;
+    std::string trouble;
+    std::string message;
+    if (static_cast<std::size_t>(group_number_) < factors.size()) {
+      const double factor = factors[static_cast<std::size_t>(group_number_)];
+      try {
+        const RunOutcome outcome = run_trial(factor);
+        message = outcome.exit_code == 0 || outcome.exit_code == 7 ? "" : outcome.summary.message;
+        if (group_->is_root()) {
+          mine.push_back(facts_of(factor, outcome, start_time_));
+        }
+      } catch (const std::exception &error) { // of the whole group; the others must not wait for it
+        trouble = fmt::format("the trial at factor {:g} cannot run: {}", factor, error.what());
+      }
+    }
+    return share(mine, message, trouble);
+  }
+
+  RunOutcome run_trial(double factor) {
+    Scene weakened = weakened_scene(scene_, factor);
+    weakened.resolved =
+        fmt::format("# a trial of gcpdda fos: strengths as below divided by {:.17g}\n", factor) +
+        scene_.resolved;
+    const fs::path directory = trial_directory(factor);
+    const bool shows = !options_.quiet && group_number_ == 0; // of trials at once the first one's
+    const Scene settled = settling_scene(scene_, report_.settled.factor);
+    RunOptions options{directory, false, false, settled_directory(), true};
+    options.computed_with = &settled;
+    options.once = true;
+    options.progress_of = shows ? fmt::format("factor {:.6g}: ", factor) : std::string();
+    return run_and_tell(*group_, weakened, options);
+  }
+
+  /// What every group has found goes to all; the first trouble ends the search on all ranks.
+  bool share(const std::vector<TrialFacts> &mine, const std::string &message, const std::string &trouble) {
+    const auto texts = world_.all_gather(std::vector<char>(trouble.begin(), trouble.end()));
+    for (const std::vector<char> &text : texts) {
+      if (!text.empty()) {
+        throw FileError(std::string(text.begin(), text.end()));
+      }
+    }
+    const auto messages = world_.all_gather(std::vector<char>(message.begin(), message.end()));
+    const auto all = world_.all_gather(mine);
+    bool stopped = false;
+    for (std::size_t rank = 0; rank < all.size(); ++rank) {
+      for (const TrialFacts &facts : all[rank]) {
+        StrengthTrial trial = trial_of(facts);
+        trial.message.assign(messages[rank].begin(), messages[rank].end());
+        trial.directory = trial_directory(facts.factor);
+        trials_[facts.factor] = trial;
+        if (facts.exit_code == 6) {
+          stopped = true;
+          stopped_.insert(facts.factor);
+        }
+        say(fmt::format("factor {:.6g}: {} after {:.4g} s, {} steps, {:.2f} CPU s on {} rank{} {}\n",
+                        facts.factor, word_of(trial.verdict), trial.time, trial.steps, trial.cpu_s,
+                        trial.ranks, trial.ranks == 1 ? "" : "s", trial.message));
+      }
+    }
+    return stopped;
+  }
+
+  static std::string word_of(Verdict verdict) {
+    return verdict == Verdict::settled ? "holds" : verdict == Verdict::failed ? "fails" : "undecided";
+  }
+
+  static StrengthTrial trial_of(const TrialFacts &facts) {
+    StrengthTrial trial;
+    trial.factor = facts.factor;
+    trial.verdict = static_cast<Verdict>(facts.verdict);
+    trial.time = facts.time;
+    trial.moved = facts.moved;
+    trial.unbalanced_ratio = facts.unbalanced_ratio;
+    trial.steps = facts.steps;
+    trial.evaluations = facts.evaluations;
+    trial.cpu_s = facts.cpu_s;
+    trial.ranks = static_cast<int>(facts.ranks);
+    return trial;
+  }
+
+  [[nodiscard]] std::optional<Verdict> verdict_of(double factor) const {
+    const auto trial = trials_.find(factor);
+    return trial == trials_.end() || stopped_.contains(factor) ? std::nullopt
+                                                               : std::optional(trial->second.verdict);
+  }
+
+  [[nodiscard]] fs::path settled_directory() const {
+    return options_.settled.empty() ? options_.directory / "settled" : options_.settled;
+  }
+  [[nodiscard]] fs::path trial_directory(double factor) const {
+    return options_.directory / "trials" / fmt::format("F{:.9g}", factor);
+  }
+
+  void conclude() {
+    const SafetySearch search = follow(scene_.reduction, [&](double factor) { return verdict_of(factor); });
+    report_.tolerance = scene_.reduction.tolerance;
+    report_.holds = search.holds;
+    report_.fails = search.fails;
+    report_.undecided = search.undecided;
+    for (std::size_t i = 0; i < scene_.joints.laws.size(); ++i) {
+      if (is_weakened(scene_.reduction, i)) {
+        report_.families.push_back(scene_.joints.laws[i].name);
+      }
+    }
+    for (const auto &[factor, trial] : trials_) {
+      report_.trials.push_back(trial);
+      report_.trials.back().decisive =
+          std::count(search.decisive.begin(), search.decisive.end(), factor) > 0 || stopped_.contains(factor);
+    }
+    if (!options_.quiet) {
+      on_root(world_, [&] {
+        if (report_.fails) {
+          find_mechanism(*report_.fails);
+        }
+        write_safety_report(options_.directory, report_,
+                            report_.mechanism.empty() ? std::string() : draw_mechanism(report_));
+        std::cout << to_text(report_) << std::flush;
+      });
+    }
+  }
+
+  // Root alone. What each block has done since the trial began, by the frames of both runs.
+  void find_mechanism(double factor) {
+    const FrameContent begin = last_frame(settled_directory());
+    const FrameContent end = last_frame(trial_directory(factor));
+    double farthest = 0.0;
+    for (std::size_t row = 0; row < end.block.size(); ++row) {
+      const auto found = std::lower_bound(begin.block.begin(), begin.block.end(), end.block[row]);
+      const auto before = static_cast<std::size_t>(found - begin.block.begin());
+      FailingBlock block;
+      block.block = end.block[row];
+      block.name = block_name(scene_, block.block);
+      block.fixed = end.kind[row] == 0;
+      for (std::int64_t k = end.offsets[row]; k < end.offsets[row + 1]; ++k) {
+        const std::array<double, 3> &point = end.points[static_cast<std::size_t>(k)];
+        block.vertices.push_back({point[0], point[1]});
+      }
+      block.displacement = {end.displacement[row][0] - begin.displacement[before][0],
+                            end.displacement[row][1] - begin.displacement[before][1]};
+      block.rotation = end.rotation[row] - begin.rotation[before];
+      const Vec2 centroid = polygon_moments(block.vertices).centroid;
+      double radius = 0.0;
+      for (const Vec2 vertex : block.vertices) {
+        radius = std::max(radius, norm(vertex - centroid));
+      }
+      block.motion = block.fixed ? 0.0 : norm(block.displacement) + radius * std::abs(block.rotation);
+      farthest = std::max(farthest, block.motion);
+      report_.mechanism.push_back(std::move(block));
+    }
+    for (FailingBlock &block : report_.mechanism) {
+      block.moves = !block.fixed && block.motion >= 0.1 * farthest;
+    }
+  }
+
+  Communicator world_;
+  const Scene &scene_;
+  SafetyOptions options_;
+  std::optional<Communicator> group_;
+  int group_number_ = 0;
+  double start_time_ = 0.0; ///< of all trials, s
+  std::int64_t num_blocks_ = 0;
+  std::map<double, StrengthTrial> trials_; ///< by factor
+  std::set<double> stopped_;               ///< factors of those without a verdict because the signal came
+  SafetyReport report_;
+  std::string message_; ///< why there is no factor
+};
+
+} // namespace
+
+SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene &scene,
+                                   const SafetyOptions &options) {
+  const Scene staged = with_settle_stage(scene);
+  return SafetyFactor(communicator, staged, options).find();
+}
+
+int find_safety_factor(const Communicator &communicator, const Scene &scene, const SafetyOptions &options) {
+  return search_safety_factor(communicator, scene, options).exit_code;
+}
+
+} // namespace gcpdda

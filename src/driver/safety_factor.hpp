@@ -1,0 +1,92 @@
+#pragma once
+
+// The factor of safety by strength reduction: friction (its tangent), cohesion and tension of the families of
+// joints are divided by a factor, every time from the same settled state, until the blocks fail.
+//
+// Which factors are tried follows from the verdicts alone, never from how many trials run at once: first the
+// two ends, then the middle of what lies between the largest factor that has settled and the smallest that
+// has failed. A trial without a verdict in its limit moves neither: what lies on both sides of it is narrowed
+// down on its own, and the bracket keeps the stretch between. With ranks to spare the trials that would come
+// next after either outcome run at the same time, each on its own ranks. A trial gives the same bits on any
+// number of ranks, and so the factor is the same.
+//
+// Barton and Bandis' tan(phi) is divided at every pressure. A dilation angle above the friction that is left
+// is lowered to it: otherwise slip would do more work than friction takes.
+
+#include "gcpdda/model/scene.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+#include "io/results/safety_report.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace gcpdda {
+
+/// Verdict of the trial at a factor; none where it has not run.
+using TrialVerdicts = std::function<std::optional<Verdict>(double factor)>;
+
+/// Where a search stands.
+struct SafetySearch {
+  std::optional<double> next; ///< the factor to try; none at the end
+  std::optional<double> holds;
+  std::optional<double> fails;
+  std::vector<double> undecided; ///< between these two, ascending
+  std::vector<double> decisive;  ///< what all this rests on, in the order they were asked for
+};
+SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &verdicts);
+
+/// The next factor and those that would follow it after either outcome, in the order of how soon they may be
+/// asked for; at most `most` of them.
+std::vector<double> next_factors(const StrengthReduction &reduction, const TrialVerdicts &verdicts,
+                                 std::size_t most);
+
+/// A scene without stages settles for run.duration at most.
+Scene with_settle_stage(Scene scene);
+
+/// The scene up to the end of its last settle stage, strengths divided by `factor` from the beginning.
+/// @throws SceneError where no stage is of kind settle
+Scene settling_scene(const Scene &scene, double factor);
+
+/// How Scene::resolved begins after a settling_scene() with another factor than 1; the factor follows.
+inline constexpr std::string_view settled_weaker = "# settled by gcpdda fos: strengths as below divided by ";
+
+/// Whether the strengths of a law are divided.
+bool is_weakened(const StrengthReduction &reduction, std::size_t law);
+
+/// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints.
+Scene weakened_scene(const Scene &scene, double factor);
+
+struct SafetyOptions {
+  std::filesystem::path directory;
+  bool overwrite = false;
+  bool quiet = false;                        ///< nothing but the runs is written, nothing is said
+  std::int64_t fewest_blocks_per_rank = 500; ///< of a trial; below it another rank costs more than it saves
+  /// The `settled` folder of an earlier search with the same scene but for [fos], [output], [ensemble] and
+  /// monitors (scene_reader.hpp); empty to settle now.
+  std::filesystem::path settled = {};
+  double settled_factor = 1.0; ///< what strengths were divided by then
+};
+
+struct SafetyOutcome {
+  /// 0 found within the tolerance; 5 numerical failure before the settled state; 6 stopped by the signal; 7
+  /// the scene does not settle, or the bracket is wider than asked for
+  int exit_code = 0;
+  SafetyReport report;
+  std::string message; ///< why the search has not begun; empty where it has
+};
+
+/// Find the factor of a valid scene and write everything: `settled` (the run up to the end of the last settle
+/// stage), `trials`, and the report. A scene without stages settles for run.duration at most. One that does
+/// not come to rest with its full strength begins from where it rests with the most that is tried, if that is
+/// more. Collective.
+/// @throws SceneError, FileError
+SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene &scene,
+                                   const SafetyOptions &options);
+
+/// The same; @return exit code
+int find_safety_factor(const Communicator &communicator, const Scene &scene, const SafetyOptions &options);
+
+} // namespace gcpdda

@@ -1,0 +1,220 @@
+// Which factors are tried, and the scene of a trial.
+
+#include "driver/safety_factor.hpp"
+
+#include "simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <iterator>
+#include <numeric>
+
+namespace gcpdda {
+
+namespace {
+
+/// Follows the verdicts as far as they are known.
+class Follower {
+public:
+  Follower(const StrengthReduction &reduction, const TrialVerdicts &verdicts)
+      : reduction_(reduction), verdicts_(verdicts) {}
+
+  SafetySearch follow() {
+    if (!look_at_end(reduction_.from) || !look_at_end(reduction_.to)) {
+      return found_;
+    }
+    while (const std::optional<double> middle = widest_gap()) {
+      const std::optional<Verdict> verdict = ask(*middle);
+      if (!verdict) {
+        return found_;
+      }
+      note(*middle, *verdict);
+    }
+    return found_;
+  }
+
+private:
+  std::optional<Verdict> ask(double factor) {
+    const std::optional<Verdict> verdict = verdicts_(factor);
+    if (verdict) {
+      found_.decisive.push_back(factor);
+    } else {
+      found_.next = factor;
+    }
+    return verdict;
+  }
+
+  /// False where the search ends, or waits for a trial.
+  bool look_at_end(double factor) {
+    const std::optional<Verdict> verdict = ask(factor);
+    if (verdict) {
+      note(factor, *verdict);
+    }
+    const Verdict expected = factor == reduction_.from ? Verdict::settled : Verdict::failed;
+    return verdict == expected;
+  }
+
+  void note(double factor, Verdict verdict) {
+    if (verdict == Verdict::settled) {
+      found_.holds = factor;
+    } else if (verdict == Verdict::failed) {
+      found_.fails = factor;
+    } else {
+      found_.undecided.push_back(factor);
+      std::sort(found_.undecided.begin(), found_.undecided.end());
+    }
+    std::erase_if(found_.undecided, [&](double between) {
+      return (found_.holds && between < *found_.holds) || (found_.fails && between > *found_.fails);
+    });
+  }
+
+  /// The middle of what lies below or else above everything undecided, if that is too wide.
+  [[nodiscard]] std::optional<double> widest_gap() const {
+    const double low_end = found_.undecided.empty() ? *found_.fails : found_.undecided.front();
+    const double high_begin = found_.undecided.empty() ? *found_.fails : found_.undecided.back();
+    const double width = reduction_.tolerance * *found_.holds;
+    if (low_end - *found_.holds > width) {
+      return std::midpoint(*found_.holds, low_end);
+    }
+    return *found_.fails - high_begin > width ? std::optional(std::midpoint(high_begin, *found_.fails))
+                                              : std::nullopt;
+  }
+
+  const StrengthReduction &reduction_;
+  const TrialVerdicts &verdicts_;
+  SafetySearch found_;
+};
+
+void weaken(JointLaw &law, double factor) {
+  if (law.is_barton_bandis) {
+    law.reduction = factor;
+  } else {
+    law.tan_friction /= factor;
+    law.residual_tan_friction /= factor;
+  }
+  law.cohesion /= factor;
+  law.residual_cohesion /= factor;
+  law.tension /= factor;
+  const double left = law.has_bonds          ? law.residual_tan_friction
+                      : law.is_barton_bandis ? law.tan_friction / factor
+                                             : law.tan_friction;
+  law.tan_dilation = std::min(law.tan_dilation, left);
+}
+
+void weaken(Scene &scene, const StrengthReduction &reduction, double factor) {
+  for (std::size_t i = 0; i < scene.joints.laws.size(); ++i) {
+    if (is_weakened(reduction, i)) {
+      weaken(scene.joints.laws[i], factor);
+    }
+  }
+}
+
+} // namespace
+
+SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &verdicts) {
+  return Follower(reduction, verdicts).follow();
+}
+
+std::vector<double> next_factors(const StrengthReduction &reduction, const TrialVerdicts &verdicts,
+                                 std::size_t most) {
+  using Guess = std::vector<std::pair<double, Verdict>>;
+  std::vector<double> factors;
+  std::vector<Guess> guesses{{}};
+  for (std::size_t k = 0; k < guesses.size() && factors.size() < most; ++k) {
+    const Guess guess = guesses[k];
+    const SafetySearch search = follow(reduction, [&](double factor) -> std::optional<Verdict> {
+      const auto guessed =
+          std::find_if(guess.begin(), guess.end(), [&](const auto &g) { return g.first == factor; });
+      return guessed != guess.end() ? std::optional(guessed->second) : verdicts(factor);
+    });
+    if (!search.next) {
+      continue;
+    }
+    if (std::find(factors.begin(), factors.end(), *search.next) == factors.end()) {
+      factors.push_back(*search.next);
+    }
+    for (const Verdict verdict : {Verdict::settled, Verdict::failed}) {
+      Guess further = guess;
+      further.emplace_back(*search.next, verdict);
+      guesses.push_back(std::move(further));
+    }
+  }
+  return factors;
+}
+
+Scene with_settle_stage(Scene scene) {
+  scene.earthquake = {}; // the factor is that of blocks at rest
+  if (scene.stages.empty()) {
+    Stage &settle = scene.stages.emplace_back();
+    settle.name = "settle";
+    settle.kind = StageKind::settle;
+    settle.duration = scene.run.duration;
+    settle.until_verdict = true;
+    settle.local_damping = 0.8; // as a settle stage that says nothing else
+  }
+  return scene;
+}
+
+Scene settling_scene(const Scene &scene, double factor) {
+  Scene start = scene;
+  const auto last = std::find_if(start.stages.rbegin(), start.stages.rend(),
+                                 [](const Stage &stage) { return stage.kind == StageKind::settle; });
+  if (last == start.stages.rend()) {
+    throw SceneError({{Severity::error,
+                       {},
+                       "the scene has stages but none of kind settle",
+                       "strengths are lowered from a state of rest",
+                       "write [[stage]] with kind = \"settle\" and a limit"}});
+  }
+  start.stages.erase(last.base(), start.stages.end());
+  if (factor == 1.0) {
+    return start;
+  }
+  weaken(start, scene.reduction, factor);
+  for (Stage &stage : start.stages) {
+    if (stage.after) {
+      auto after = std::make_shared<Scene>(*stage.after);
+      weaken(*after, scene.reduction, factor);
+      stage.after = std::move(after);
+    }
+  }
+  start.resolved = fmt::format("{}{:.17g}\n", settled_weaker, factor) + scene.resolved;
+  return start;
+}
+
+bool is_weakened(const StrengthReduction &reduction, std::size_t law) {
+  const std::vector<std::int32_t> &chosen = reduction.families;
+  return chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(law)) > 0;
+}
+
+Scene weakened_scene(const Scene &scene, double factor) {
+  const auto is_settle = [](const Stage &stage) { return stage.kind == StageKind::settle; };
+  const auto last_settle = std::find_if(scene.stages.rbegin(), scene.stages.rend(), is_settle).base();
+  Scene weakened = scene;
+  weakened.stages.assign(scene.stages.begin(), last_settle);
+  std::copy_if(last_settle, scene.stages.end(), std::back_inserter(weakened.stages),
+               [](const Stage &stage) { return !stage.takes_steps(); });
+
+  auto after = std::make_shared<Scene>(scene);
+  for (const Stage &stage : weakened.stages) {
+    if (stage.after) {
+      *after = *stage.after;
+    }
+  }
+  after->stages.clear();
+  weaken(*after, scene.reduction, factor);
+  Stage trial;
+  trial.name = "trial";
+  trial.duration = scene.reduction.limit > 0.0 ? scene.reduction.limit : std::prev(last_settle)->duration;
+  trial.until_verdict = true;
+  trial.failure_motion = scene.reduction.failure_motion;
+  trial.local_damping = scene.reduction.local_damping;
+  trial.where = std::prev(last_settle)->where;
+  trial.after = std::move(after);
+  weakened.output = {trial.duration, trial.duration, 0.0, scene.output.contacts};
+  weakened.stages.push_back(std::move(trial));
+  return weakened;
+}
+
+} // namespace gcpdda

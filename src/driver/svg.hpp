@@ -1,0 +1,24 @@
+#pragma once
+
+#include "gcpdda/geometry/vec2.hpp"
+#include "io/results/safety_report.hpp"
+
+#include <string>
+#include <vector>
+
+namespace gcpdda {
+
+/// A block of a picture.
+struct DrawnBlock {
+  std::vector<Vec2> vertices; ///< m
+  int subdomain = -1;         ///< -1 for a fixed block
+  bool deformable = false;
+};
+
+/// Picture of blocks coloured by subdomain: fixed ones grey, deformable ones with a thick outline.
+std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains);
+
+/// Picture of how the blocks fail: white to red with the motion, fixed ones grey.
+std::string draw_mechanism(const SafetyReport &report);
+
+} // namespace gcpdda

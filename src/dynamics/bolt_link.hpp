@@ -1,0 +1,114 @@
+#pragma once
+
+// A spring between two blocks where a bolt crosses the joint between them, or between the two ends of a
+// cable.
+//
+// Its ends are material points A of one block and B of the other, r = x_B - x_A, L = |r| when it was put in.
+//   axial   e = |r| - L,  N = T_0 + k_a (e - e_p),  along r, T_0 the pre-tension.
+//   shear   (grouted) the bolt is clamped in both blocks: its direction d, a unit vector when it was put in,
+//           is convected with each of them, d_A = F_A D_A, d_B = F_B D_B, and with m along d_A + d_B and
+//           t = perp(m)
+//               s = t . r,  Q = k_s (s - s_p),  along t.
+// e and s do not change when both blocks move as one, so neither N nor Q does; an elastic link has the
+// potential N^2/(2 k_a) + Q^2/(2 k_s). The variation of s,
+//     ds = t . dr - (m . r)/|d_A + d_B| t . (dF_A D_A + dF_B D_B),
+// is that of two forces -Q t at x_B - c d_B and Q t at x_A + c d_A, c = (m . r)/|d_A + d_B|: about the middle
+// of the link. These points differ by s t, so the pair has no torque, and all of it holds for rigid and
+// deformable blocks alike (material points X_B - c D_B, X_A + c D_A). A long slip turns r, so a grouted bolt
+// takes shear as tension too, as it does in rock.
+//
+// Both are elastic and perfectly plastic: e_p and s_p grow where N and Q would exceed their capacity. The
+// axial capacity is the yield force or, where less, what the grout on the shorter side bears. A cable with a
+// free length is slack in compression. Rupture: e + T_0/k_a beyond rupture_strain L breaks it for good. What
+// plastic flow and rupture take is counted link by link.
+//
+// Forces are taken at the trial configuration like contact forces. All numbers are per metre of thickness:
+// those of a bolt divided by its spacing out of plane.
+
+#include "dynamics/frequency_bound.hpp"
+#include "gcpdda/model/support.hpp"
+#include "model/block_system.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace gcpdda {
+
+/// Constants of one link, per metre of thickness.
+struct LinkLaw {
+  double axial_stiffness = 0.0; ///< Pa
+  double shear_stiffness = 0.0; ///< Pa; 0: none
+  double axial_yield = SupportType::unlimited;
+  double shear_yield = SupportType::unlimited;
+  double pretension = 0.0;
+  double rupture = SupportType::unlimited; ///< extension with that of the pre-tension, m
+  bool slack_in_compression = false;
+};
+
+struct LinkMemory {
+  double axial_slip = 0.0; ///< e_p, m
+  double shear_slip = 0.0; ///< s_p, m
+  double dissipated = 0.0; ///< J/m
+  double axial = 0.0;      ///< N of the last evaluation, tension positive, N/m
+  double shear = 0.0;      ///< Q, N/m
+  double extension = 0.0;  ///< e, m
+  double slide = 0.0;      ///< s, m
+  bool yielded = false;
+  bool broken = false;
+
+  friend bool operator==(const LinkMemory &, const LinkMemory &) = default;
+};
+
+struct LinkEnd {
+  std::int64_t block = -1;
+  Vec2 point; ///< X, reference axes, m
+  Vec2 along; ///< D, from the block of lower id towards the other one
+};
+
+struct BoltLink {
+  std::int32_t bolt = 0;            ///< index into Scene::bolts
+  std::array<LinkEnd, 2> end;       ///< by block id
+  bool head_first = true;           ///< end[0] is on the side of the bolt's head
+  double length = 0.0;              ///< L, m
+  double bond_length = 0.0;         ///< grout on the shorter side, m
+  std::array<double, 2> overhang{}; ///< from the link's ends to the bolt's: towards the head, the tip, m
+  LinkMemory memory;
+};
+
+LinkLaw law_of(const SupportType &support, const BoltLink &link);
+
+/// How a link lies in the trial configuration.
+struct LinkPose {
+  double extension = 0.0;
+  double slide = 0.0;
+  Vec2 axis;                       ///< along r
+  Vec2 tangent;                    ///< t
+  std::array<Vec2, 2> shear_point; ///< material points the shear force acts at, reference axes
+};
+
+/// @param rows  of the blocks of the link's ends
+LinkPose pose_of(const BlockSystem &system, const BoltLink &link, const std::array<std::size_t, 2> &rows);
+
+/// The memory at a new extension and slide.
+LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, double slide);
+
+/// J/m.
+double stored_energy(const LinkLaw &law, const LinkMemory &memory);
+
+/// What a link does to its two blocks: about their trial centroids, and on F.
+struct LinkForce {
+  std::array<RigidDof, 2> rigid;
+  std::array<Mat2, 2> gradient;
+};
+LinkForce force_of(const BlockSystem &system, const BoltLink &link, const std::array<std::size_t, 2> &rows,
+                   const LinkPose &pose, const LinkMemory &memory);
+
+/// Springs that hold a block at least as stiffly as one end of the link does, whichever way the link turns,
+/// up to a strain of 1: the stiffness of a tensioned link across itself, N/|r|, is less than k_a.
+std::array<PointSpring, 2> springs_of(const LinkLaw &law, const BoltLink &link, std::size_t end);
+
+/// Position of a material point in the trial configuration.
+Vec2 trial_position(const BlockSystem &system, std::size_t row, Vec2 point);
+
+} // namespace gcpdda

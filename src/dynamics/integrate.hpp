@@ -1,0 +1,216 @@
+#pragma once
+
+#include "base/instructions.hpp"
+#include "dynamics/scheme.hpp"
+#include "model/block_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace gcpdda {
+
+/// What acts on blocks through their own springs.
+struct OwnForces {
+  Vec2 wave{};                    ///< velocity of the wave that comes in through viscous sides, m/s
+  double stiffness_damping = 0.0; ///< beta of Rayleigh damping, of the blocks' own elasticity, s
+  double local_damping = 0.0;     ///< share of the net force that deformable blocks lose
+};
+
+/// Motion of a block that follows a velocity table: its velocity and the exact integral of it.
+class PrescribedMotion {
+public:
+  /// @param table  at least one row, times strictly rising from 0
+  explicit PrescribedMotion(std::span<const VelocityRow> table);
+
+  [[nodiscard]] RigidDof velocity(double time) const;
+  [[nodiscard]] RigidDof displacement(double time) const; ///< since t = 0
+
+private:
+  struct Row {
+    double time = 0.0;
+    RigidDof velocity;
+    RigidDof displacement;
+  };
+  [[nodiscard]] const Row &last_before(double time) const;
+
+  std::vector<Row> rows_;
+};
+
+/// Rows [first, last).
+struct RowSpan {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
+/// The next trial configuration of a row. Angles r of a deformable row, of displacement and trial, are those
+/// of F's rotation, unwrapped.
+TrialConfiguration next_trial(const BlockSystem &system, const Scheme &scheme, double time_step,
+                              std::size_t row);
+
+/// Set the next trial configurations of these rows, with the increments from the ones before, and pose them.
+void predict(BlockSystem &system, const Scheme &scheme, double time_step, RowSpan rows);
+/// Predict all owned rows.
+inline void predict(BlockSystem &system, const Scheme &scheme, double time_step) {
+  predict(system, scheme, time_step, {0, system.num_owned});
+}
+
+/// As pose() of rows [first, last), all of which have been posed before; quadrilaterals several at a time.
+void pose_in_lanes(BlockSystem &system, std::size_t first, std::size_t last);
+
+/// a = M^-1 f of one rigid block.
+inline RigidDof accelerate(const BlockProperties &block, const RigidDof &force) {
+  return {(1.0 / block.mass) * force.u, force.r / block.inertia};
+}
+
+/// a_n = M^-1 f of all owned rows, elastic forces of deformable rows (at their trial configuration) included:
+/// the consistent start. Anchored points do not accelerate.
+void accelerate(BlockSystem &system);
+
+/// Largest distance (m) a point of the block may move before the next trial configuration has been left
+/// behind.
+inline double motion_bound(const BlockSystem &system, std::size_t row, double time_step) {
+  const double radius = system.properties[row].radius;
+  const RigidDof &v = system.velocity[row];
+  const RigidDof &a = system.acceleration[row];
+  double turning = std::abs(v.r);
+  double turning_rate = std::abs(a.r);
+  if (system.is_deformable(row)) {
+    turning = norm(system.deformation_of(row).rate);
+    turning_rate = norm(system.deformation_of(row).acceleration);
+  }
+  return time_step * (norm(v.u) + radius * turning) +
+         time_step * time_step * (norm(a.u) + radius * turning_rate);
+}
+
+/// Largest distance (m) a point of the block has moved since the last refresh of the neighbourhood.
+inline double moved_since_refresh(const BlockSystem &system, std::size_t row) {
+  const RigidDof moved = system.displacement[row] - system.refreshed[row];
+  double turned = std::abs(moved.r);
+  if (system.is_deformable(row)) {
+    const Deformation &d = system.deformation_of(row);
+    turned = norm(d.gradient - d.refreshed);
+  }
+  return norm(moved.u) + system.properties[row].radius * turned;
+}
+
+constexpr double rounding_of_most_motion = 1.0 + 1e-12;
+
+/// No less than the sum of these two, and found without a root.
+inline double most_motion(const BlockSystem &system, std::size_t row, double time_step) {
+  const double radius = system.properties[row].radius;
+  const auto most = [](Vec2 u) { return std::abs(u.x) + std::abs(u.y); };
+  const auto most_turn = [](const Mat2 &f) {
+    return std::abs(f.xx) + std::abs(f.xy) + std::abs(f.yx) + std::abs(f.yy);
+  };
+  const RigidDof moved = system.displacement[row] - system.refreshed[row];
+  const RigidDof &v = system.velocity[row];
+  const RigidDof &a = system.acceleration[row];
+  double turned = std::abs(moved.r);
+  double turning = std::abs(v.r);
+  double turning_rate = std::abs(a.r);
+  if (system.is_deformable(row)) {
+    const Deformation &d = system.deformation_of(row);
+    turned = most_turn(d.gradient - d.refreshed);
+    turning = most_turn(d.rate);
+    turning_rate = most_turn(d.acceleration);
+  }
+  return rounding_of_most_motion *
+         (most(moved.u) + radius * turned +
+          time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
+}
+
+/// What acts on free rows: those without an entry of BlockSystem::applied in a run without Rayleigh damping,
+/// deformable ones in a scene without bolts.
+struct FreeRows {
+  BodyForces body; ///< now
+  double local_damping = 0.0;
+  double safe_motion = std::numeric_limits<double>::infinity(); ///< as of solve_and_update(), m
+  bool have_deformable = true;                                  ///< or only rigid ones are free
+};
+
+/// Half the work of the forces of a block's last evaluation, over the last increment of its trial
+/// configuration (J/m): what the trapezoid takes from one end. Of fixed points and viscous sides none.
+struct HalfWorks {
+  double shear = 0.0;
+  double damping = 0.0;
+  double load = 0.0;
+  double gravity = 0.0;
+};
+HalfWorks half_works(const BlockSystem &system, std::size_t row, const AppliedForces &applied);
+/// The same for fixed points and viscous sides, whose force is known only after the step it acts in.
+double anchor_half_work(const BlockSystem &system, std::size_t row);
+/// Onto the works of a row so far.
+void add_to_ledger(BlockSystem &system, std::size_t row, const HalfWorks &half);
+
+/// What the forces of the last evaluation do over the increment behind it, onto the works of owned rows
+/// [first, last), which have been predicted since.
+void add_half_works(BlockSystem &system, std::size_t first, std::size_t last,
+                    Instructions instructions = Instructions::widest);
+
+/// What is to be known of rows that have been advanced.
+struct AdvanceReport {
+  /// The first one whose new state is not finite, or was turned inside out (det F <= 0); it keeps its old
+  /// one.
+  std::optional<std::size_t> broken;
+  std::vector<RowSpan> rows_to_check; ///< most_motion() of all other rows is at most safe_motion
+  double largest_turn = 0.0;          ///< of a deformable one, rad
+
+  void add_broken(std::size_t row) { broken = std::min(row, broken.value_or(row)); }
+  void add_turn(double turn) { largest_turn = std::max(largest_turn, turn); }
+  void clear() {
+    broken.reset();
+    rows_to_check.clear();
+    largest_turn = 0.0;
+  }
+};
+
+/// Advances free rows from `first` on, several at a time, as far as rigid or deformable ones come one behind
+/// the other: the forces on them, local damping, the half of the works of the ledger that goes with these
+/// forces, and the step, to the bits that one after the other would have.
+///
+/// @return the first row that is left
+std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
+                              double time_step, Elasticity elasticity, std::size_t first, std::size_t last,
+                              AdvanceReport &report, Instructions instructions = Instructions::widest);
+
+/// Non-viscous damping of one owned rigid row, for static problems: every generalised force loses `share` of
+/// its size against the velocity it works on, f - share |f| sign(v). The force of anchors of the last step
+/// counts in f. What is taken is added to the damping forces. Driven blocks are left alone, and so are
+/// deformable ones: they lose their share within the step (OwnForces::local_damping).
+void apply_local_damping(BlockSystem &system, std::size_t row, double share);
+
+/// Mass-proportional damping of one owned row, f - alpha M v_n; what is taken is added to the damping forces.
+/// Driven blocks are left alone.
+/// @param mass_damping  alpha, 1/s
+void apply_mass_damping(BlockSystem &system, std::size_t row, double mass_damping);
+
+/// Advance owned rows [first, last) from t_n to t_{n+1} under their total forces: one system each, diagonal
+/// for a rigid block without fixed points, else by its own factorised matrix. Needs make_block_matrices().
+///
+/// What local damping takes from deformable rows is added to their forces and damping forces, and its work
+/// over the increment of x* that ends here to their ledger.
+///
+/// The elastic and anchor forces that were applied are noted; of the anchors' work the half over the
+/// increment of x* that ends here, the other half is the caller's after the next predict().
+///
+/// @param safe_motion  a row whose most_motion() is at most this needs no check, m
+void solve_and_update(BlockSystem &system, const OwnForces &own, const Scheme &scheme, double time_step,
+                      Elasticity elasticity, std::size_t first, std::size_t last, double safe_motion,
+                      AdvanceReport &report);
+/// All owned rows.
+/// @return first row whose new state is broken
+inline std::optional<std::size_t> solve_and_update(BlockSystem &system, const OwnForces &own,
+                                                   const Scheme &scheme, double time_step,
+                                                   Elasticity elasticity) {
+  AdvanceReport report;
+  solve_and_update(system, own, scheme, time_step, elasticity, 0, system.num_owned,
+                   std::numeric_limits<double>::infinity(), report);
+  return report.broken;
+}
+
+} // namespace gcpdda

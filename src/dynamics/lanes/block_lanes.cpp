@@ -1,0 +1,31 @@
+#include "base/lanes_of_build.hpp"
+
+#include "dynamics/lanes/block_kernel.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace gcpdda {
+
+namespace {
+
+BlockLanes lanes_of(Instructions instructions) {
+  BlockLanes lanes{};
+  if (instructions == Instructions::widest) {
+    lanes = avx512_blocks();
+  }
+  if (lanes.width == 0 && instructions != Instructions::portable) {
+    lanes = avx2_blocks();
+  }
+  return lanes.width > 0 ? lanes : GCPDDA_INSTRUCTIONS::blocks;
+}
+
+} // namespace
+
+const BlockLanes &block_lanes(Instructions instructions) {
+  static const std::array<BlockLanes, 3> lanes{lanes_of(Instructions::widest), lanes_of(Instructions::avx2),
+                                               lanes_of(Instructions::portable)}; // in their order
+  return lanes[static_cast<std::size_t>(instructions)];
+}
+
+} // namespace gcpdda

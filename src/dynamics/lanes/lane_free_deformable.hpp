@@ -1,0 +1,86 @@
+#pragma once
+
+// Deformable blocks that nothing but contacts, weight and local damping acts on, one in each lane: the forces
+// on them, the works of the ledger and the step, as the scalar way of simulation/moving.cpp with
+// step_deformables(), to the same bits.
+
+#include "dynamics/lanes/lane_deformable.hpp"
+#include "dynamics/lanes/lane_ledger.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace gcpdda::GCPDDA_INSTRUCTIONS {
+
+inline FreeStep step_free_deformables(BlockSystem &system, std::size_t first, const FreeRows &rows,
+                                      const BlockSolve &step) {
+  const std::size_t entry = system.deformation_begin[first];
+  Deformation *deformation = &system.deformation[entry];
+  const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
+    return LaneMat::of([&](std::size_t i) { return &(deformation[i].*field); });
+  };
+  const LaneMasses masses = LaneMasses::of_rows(&system.properties[first]);
+  const LaneApplied applied(rows.body, masses);
+  const LaneRigid displacement = LaneRigid::load(system.displacement[first]);
+  const LaneRigid velocity = LaneRigid::load(system.velocity[first]);
+  const LaneRigid acceleration = LaneRigid::load(system.acceleration[first]);
+  LaneDeformable block;
+  block.u = displacement.u;
+  block.v = velocity.u;
+  block.a = acceleration.u;
+  block.load([&](std::size_t i) { return deformation + i; });
+
+  LaneContacts sum = LaneContacts::load(&system.contact[first]);
+  sum.force.u = sum.force.u + applied.load + applied.gravity;
+  sum.shear.r = 0.0; // stands in the deformation
+  sum.damping.r = 0.0;
+  const LaneMat to_reference = LaneMat::of([&](std::size_t i) { return &system.trial_inverse[entry + i]; });
+  const auto on_gradient = [&](Mat2 BlockGradientSum::*field) __attribute__((always_inline)) {
+    return transposed(to_reference *
+                      LaneMat::of([&](std::size_t i) { return &(deformation[i].contact.*field); }));
+  };
+  LaneMat gradient = on_gradient(&BlockGradientSum::force);
+  const LaneMat shear = on_gradient(&BlockGradientSum::shear);
+  LaneMat damping = on_gradient(&BlockGradientSum::damping);
+  const LaneRigid half_increment = half_increments(system, first);
+  const LaneWay way{Lanes(2.0) * half_increment.u, gradient_increment(system, first, block.trial)};
+  FourLanes works = lane_half_works(sum, applied, half_increment);
+  add_on_gradient(shear, damping, way.gradient, works);
+
+  LaneStepped now =
+      step_of(block, FreeMatrix(block, masses, step), masses.mass, sum.force.u, gradient, way, step);
+  const Mask sound = now.are_sound();
+  if ((!sound).any()) {
+    now.keep_where(sound, block, load(&Deformation::internal));
+  }
+  if (step.local_damping > 0.0) {
+    sum.force.u += now.damped.u;
+    sum.damping.u += now.damped.u;
+    gradient = gradient + now.damped.gradient;
+    damping = damping + now.damped.gradient;
+  }
+  sum.store(&system.contact[first]);
+  add_to_ledger(works, &system.ledger[first], half_work(now.damped, way));
+  const auto to = places_of(deformation);
+  const auto store = [&](std::size_t offset, const LaneMat &m) __attribute__((always_inline)) {
+    store_by_lane(to, offsetof(Deformation, contact) + offset, m.xx(), m.xy(), m.yx(), m.yy());
+  };
+  store(offsetof(BlockGradientSum, force), gradient);
+  store(offsetof(BlockGradientSum, shear), shear);
+  store(offsetof(BlockGradientSum, damping), damping);
+  now.store(to);
+  LaneRigid{now.u, displacement.r + now.turned}.store(system.displacement[first]);
+  LaneRigid{now.v, velocity.r}.store(system.velocity[first]);
+  LaneRigid{now.a, acceleration.r}.store(system.acceleration[first]);
+
+  const Lanes most_motion = now.most_motion(LaneRigid::load(system.refreshed[first]).u,
+                                            load(&Deformation::refreshed), masses.radius, step.time_step);
+  FreeStep done{(!sound).by_lane(), (!(most_motion <= rows.safe_motion)).by_lane()};
+  const Lanes turned = abs(now.turned);
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    done.largest_turn = turned[i] > done.largest_turn ? turned[i] : done.largest_turn;
+  }
+  return done;
+}
+
+} // namespace gcpdda::GCPDDA_INSTRUCTIONS

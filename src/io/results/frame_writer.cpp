@@ -1,0 +1,491 @@
+// One file per frame, its rows in BlockId order whatever the number of ranks: ids are cut into one slab per
+// rank, every row travels once to the owner of its slab, and all ranks write their slabs together, strip by
+// strip. What never changes is in a topology file of its own, which the frames link to.
+
+#include "gcpdda/io/result_files.hpp"
+
+#include "io/hdf5/durable_file.hpp"
+#include "io/hdf5/hdf5_input.hpp"
+#include "io/hdf5/numbered_name.hpp"
+#include "io/hdf5/write_behind.hpp"
+#include "io/results/frame_strips.hpp"
+#include "io/results/hdf5_vtk_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <numeric>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr std::array<const char *, 2> constant_cell_data{"block", "material"};
+constexpr const char *xdmf_cells = "/XdmfTopology";
+
+std::string frame_name(int index) {
+  return fmt::format("frame_{:06}.hdf", index);
+}
+
+std::string topology_name(int index) {
+  return fmt::format("topology_{:06}.h5", index);
+}
+
+/// A dataset, and the buffer that its pieces are made in.
+template <class T> struct Column {
+  CollectiveFile::Table table;
+  std::vector<T> values;
+
+  /// Where the values of this many rows go.
+  T *make_room(std::size_t num_rows) {
+    values.resize(table.columns * num_rows);
+    return values.data();
+  }
+};
+template <class T> void write_column(CollectiveFile &file, const Column<T> &column, std::int64_t first) {
+  file.write(column.table, first, std::span<const T>(column.values));
+}
+
+/// Datasets of a topology.
+class TopologyTables {
+public:
+  TopologyTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points)
+      : file_(file), cells_(file, num_cells, num_points, vtk::CellType::polygon),
+        block_{file.table<std::int64_t>(vtk::cell_data("block"), num_cells), {}},
+        material_{file.table<std::int32_t>(vtk::cell_data("material"), num_cells), {}},
+        xdmf_cells_{file.table<std::int64_t>(xdmf_cells, num_points + 2 * num_cells), {}} {}
+
+  /// Collective.
+  void write(std::int64_t first_cell, std::int64_t first_point,
+             const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t num_points) {
+    fill(rows, first_point, static_cast<std::size_t>(num_points));
+    cells_.write(first_cell, first_point, sizes_);
+    write_column(file_, block_, first_cell);
+    write_column(file_, material_, first_cell);
+    write_column(file_, xdmf_cells_, first_point + 2 * first_cell);
+  }
+
+private:
+  void fill(const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t first_point,
+            std::size_t num_points) {
+    sizes_.clear();
+    std::int64_t *block = block_.make_room(rows.size());
+    std::int32_t *material = material_.make_room(rows.size());
+    std::int64_t *mixed = xdmf_cells_.make_room(num_points + 2 * rows.size());
+    std::int64_t vertex = first_point;
+    for (const auto &[row, first] : rows) {
+      sizes_.push_back(row->num_vertices);
+      *block++ = row->block;
+      *material++ = row->material;
+      // XDMF wants its own mixture: for each cell 3 (a polygon), the number of its vertices, their numbers.
+      *mixed++ = 3;
+      *mixed++ = row->num_vertices;
+      std::iota(mixed, mixed + row->num_vertices, vertex);
+      mixed += row->num_vertices;
+      vertex += row->num_vertices;
+    }
+  }
+
+  CollectiveFile &file_;
+  vtk::CellTables cells_;
+  Column<std::int64_t> block_;
+  Column<std::int32_t> material_;
+  Column<std::int64_t> xdmf_cells_;
+  std::vector<std::int32_t> sizes_; ///< vertices of each cell
+};
+
+/// Datasets of a frame.
+class FrameTables {
+public:
+  FrameTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points)
+      : file_(file), points_{file.table<double>(vtk::at("Points"), num_points, 3), {}},
+        kind_{file.table<std::uint8_t>(vtk::cell_data("kind"), num_cells), {}},
+        rotation_{file.table<double>(vtk::cell_data("rotation"), num_cells), {}},
+        displacement_{file.table<double>(vtk::cell_data("displacement"), num_cells, 3), {}},
+        velocity_{file.table<double>(vtk::cell_data("velocity"), num_cells, 3), {}},
+        stress_{file.table<double>(vtk::cell_data("stress"), num_cells, 3), {}},
+        contact_force_{file.table<double>(vtk::cell_data("contact_force"), num_cells, 3), {}} {}
+
+  /// Collective.
+  void write(std::int64_t first_cell, std::int64_t first_point,
+             const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t num_points) {
+    fill(rows, static_cast<std::size_t>(num_points));
+    write_column(file_, points_, first_point);
+    write_column(file_, kind_, first_cell);
+    for (const Column<double> *column : {&rotation_, &displacement_, &velocity_, &stress_, &contact_force_}) {
+      write_column(file_, *column, first_cell);
+    }
+  }
+
+private:
+  static double *put(double *place, const std::array<double, 3> &triple) {
+    return std::copy(triple.begin(), triple.end(), place);
+  }
+
+  // All columns in one pass: rows are longer than what a column takes of them.
+  void fill(const std::vector<FrameStrips::PlacedRow> &rows, std::size_t num_points) {
+    double *point = points_.make_room(num_points);
+    std::uint8_t *kind = kind_.make_room(rows.size());
+    double *rotation = rotation_.make_room(rows.size());
+    double *displacement = displacement_.make_room(rows.size());
+    double *velocity = velocity_.make_room(rows.size());
+    double *stress = stress_.make_room(rows.size());
+    double *contact_force = contact_force_.make_room(rows.size());
+    for (const auto &[row, first] : rows) {
+      for (const Vec2 *vertex = first; vertex != first + row->num_vertices; ++vertex) {
+        point = put(point, {vertex->x, vertex->y, 0.0});
+      }
+      *kind++ = row->kind;
+      *rotation++ = row->rotation;
+      displacement = put(displacement, {row->displacement.x, row->displacement.y, 0.0});
+      velocity = put(velocity, row->velocity);
+      stress = put(stress, row->stress);
+      contact_force = put(contact_force, row->contact_force);
+    }
+  }
+
+  CollectiveFile &file_;
+  Column<double> points_;
+  Column<std::uint8_t> kind_;
+  Column<double> rotation_;
+  Column<double> displacement_;
+  Column<double> velocity_;
+  Column<double> stress_;
+  Column<double> contact_force_;
+};
+
+/// @param kind  of the files, "frame" or "bolts"
+std::string series_index(const std::vector<std::pair<int, double>> &frames, const char *kind) {
+  std::string text = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [";
+  const char *separator = "\n";
+  for (const auto &[index, time] : frames) {
+    text += fmt::format("{}    {{\"name\": \"frames/{}_{:06}.hdf\", \"time\": {:.17g}}}", separator, kind,
+                        index, time);
+    separator = ",\n";
+  }
+  return text + "\n  ]\n}\n";
+}
+
+struct XdmfField {
+  const char *name;
+  const char *number; ///< NumberType and Precision
+  int columns;
+};
+constexpr std::array<XdmfField, 8> xdmf_fields{
+    {{"block", "NumberType=\"Int\" Precision=\"8\"", 1},
+     {"material", "NumberType=\"Int\" Precision=\"4\"", 1},
+     {"kind", "NumberType=\"UChar\" Precision=\"1\"", 1},
+     {"displacement", "NumberType=\"Float\" Precision=\"8\"", 3},
+     {"rotation", "NumberType=\"Float\" Precision=\"8\"", 1},
+     {"velocity", "NumberType=\"Float\" Precision=\"8\"", 3},
+     {"stress", "NumberType=\"Float\" Precision=\"8\"", 3},
+     {"contact_force", "NumberType=\"Float\" Precision=\"8\"", 3}}};
+
+bool is_constant(const char *name) {
+  return std::any_of(constant_cell_data.begin(), constant_cell_data.end(),
+                     [name](const char *constant) { return std::strcmp(name, constant) == 0; });
+}
+
+std::string xdmf_item(const std::string &dimensions, const char *number, const std::string &file,
+                      const std::string &dataset) {
+  return fmt::format("<DataItem Format=\"HDF\" Dimensions=\"{}\" {}>frames/{}:{}</DataItem>", dimensions,
+                     number, file, dataset);
+}
+
+struct IndexedFrame {
+  int index;
+  double time;
+  std::int64_t num_blocks;
+  std::int64_t num_points;
+  std::string topology; ///< file
+};
+
+std::string xdmf_index(const std::vector<IndexedFrame> &frames) {
+  std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
+                     "    <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (const auto &[index, time, num_blocks, num_points, topology] : frames) {
+    const std::string frame = frame_name(index);
+    text += fmt::format("      <Grid Name=\"{}\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n",
+                        frame, time);
+    text += fmt::format("        <Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">{}</Topology>\n",
+                        num_blocks,
+                        xdmf_item(fmt::format("{}", num_points + 2 * num_blocks),
+                                  "NumberType=\"Int\" Precision=\"8\"", topology, xdmf_cells));
+    text += fmt::format("        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
+                        xdmf_item(fmt::format("{} 3", num_points), "NumberType=\"Float\" Precision=\"8\"",
+                                  frame, vtk::at("Points")));
+    for (const XdmfField &field : xdmf_fields) {
+      const std::string dimensions = fmt::format("{}{}", num_blocks, field.columns == 3 ? " 3" : "");
+      text +=
+          fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n",
+                      field.name, field.columns == 3 ? "Vector" : "Scalar",
+                      xdmf_item(dimensions, field.number, is_constant(field.name) ? topology : frame,
+                                vtk::cell_data(field.name)));
+    }
+    text += "      </Grid>\n";
+  }
+  return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
+}
+
+} // namespace
+
+std::int64_t slab_begin(std::int64_t num_blocks, int num_ranks, int rank) {
+  return num_blocks * rank / num_ranks;
+}
+
+int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block) {
+  return static_cast<int>(((block + 1) * num_ranks - 1) / num_blocks);
+}
+
+FrameWriter::FrameWriter(const Communicator &communicator, std::filesystem::path directory,
+                         std::int64_t num_blocks, std::int64_t ids_per_strip)
+    : communicator_(communicator), directory_(std::move(directory)), behind_(std::make_unique<WriteBehind>()),
+      num_blocks_(num_blocks), ids_per_strip_(ids_per_strip > 0 ? ids_per_strip : usual_ids_per_strip) {
+  on_root(communicator_, [this] { make_directory(directory_ / "frames"); });
+}
+
+FrameWriter::~FrameWriter() = default;
+
+// The same for all frames until blocks go: whoever owns them then, a strip has its place in the file.
+FrameWriter::Topology FrameWriter::survey(int index, const FrameSource &source) {
+  FrameStrips strips(communicator_, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
+  places_.clear();
+  Place place;
+  for (int number = 0; number < strips.size(); ++number) {
+    strips.bring(number);
+    place = {place.first_cell + place.num_cells, std::ssize(strips.rows()),
+             place.first_point + place.num_points, strips.num_vertices()};
+    places_.push_back(place);
+  }
+  const RowRange cells = rows_in_rank_order(communicator_, place.first_cell + place.num_cells);
+  const RowRange points = rows_in_rank_order(communicator_, place.first_point + place.num_points);
+  for (Place &strip : places_) {
+    strip.first_cell += cells.first;
+    strip.first_point += points.first;
+  }
+  expect_on_all_ranks(communicator_, strips.are_sound(),
+                      "each block on exactly one rank's frame data, with its vertices");
+  return {index, cells.total, points.total};
+}
+
+void FrameWriter::write(int index, double time, const FrameSource &source) {
+  expect(frames_.empty() || index > frames_.back().first, "frames in the order of their numbers");
+  finish(); // no more than one frame is on its way
+  std::int64_t num_cells = source.num_rows();
+  communicator_.sum(std::span(&num_cells, 1));
+  if (topologies_.empty() || topologies_.back().num_cells != num_cells) {
+    expect(topologies_.empty() ? num_cells == num_blocks_ : num_cells < topologies_.back().num_cells,
+           "all blocks in the first frame, none that come later");
+    const Topology topology = survey(index, source);
+    expect(topology.num_cells == num_cells, "as many rows as the source says");
+    write_topology(topology, source);
+  } else if (places_.empty()) {
+    expect(survey(index, source).num_points == topologies_.back().num_points,
+           "as many vertices as in the topology");
+  }
+  const std::string topology = topology_name(topologies_.back().first_frame);
+
+  const std::filesystem::path path = directory_ / "frames" / frame_name(index);
+  CollectiveFile file(communicator_, path);
+  vtk::write_header(file, time);
+  for (const char *name : vtk::cell_datasets) {
+    file.link(vtk::at(name), topology);
+  }
+  for (const char *name : constant_cell_data) {
+    file.link(vtk::cell_data(name), topology);
+  }
+  write_strips<FrameTables>(file, topologies_.back(), source);
+  publish_behind(file, path);
+  frames_.emplace_back(index, time);
+  write_indices_behind();
+}
+
+void FrameWriter::publish_behind(CollectiveFile &file, const std::filesystem::path &path) {
+  file.complete();
+  files_.push_back({"frames/" + path.filename().string(), -1, -1});
+  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+  if (communicator_.is_root()) {
+    behind_->add([path] { publish(path); });
+  }
+}
+
+template <class Tables>
+void FrameWriter::write_strips(CollectiveFile &file, const Topology &topology,
+                               const FrameSource &source) const {
+  bool as_expected = true; // a rank whose rows are not what they should be writes none of them
+  Tables tables(file, topology.num_cells, topology.num_points);
+  FrameStrips strips(communicator_, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
+  for (int number = 0; number < strips.size(); ++number) {
+    strips.bring(number);
+    const Place &place = places_[static_cast<std::size_t>(number)];
+    as_expected = as_expected && strips.are_sound() && std::ssize(strips.rows()) == place.num_cells &&
+                  strips.num_vertices() == place.num_points;
+    if (as_expected) {
+      tables.write(place.first_cell, place.first_point, strips.rows(), place.num_points);
+    } else {
+      tables.write(0, 0, {}, 0);
+    }
+    file.start_to_sync();
+  }
+  expect_on_all_ranks(communicator_, as_expected, "each block once, with the vertices it had");
+}
+
+// Brings the strips once more: a dataset cannot be made before survey has its length.
+void FrameWriter::write_topology(const Topology &topology, const FrameSource &source) {
+  CollectiveFile file(communicator_, directory_ / "frames" / topology_name(topology.first_frame));
+  file.group("/VTKHDF");
+  file.group("/VTKHDF/CellData");
+  write_strips<TopologyTables>(file, topology, source);
+  file.publish();
+  files_.push_back({"frames/" + topology_name(topology.first_frame), -1, -1});
+  all_writes_collective_ = all_writes_collective_ && file.all_writes_collective();
+  topologies_.push_back(topology);
+}
+
+const FrameWriter::Topology &FrameWriter::topology_of(int frame) const {
+  const auto later = std::upper_bound(topologies_.begin(), topologies_.end(), frame,
+                                      [](int index, const Topology &t) { return index < t.first_frame; });
+  return *std::prev(later);
+}
+
+// Behind the frames that they tell of.
+void FrameWriter::write_indices_behind() {
+  if (!communicator_.is_root()) {
+    return;
+  }
+  std::vector<std::pair<int, double>> frames;
+  std::copy_if(frames_.begin(), frames_.end(), std::back_inserter(frames), [&](const auto &frame) {
+    return !std::binary_search(lost_.begin(), lost_.end(), frame.first);
+  });
+  std::vector<std::pair<const char *, std::string>> indices{
+      {"run.hdf.series", series_index(frames, "frame")}};
+  if (!bolt_frames_.empty()) {
+    indices.emplace_back("bolts.hdf.series", series_index(bolt_frames_, "bolts"));
+  }
+  std::vector<IndexedFrame> indexed;
+  for (const auto &[index, time] : frames) {
+    const Topology &topology = topology_of(index);
+    indexed.push_back(
+        {index, time, topology.num_cells, topology.num_points, topology_name(topology.first_frame)});
+  }
+  indices.emplace_back("run.xdmf", xdmf_index(indexed));
+  behind_->add([directory = directory_, indices = std::move(indices)] {
+    for (const auto &[name, text] : indices) {
+      write_index(directory / name, text);
+    }
+  });
+}
+
+void FrameWriter::finish() {
+  on_root(communicator_, [this] { behind_->finish(); });
+}
+
+void FrameWriter::sync() {
+  finish();
+  if (frames_.empty()) {
+    return;
+  }
+  on_root(communicator_, [this] {
+    sync_file(directory_ / "run.hdf.series");
+    sync_file(directory_ / "run.xdmf");
+    if (!bolt_frames_.empty()) {
+      sync_file(directory_ / "bolts.hdf.series");
+    }
+  });
+}
+
+const std::vector<ResultFile> &FrameWriter::files() {
+  for (auto file = files_.rbegin(); file != files_.rend() && file->bytes < 0; ++file) {
+    file->bytes = static_cast<std::int64_t>(std::filesystem::file_size(directory_ / file->name));
+  }
+  return files_;
+}
+
+std::vector<double> FrameWriter::times() const {
+  std::vector<double> times;
+  for (const auto &[index, time] : frames_) {
+    times.push_back(time);
+  }
+  return times;
+}
+
+namespace {
+
+/// Of each topology that begins before frame `count` its cells, points and first frame, one after the other.
+std::vector<std::int64_t> list_topologies(const std::filesystem::path &folder, std::ptrdiff_t count) {
+  const hdf5::QuietErrors quiet;
+  const hdf5::File needed(hdf5::open_to_read(folder / topology_name(0)));
+  std::vector<std::int64_t> numbers;
+  for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
+    const auto first = number_of(entry.path().filename().string(), "topology", ".h5");
+    if (!first || *first >= count) {
+      continue;
+    }
+    const hdf5::File file(hdf5::open_to_read(entry.path()));
+    for (const char *length : {"NumberOfCells", "NumberOfPoints"}) {
+      numbers.push_back(hdf5::read_numbers<std::int64_t>(file, vtk::at(length)).at(0));
+    }
+    numbers.push_back(*first);
+  }
+  return numbers;
+}
+
+/// Those from number `count` on, and all that goes with them.
+void remove_frames_from(const std::filesystem::path &folder, std::ptrdiff_t count) {
+  std::vector<std::filesystem::path> later;
+  for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    std::optional<std::int64_t> number = number_of(name, "topology", ".h5");
+    for (const char *kind : {"frame", "contacts", "bolts"}) {
+      number = number ? number : number_of(name, kind, ".hdf");
+    }
+    if (number.value_or(-1) >= count) {
+      later.push_back(entry.path());
+    }
+  }
+  for (const std::filesystem::path &path : later) {
+    std::filesystem::remove(path);
+  }
+}
+
+} // namespace
+
+// The indices first: none ever tells of a frame that is gone.
+void FrameWriter::continue_behind(const std::vector<double> &times, const std::vector<ResultFile> &files) {
+  expect(!times.empty() && frames_.empty(), "frames to go on behind, before any are written");
+  for (const double time : times) {
+    frames_.emplace_back(static_cast<int>(frames_.size()), time);
+  }
+  const std::filesystem::path folder = directory_ / "frames";
+  std::vector<std::int64_t> numbers;
+  on_root(communicator_, [&] {
+    numbers = list_topologies(folder, std::ssize(times));
+    for (const ResultFile &file : files) {
+      if (file.name.starts_with("frames/") && damage_of(directory_, file).empty()) {
+        files_.push_back(file);
+      }
+    }
+    for (const auto &[index, time] : frames_) {
+      if (!std::filesystem::exists(folder / frame_name(index))) {
+        lost_.push_back(index);
+      }
+      if (std::filesystem::exists(folder / fmt::format("bolts_{:06}.hdf", index))) {
+        bolt_frames_.emplace_back(index, time);
+      }
+    }
+  });
+  const auto told = communicator_.all_gather(numbers);
+  for (std::size_t k = 0; k + 2 < told.front().size(); k += 3) {
+    topologies_.push_back({static_cast<int>(told.front()[k + 2]), told.front()[k], told.front()[k + 1]});
+  }
+  std::sort(topologies_.begin(), topologies_.end(),
+            [](const Topology &a, const Topology &b) { return a.first_frame < b.first_frame; });
+  expect(!topologies_.empty(), "a run that goes on has a topology");
+  write_indices_behind();
+  finish();
+  on_root(communicator_, [&] { remove_frames_from(folder, std::ssize(times)); });
+}
+
+} // namespace gcpdda

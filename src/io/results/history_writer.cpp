@@ -1,0 +1,212 @@
+#include "gcpdda/io/result_files.hpp"
+
+#include "base/check.hpp"
+#include "base/text.hpp"
+#include "io/hdf5/durable_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <limits>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr const char *block_header = "time[s],x[m],y[m],rotation[rad],vx[m/s],vy[m/s],omega[rad/s],"
+                                     "sxx[Pa],syy[Pa],sxy[Pa],fx[N/m],fy[N/m]\n";
+constexpr const char *point_header = "time[s],x[m],y[m],vx[m/s],vy[m/s]\n";
+constexpr const char *energy_header =
+    "time[s],kinetic[J/m],strain[J/m],contact_normal[J/m],contact_stick[J/m],gravity[J/m],friction_loss[J/m],"
+    "damping_loss[J/m],boundary_work[J/m],residual[J/m],unbalanced_ratio[-],max_speed[m/s]\n";
+constexpr const char *support_columns = ",support[J/m],support_loss[J/m]";
+constexpr const char *bolt_header = "time[s],bolt,x_head[m],y_head[m],x_tip[m],y_tip[m],axial[N],shear[N],"
+                                    "extension[m],slide[m],joints,yielded,broken\n";
+constexpr const char *energy_name = "energy";
+constexpr const char *bolts_name = "bolts";
+
+void append_row(std::string &text, std::initializer_list<double> values) {
+  const char *separator = "";
+  for (const double value : values) {
+    text += fmt::format("{}{:.17g}", separator, value);
+    separator = ",";
+  }
+  text += '\n';
+}
+
+void write_to(const std::filesystem::path &path, const std::string &text, std::ios::openmode mode) {
+  std::ofstream stream(path, std::ios::binary | mode);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  stream.close();
+  if (!stream) {
+    throw FileError("cannot write " + path.string() + ": " + std::strerror(errno));
+  }
+}
+
+/// Whole rows of an earlier history up to a time; none where there is no history with this header: a monitor
+/// may be new.
+std::string rows_until(const std::filesystem::path &path, const std::string &header, double last_time) {
+  std::ifstream stream(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!text.starts_with(header)) {
+    return "";
+  }
+  std::size_t end = header.size();
+  for (std::size_t next = text.find('\n', end); next != std::string::npos; next = text.find('\n', end)) {
+    if (std::strtod(text.c_str() + end, nullptr) > last_time) {
+      break;
+    }
+    end = next + 1;
+  }
+  return text.substr(header.size(), end - header.size());
+}
+
+void note_appended(ResultFile &file, const std::string &rows) {
+  file.bytes += std::ssize(rows);
+  file.rows += std::count(rows.begin(), rows.end(), '\n');
+}
+
+} // namespace
+
+HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, bool has_bolts)
+    : HistoryWriter(std::move(directory), std::move(monitors), -std::numeric_limits<double>::infinity(),
+                    has_bolts) {}
+
+HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time,
+                             bool has_bolts)
+    : directory_(std::move(directory)), monitors_(std::move(monitors)), has_bolts_(has_bolts),
+      pending_(monitors_.size() + (has_bolts ? 2 : 1)) {
+  expect(std::none_of(monitors_.begin(), monitors_.end(),
+                      [](const Monitor &monitor) { return monitor.name == energy_name; }),
+         "no monitor by the name of the energy history");
+  make_directory(directory_ / "history");
+  for (std::size_t i = 0; i < pending_.size(); ++i) {
+    const std::string header = header_of(i);
+    files_.push_back({"history/" + path_of(i).filename().string(), std::ssize(header), 0});
+    if (std::isfinite(last_time)) {
+      const std::string rows = rows_until(path_of(i), header, last_time);
+      note_appended(files_.back(), rows);
+      write_file(path_of(i), header + rows);
+      if (i > monitors_.size()) {
+        note_bolts(rows);
+      }
+    } else {
+      write_to(path_of(i), header, std::ios::trunc);
+    }
+  }
+}
+
+std::string HistoryWriter::header_of(std::size_t history) const {
+  if (history < monitors_.size()) {
+    return monitors_[history].is_point ? point_header : block_header;
+  }
+  if (history > monitors_.size()) {
+    return bolt_header;
+  }
+  std::string header = energy_header;
+  return has_bolts_ ? header.insert(header.size() - 1, support_columns) : header;
+}
+
+std::filesystem::path HistoryWriter::path_of(std::size_t history) const {
+  const std::string name = history < monitors_.size()    ? monitors_[history].name
+                           : history == monitors_.size() ? energy_name
+                                                         : bolts_name;
+  return directory_ / "history" / (name + ".csv");
+}
+
+void HistoryWriter::write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row) {
+  expect(monitor < monitors_.size(), "a monitor that exists");
+  if (monitors_[monitor].is_point) {
+    append_row(pending_[monitor], {time, row.position.x, row.position.y, row.velocity[0], row.velocity[1]});
+    return;
+  }
+  append_row(pending_[monitor], {time, row.position.x, row.position.y, row.rotation, row.velocity[0],
+                                 row.velocity[1], row.velocity[2], row.stress[0], row.stress[1],
+                                 row.stress[2], row.contact_force.x, row.contact_force.y});
+}
+
+void HistoryWriter::write_energy(double time, const EnergyRow &row) {
+  std::string &text = pending_[monitors_.size()];
+  append_row(text, {time, row.kinetic, row.strain, row.contact_normal, row.contact_stick, row.gravity,
+                    row.friction_loss, row.damping_loss, row.boundary_work, row.residual,
+                    row.unbalanced_ratio, row.max_speed});
+  if (has_bolts_) {
+    text.pop_back();
+    text += fmt::format(",{:.17g},{:.17g}\n", row.support, row.support_loss);
+  }
+}
+
+void HistoryWriter::write_bolts(double time, const std::vector<BoltHistoryRow> &rows) {
+  expect(has_bolts_, "a history of bolts");
+  for (const BoltHistoryRow &row : rows) {
+    pending_.back() +=
+        fmt::format("{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{}\n",
+                    time, row.name, row.head.x, row.head.y, row.tip.x, row.tip.y, row.axial, row.shear,
+                    row.extension, row.slide, row.links, row.yielded, row.broken);
+    note_bolt(time, row);
+  }
+}
+
+void HistoryWriter::note_bolt(double time, const BoltHistoryRow &row) {
+  const auto [found, is_new] = load_of_.emplace(row.name, bolt_loads_.size());
+  if (is_new) {
+    bolt_loads_.emplace_back();
+  }
+  BoltLoad &load = bolt_loads_[found->second];
+  load.last = row;
+  load.time = time;
+  load.axial = is_new ? row.axial : std::max(load.axial, row.axial);
+  load.shear = std::max(load.shear, row.shear);
+}
+
+// As write_bolts has written them.
+void HistoryWriter::note_bolts(std::string_view rows) {
+  while (!rows.empty()) {
+    const std::size_t end = rows.find('\n');
+    const CsvRow<13> row(rows.substr(0, end));
+    rows.remove_prefix(end + 1);
+    const auto number = [&](std::size_t k) {
+      return to_number(row.fields[k], std::numeric_limits<double>::max()).value_or(0.0);
+    };
+    const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(number(k)); };
+    note_bolt(number(0), {std::string(row.fields[1]),
+                          {number(2), number(3)},
+                          {number(4), number(5)},
+                          number(6),
+                          number(7),
+                          number(8),
+                          number(9),
+                          count(10),
+                          count(11),
+                          count(12)});
+  }
+}
+
+void HistoryWriter::flush() {
+  for (std::size_t i = 0; i < pending_.size(); ++i) {
+    if (!pending_[i].empty()) {
+      write_to(path_of(i), pending_[i], std::ios::app);
+      note_appended(files_[i], pending_[i]);
+      pending_[i].clear();
+    }
+  }
+}
+
+std::vector<ResultFile> HistoryWriter::files() const {
+  return files_;
+}
+
+void HistoryWriter::sync() const {
+  for (std::size_t i = 0; i < pending_.size(); ++i) {
+    sync_file(path_of(i));
+  }
+}
+
+} // namespace gcpdda

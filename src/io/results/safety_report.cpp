@@ -1,0 +1,209 @@
+#include "io/results/safety_report.hpp"
+
+#include "base/check.hpp"
+#include "io/hdf5/durable_file.hpp"
+#include "io/results/json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+namespace gcpdda {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char *, 5> own_names{"fos.txt", "fos.json", "fos_trials.csv", "fos_blocks.csv",
+                                                "fos.svg"};
+constexpr double one_degree = std::numbers::pi / 180.0;
+
+std::string factor_text(const SafetyReport &report) {
+  if (report.holds && report.fails) {
+    return fmt::format(
+        "factor of safety {:.5g}: the blocks hold at {:.6g} and fail at {:.6g}, {:.2g} % apart",
+        0.5 * (*report.holds + *report.fails), *report.holds, *report.fails,
+        100.0 * (*report.fails / *report.holds - 1.0));
+  }
+  if (report.fails) {
+    return fmt::format("the blocks fail already at {:.6g}, the smallest factor tried", *report.fails);
+  }
+  return report.holds
+             ? fmt::format("the blocks still hold at {:.6g}, no factor tried made them fail", *report.holds)
+             : std::string("no trial came to a verdict");
+}
+
+std::string undecided_text(const SafetyReport &report) {
+  if (report.undecided.empty()) {
+    return {};
+  }
+  return fmt::format(
+      "undecided in the limit: {} trial{} from {:.6g} to {:.6g}; the factor lies anywhere in the "
+      "bracket, a longer fos.limit may narrow it\n",
+      report.undecided.size(), report.undecided.size() == 1 ? "" : "s", report.undecided.front(),
+      report.undecided.back());
+}
+
+/// Turning about a far point or a corner moves a block's points by more than its centroid.
+std::string mechanism_text(const SafetyReport &report) {
+  std::vector<const FailingBlock *> moving;
+  double turning = 0.0;
+  for (const FailingBlock &block : report.mechanism) {
+    if (block.moves) {
+      moving.push_back(&block);
+      turning += std::abs(block.rotation);
+    }
+  }
+  if (moving.empty()) {
+    return {};
+  }
+  std::stable_sort(moving.begin(), moving.end(),
+                   [](const FailingBlock *a, const FailingBlock *b) { return a->motion > b->motion; });
+  std::string text = fmt::format(
+      "{} of {} blocks move when it fails, and turn by {:.3g} degrees on average; the farthest:\n",
+      moving.size(),
+      std::count_if(report.mechanism.begin(), report.mechanism.end(),
+                    [](const FailingBlock &b) { return !b.fixed; }),
+      turning / one_degree / static_cast<double>(moving.size()));
+  constexpr std::size_t most = 10;
+  for (std::size_t k = 0; k < std::min(most, moving.size()); ++k) {
+    const FailingBlock &block = *moving[k];
+    text += fmt::format("  {:<16} moved by ({:.3g}, {:.3g}) m, turned by {:.3g} degrees\n", block.name,
+                        block.displacement.x, block.displacement.y, block.rotation / one_degree);
+  }
+  return text;
+}
+
+std::string trial_line(const StrengthTrial &trial) {
+  return fmt::format("{:>10.6g}  {:<9} {:>9.4g} {:>9} {:>12} {:>8.2f} {:>5} {:>9.3g}{}{}\n", trial.factor,
+                     word_of(trial.verdict), trial.time, trial.steps, trial.evaluations, trial.cpu_s,
+                     trial.ranks, trial.moved, trial.decisive ? "" : "  (spare)",
+                     trial.message.empty() ? "" : "  " + trial.message);
+}
+
+JsonObject trial_object(const StrengthTrial &trial) {
+  return JsonObject()
+      .add("factor", trial.factor)
+      .add("verdict", std::string(word_of(trial.verdict)))
+      .add("decisive", trial.decisive ? 1 : 0)
+      .add("time", trial.time)
+      .add("steps", trial.steps)
+      .add("evaluations", trial.evaluations)
+      .add("cpu_s", trial.cpu_s)
+      .add("ranks", trial.ranks)
+      .add("moved", trial.moved)
+      .add("unbalanced_ratio", trial.unbalanced_ratio)
+      .add("message", trial.message)
+      .add("directory", trial.directory.string());
+}
+
+std::string json_text(const SafetyReport &report) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN(); // null
+  JsonObject object(",\n ");
+  object.add("factor", report.holds && report.fails ? 0.5 * (*report.holds + *report.fails) : none)
+      .add("holds", report.holds.value_or(none))
+      .add("fails", report.fails.value_or(none))
+      .add("tolerance", report.tolerance)
+      .add("found", report.is_found() ? 1 : 0);
+  std::vector<JsonObject> trials;
+  std::transform(report.trials.begin(), report.trials.end(), std::back_inserter(trials), trial_object);
+  std::vector<JsonObject> moving;
+  for (const FailingBlock &block : report.mechanism) {
+    if (block.moves) {
+      moving.push_back(JsonObject()
+                           .add("block", block.name)
+                           .add("x", block.displacement.x)
+                           .add("y", block.displacement.y)
+                           .add("rotation", block.rotation)
+                           .add("motion", block.motion));
+    }
+  }
+  return object.add("families", report.families)
+             .add("undecided", report.undecided)
+             .add("settled", trial_object(report.settled))
+             .add("trials", trials)
+             .add("moving", moving)
+             .text() +
+         "\n";
+}
+
+std::string trials_csv(const SafetyReport &report) {
+  std::string text =
+      "factor[-],verdict,decisive,time[s],steps,evaluations,cpu[s],ranks,moved[-],unbalanced_ratio[-]\n";
+  for (const StrengthTrial &trial : report.trials) {
+    text += fmt::format("{:.17g},{},{},{:.9g},{},{},{:.3f},{},{:.9g},{:.9g}\n", trial.factor,
+                        word_of(trial.verdict), trial.decisive ? 1 : 0, trial.time, trial.steps,
+                        trial.evaluations, trial.cpu_s, trial.ranks, trial.moved, trial.unbalanced_ratio);
+  }
+  return text;
+}
+
+std::string blocks_csv(const SafetyReport &report) {
+  std::string text = "block,moves,x[m],y[m],rotation[rad],motion[m]\n";
+  for (const FailingBlock &block : report.mechanism) {
+    text += fmt::format("{},{},{:.9g},{:.9g},{:.9g},{:.9g}\n", block.name, block.moves ? 1 : 0,
+                        block.displacement.x, block.displacement.y, block.rotation, block.motion);
+  }
+  return text;
+}
+
+} // namespace
+
+std::string to_text(const SafetyReport &report) {
+  std::string families;
+  for (const std::string &name : report.families) {
+    families += (families.empty() ? "" : ", ") + name;
+  }
+  std::string text = fmt::format("{}\n{}strengths divided: friction, cohesion and tension of {}\n",
+                                 factor_text(report), undecided_text(report), families);
+  text += mechanism_text(report);
+  const double settled_at = report.settled.factor;
+  text += fmt::format("settled state{}: t = {:.4g} s, {} steps, {} evaluations, {:.2f} CPU s\n",
+                      settled_at == 1.0 ? "" : fmt::format(" with strengths divided by {:g}", settled_at),
+                      report.settled.time, report.settled.steps, report.settled.evaluations,
+                      report.settled.cpu_s);
+  text += "    factor  verdict    time[s]     steps  evaluations   CPU[s] ranks     moved\n";
+  for (const StrengthTrial &trial : report.trials) {
+    text += trial_line(trial);
+  }
+  return text;
+}
+
+void write_safety_report(const fs::path &directory, const SafetyReport &report, const std::string &picture) {
+  write_file(directory / "fos.txt", to_text(report));
+  write_file(directory / "fos.json", json_text(report));
+  write_file(directory / "fos_trials.csv", trials_csv(report));
+  if (!report.mechanism.empty()) {
+    write_file(directory / "fos_blocks.csv", blocks_csv(report));
+    write_file(directory / "fos.svg", picture);
+  }
+}
+
+void prepare_safety_directory(const fs::path &directory, bool overwrite) {
+  const bool holds_search = fs::exists(directory / "fos.json") || fs::exists(directory / "settled") ||
+                            fs::exists(directory / "trials");
+  if (fs::exists(directory / "scene.toml") || (holds_search && !overwrite)) {
+    throw FileError(fmt::format("{} holds {} already, choose another folder with --out{}", directory.string(),
+                                holds_search ? "a search for the factor of safety" : "a run",
+                                holds_search ? " or replace it with --overwrite" : ""));
+  }
+  make_directory(directory);
+  for (const char *name : own_names) {
+    fs::remove(directory / name);
+  }
+  if (fs::is_directory(directory / "trials")) {
+    for (const fs::directory_entry &entry : fs::directory_iterator(directory / "trials")) {
+      if (fs::exists(entry.path() / "scene.toml")) { // a trial
+        fs::remove_all(entry.path());
+      }
+    }
+  }
+  make_directory(directory / "trials");
+}
+
+} // namespace gcpdda

@@ -1,0 +1,334 @@
+#include "io/scene/scene_parts.hpp"
+
+#include "base/edit_distance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace gcpdda::scene_text {
+
+namespace {
+
+using MaterialPair = std::pair<std::int32_t, std::int32_t>;
+
+class JointReader {
+public:
+  JointReader(const SceneSource &source, const MaterialIndex &materials)
+      : source_(source), materials_(&materials) {
+    const Section run = section(source.root, "run", source.faulty);
+    Vec2 gravity = RunSettings{}.gravity;
+    run.read("gravity", gravity);
+    weightless_ = run.known("gravity") && gravity == Vec2{};
+    laws_.num_materials = static_cast<std::int32_t>(materials.size());
+    laws_.of_material.assign(materials.size() * materials.size(), 0);
+  }
+
+  JointLaws read() {
+    const auto sections = named_sections(source_.root, "joint", source_.faulty, source_.faults.origins());
+    JointLaw base;
+    base.name = "default";
+    laws_.laws.push_back(base);
+    const NamedSection *base_section = nullptr;
+    for (const NamedSection &named : sections) {
+      if (named.name == "default") {
+        base_section = &named;
+      }
+    }
+    if (base_section != nullptr) {
+      read_default(base_section->section);
+    } else if (!sections.empty()) {
+      source_.faults.add(source_.root.get("joint")->source(), "'default' in [joint] is missing",
+                         "pairs of materials without a law of their own take it", "write [joint.default]");
+    }
+    for (const NamedSection &named : sections) {
+      if (&named != base_section) {
+        read_special(named);
+      }
+    }
+    return std::move(laws_);
+  }
+
+private:
+  void fault(const toml::source_region &where, std::string what, std::string why, std::string hint) {
+    source_.faults.add(where, std::move(what), std::move(why), std::move(hint));
+  }
+
+  void read_default(const Section &law) {
+    if (const toml::node *materials = law.given("materials")) {
+      fault(materials->source(), law.subject("materials") + " has no meaning",
+            "the default law is for all pairs without their own", "leave it out");
+    }
+    if (law.given("normal_stiffness") == nullptr && law.given("allowed_overlap") == nullptr) {
+      fault(law.source(), law.label() + " gives neither normal_stiffness nor allowed_overlap",
+            "exactly one of them is needed", "for example normal_stiffness = 1e9");
+    }
+    read_values(law, laws_.laws.front());
+  }
+
+  void read_special(const NamedSection &named) {
+    const Section &law = named.section;
+    const auto index = static_cast<std::int32_t>(laws_.laws.size());
+    laws_.laws.push_back(laws_.laws.front());
+    laws_.laws.back().name = named.name;
+    read_values(law, laws_.laws.back());
+    if (const toml::node *materials = law.sound("materials")) {
+      assign(law, *materials->as_array(), index);
+    } else if (law.given("materials") == nullptr && law.is_table() && !may_be_on_edges(named.name)) {
+      fault(law.source(), law.subject("materials") + " is missing",
+            "a law other than default is for one pair of materials, or for edges that name it",
+            hint_for_lone(named));
+    }
+  }
+
+  /// A law that --set makes alone has a slip in its name, most likely.
+  [[nodiscard]] std::string hint_for_lone(const NamedSection &named) const {
+    std::vector<std::string> names;
+    for (const JointLaw &law : laws_.laws) {
+      if (law.name != named.name) {
+        names.push_back(law.name);
+      }
+    }
+    const bool is_set = named.section.source().path != nullptr;
+    const std::string near = is_set ? nearest_word(named.name, names) : "";
+    return near.empty() ? "for example materials = [\"granite\", \"clay\"]"
+                        : fmt::format("did you mean '{}'?", near);
+  }
+
+  /// Blocks that are not written out here may name any law.
+  [[nodiscard]] bool may_be_on_edges(const std::string &name) const {
+    for (const char *source : {"blocks", "region"}) {
+      if (source_.root.contains(source)) {
+        return true;
+      }
+    }
+    const toml::array *blocks = source_.root["block"].as_array();
+    for (std::size_t i = 0; blocks != nullptr && i < blocks->size(); ++i) {
+      const toml::table *block = (*blocks)[i].as_table();
+      const toml::array *edges = block == nullptr ? nullptr : (*block)["edge_joints"].as_array();
+      for (std::size_t k = 0; edges != nullptr && k < edges->size(); ++k) {
+        if ((*edges)[k].value<std::string>() == name) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  void read_values(const Section &law, JointLaw &values) {
+    const toml::node *stiffness = law.given("normal_stiffness");
+    const toml::node *overlap = law.given("allowed_overlap");
+    if (stiffness != nullptr && overlap != nullptr) {
+      const Origins &origins = source_.faults.origins();
+      const bool stiffness_last = origins.order(overlap->source()) < origins.order(stiffness->source());
+      fault((stiffness_last ? stiffness : overlap)->source(),
+            law.label() + " gives both normal_stiffness and allowed_overlap", "one follows from the other",
+            "leave one of them out");
+    } else if (stiffness != nullptr) {
+      values.allowed_overlap = 0.0;
+      law.read("normal_stiffness", values.normal_stiffness);
+    } else if (overlap != nullptr) {
+      values.normal_stiffness = 0.0;
+      law.read("allowed_overlap", values.allowed_overlap);
+      if (weightless_) {
+        fault(overlap->source(), law.subject("allowed_overlap") + " has no meaning without gravity",
+              "the stiffness follows from the weight of the blocks", "give normal_stiffness instead");
+      }
+    }
+    law.read("tangential_ratio", values.tangential_ratio);
+    law.read("cohesion", values.cohesion);
+    read_angle(law, "friction_angle_deg", values.tan_friction);
+    read_strength(law, values);
+    read_dilation(law, values);
+  }
+
+  // Where a bond dilates it has broken.
+  void read_dilation(const Section &law, JointLaw &values) {
+    read_angle(law, "dilation_angle_deg", values.tan_dilation);
+    law.read("dilation_limit", values.dilation_limit);
+    if (!law.known("dilation_angle_deg") || !law.known("dilation_limit")) {
+      return;
+    }
+    const toml::node *angle = law.given("dilation_angle_deg");
+    const toml::source_region &where = angle != nullptr ? angle->source() : law.source();
+    if (values.dilates() && values.dilation_limit == 0.0) {
+      fault(where, law.subject("dilation_limit") + " is missing",
+            "no joint opens for ever: its roughness ends where the slip is as long as an asperity",
+            "for example dilation_limit = 0.01");
+    }
+    const bool has_residual = values.has_bonds || values.is_barton_bandis;
+    const double tan_friction = has_residual ? values.residual_tan_friction : values.tan_friction;
+    if (values.tan_dilation > (1.0 + 1e-12) * tan_friction) { // rounding of the tangents
+      fault(where,
+            fmt::format("{} has a dilation angle above its {}friction angle", law.label(),
+                        has_residual ? "residual " : ""),
+            "slip would do more work against the pressure than friction takes", "lower it");
+    }
+  }
+
+  static void read_angle(const Section &law, const char *key, double &tangent) {
+    if (law.sound(key) != nullptr) {
+      double degrees = 0.0;
+      law.read(key, degrees);
+      tangent = std::tan(degrees * std::numbers::pi / 180.0);
+    }
+  }
+
+  // What is not given is as in default, whose values stand in `values`; of default itself as without bonds.
+  void read_strength(const Section &law, JointLaw &values) {
+    enum class Kind { coulomb, barton_bandis };
+    Kind kind = values.is_barton_bandis ? Kind::barton_bandis : Kind::coulomb;
+    law.read_choice("joint.*", "law", kind);
+    values.is_barton_bandis = kind == Kind::barton_bandis;
+    law.read("jrc", values.roughness);
+    law.read("jcs", values.strength);
+    if (values.is_barton_bandis) {
+      read_barton_bandis(law, values);
+      return;
+    }
+    for (const char *key : {"jrc", "jcs"}) {
+      if (const toml::node *node = law.given(key)) {
+        fault(node->source(), law.subject(key) + " has no meaning for Coulomb's law",
+              "it belongs to barton-bandis", "write law = \"barton-bandis\", or leave it out");
+      }
+    }
+    values.roughness = 0.0;
+    read_bonds(law, values);
+  }
+
+  // Another law takes the residual angle of [joint.default] only where that law gives one.
+  void note_residual_of_default(const Section &law, const JointLaw &values) {
+    if (values.name == "default") {
+      residual_given_ = law.given("residual_friction_angle_deg") != nullptr;
+    }
+  }
+
+  void read_barton_bandis(const Section &law, JointLaw &values) {
+    for (const char *key : {"friction_angle_deg", "tension", "residual_cohesion"}) {
+      if (const toml::node *node = law.given(key)) {
+        fault(node->source(), law.subject(key) + " has no meaning for barton-bandis",
+              "its friction angle follows from residual_friction_angle_deg, jrc, jcs and the pressure, and "
+              "it has no bonds",
+              "leave it out");
+      }
+    }
+    for (const auto &[key, value] : {std::pair("jrc", values.roughness), std::pair("jcs", values.strength)}) {
+      if (law.given(key) == nullptr && value == 0.0) {
+        fault(law.source(), law.subject(key) + " is missing", "barton-bandis needs jrc and jcs",
+              fmt::format("for example {}", key == std::string("jrc") ? "jrc = 8.0" : "jcs = 50e6"));
+      }
+    }
+    values.tan_friction = residual_given_ ? values.residual_tan_friction : 0.0;
+    read_angle(law, "residual_friction_angle_deg", values.tan_friction);
+    values.residual_tan_friction = values.tan_friction;
+    note_residual_of_default(law, values);
+    values.has_bonds = false;
+    values.tension = 0.0;
+  }
+
+  void read_bonds(const Section &law, JointLaw &values) {
+    for (const char *key : {"tension", "residual_friction_angle_deg", "residual_cohesion"}) {
+      values.has_bonds = values.has_bonds || law.given(key) != nullptr;
+    }
+    law.read("tension", values.tension);
+    law.read("residual_cohesion", values.residual_cohesion);
+    note_residual_of_default(law, values);
+    if (!residual_given_) {
+      values.residual_tan_friction = values.tan_friction;
+    }
+    read_angle(law, "residual_friction_angle_deg", values.residual_tan_friction);
+    const auto place = [&](const char *key) {
+      return (law.given(key) != nullptr ? law.given(key)->source() : law.source());
+    };
+    if (values.residual_tan_friction > values.tan_friction) {
+      fault(place("residual_friction_angle_deg"),
+            law.label() + " has a residual friction angle above friction_angle_deg",
+            "what is left when a bond breaks is less than before", "exchange them");
+    }
+    if (values.residual_cohesion > values.cohesion) {
+      fault(place("residual_cohesion"), law.label() + " has a residual cohesion above its cohesion",
+            "what is left when a bond breaks is less than before", "exchange them");
+    }
+    if (values.tension * values.tan_friction > (1.0 + 1e-12) * values.cohesion || // rounding of the tangent
+
+        (values.tension > 0.0 && values.cohesion == 0.0)) {
+      fault(place("tension"), fmt::format("{} has a tension of {} Pa", law.label(), values.tension),
+            fmt::format(
+                "Coulomb's line with a cohesion of {} Pa ends at cohesion/tan(friction angle) = {:.6g} Pa",
+                values.cohesion, values.tan_friction > 0.0 ? values.cohesion / values.tan_friction : 0.0),
+            "lower tension or raise cohesion");
+    }
+  }
+
+  void assign(const Section &law, const toml::array &names, std::int32_t index) {
+    const auto &first = names[0].as_string()->get();
+    const auto &second = names[1].as_string()->get();
+    const std::int32_t a = find_material(*materials_, first, names[0].source(), source_.faults);
+    const std::int32_t b = find_material(*materials_, second, names[1].source(), source_.faults);
+    if (a < 0 || b < 0) {
+      return;
+    }
+    const auto [earlier, is_new] = law_of_pair_.emplace(MaterialPair(std::minmax(a, b)), law);
+    if (!is_new) {
+      fault(names.source(), fmt::format("{} is a second law for '{}' and '{}'", law.label(), first, second),
+            fmt::format("{} at {} is for them too", earlier->second.label(),
+                        source_.faults.origins().place(earlier->second.source())),
+            "keep one of them");
+      return;
+    }
+    const auto n = static_cast<std::size_t>(laws_.num_materials);
+    const auto i = static_cast<std::size_t>(a);
+    const auto j = static_cast<std::size_t>(b);
+    laws_.of_material[i * n + j] = index;
+    laws_.of_material[j * n + i] = index;
+  }
+
+  SceneSource source_;
+  const MaterialIndex *materials_;
+  bool weightless_ = false;
+  JointLaws laws_;
+  bool residual_given_ = false; ///< in default
+  std::map<MaterialPair, Section> law_of_pair_;
+};
+
+} // namespace
+
+std::optional<std::int32_t> find_joint(const SceneSource &source, const toml::node &name,
+                                       const JointLaws &joints) {
+  const std::string &text = name.as_string()->get();
+  std::vector<std::string> known;
+  for (const JointLaw &law : joints.laws) {
+    known.push_back(law.name);
+  }
+  const auto found = std::find(known.begin(), known.end(), text);
+  if (found != known.end()) {
+    return static_cast<std::int32_t>(found - known.begin());
+  }
+  const std::string near = nearest_word(text, known);
+  source.faults.add(name.source(), fmt::format("no joint is named '{}'", text), "",
+                    near.empty() ? fmt::format("add a table [joint.{}]", text)
+                                 : fmt::format("did you mean '{}'?", near));
+  return std::nullopt;
+}
+
+std::vector<std::int32_t> find_joints(const SceneSource &source, const Section &section, std::string_view key,
+                                      const JointLaws &joints) {
+  std::vector<std::int32_t> laws;
+  const toml::node *names = section.sound(key);
+  for (std::size_t i = 0; names != nullptr && i < names->as_array()->size(); ++i) {
+    if (const auto law = find_joint(source, (*names->as_array())[i], joints)) {
+      laws.push_back(*law);
+    }
+  }
+  std::sort(laws.begin(), laws.end());
+  return laws;
+}
+
+JointLaws read_joint_laws(const SceneSource &source, const MaterialIndex &materials) {
+  return JointReader(source, materials).read();
+}
+
+} // namespace gcpdda::scene_text

@@ -1,0 +1,211 @@
+#include "gcpdda/io/scene_reader.hpp"
+
+#include "io/scene/scene_keys.hpp"
+#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_sets.hpp"
+#include "io/scene/scene_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+namespace gcpdda {
+
+namespace scene_text {
+
+namespace {
+
+void expect_blocks(const SceneSource &source) {
+  for (const char *key : {"block", "wall", "pyramid"}) {
+    const toml::node *node = source.root.get(key);
+    const bool is_empty = node != nullptr && node->is_array() && node->as_array()->empty();
+    if (node != nullptr && !is_empty) {
+      return;
+    }
+  }
+  if (!source.root.contains("blocks") && !source.root.contains("region")) {
+    source.faults.add(source.root.source(), "the scene has no blocks",
+                      "at least one block, wall, pyramid, block file or region is required",
+                      "write [[block]], [[wall]], [[pyramid]], [blocks] or [region]");
+  }
+}
+
+void read_parts(const SceneSource &source, const std::string &file, Scene &scene) {
+  scene.run = read_run(source);
+  const Fidelity fidelity = scene.run.fidelity;
+  scene.places = places_of(source);
+  Materials materials(source);
+  Names names(source.faults);
+  scene.materials = materials.all();
+  scene.joints = read_joint_laws(source, materials.index());
+  scene.water = read_water(source, scene.joints);
+  expect_blocks(source);
+  scene.blocks = read_blocks(source, materials, names, fidelity, scene.joints);
+  scene.generators = read_generators(source, materials, names, fidelity, scene.blocks);
+  scene.block_file = read_block_file_table(source, materials, fidelity, file);
+  scene.region = read_region(source, materials, scene.joints, file);
+  scene.supports = read_supports(source);
+  scene.bolts = read_bolts(source, scene);
+  add_rollers(source, scene);
+  if (source.root.contains("stage")) {
+    scene.run.duration = duration_of_stages(source);
+  }
+  scene.output = read_output(source, scene.run.duration);
+  scene.monitors = read_monitors(source, scene);
+  scene.reduction = read_reduction(source, scene.joints);
+}
+
+// A block that could move keeps its state when a stage fixes it: it is held where it is then.
+void hold_where_they_are(Scene &scene, std::vector<bool> &could_move) {
+  could_move.resize(scene.blocks.size());
+  for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
+    SceneBlock &block = scene.blocks[i];
+    if (block.fixed && could_move[i]) {
+      block.fixed = false;
+      block.driven = true;
+      block.velocity = {};
+      block.velocity_table.clear();
+    }
+    could_move[i] = could_move[i] || !block.fixed;
+  }
+}
+
+/// What a reading starts from.
+struct Text {
+  std::string_view toml;
+  const std::string &file;
+  const std::vector<std::string> &sets;
+};
+
+/// The scene of a stage is that of the file with all that is set up to it; its faults are told where they are
+/// set. Moved values leave a copy of the tree that is no longer good: each stage takes a new one.
+void read_changes(const Text &text, Faults &faults, Scene &scene) {
+  std::vector<bool> could_move;
+  InSituStress stress = scene.in_situ;
+  Scene start = scene;
+  hold_where_they_are(start, could_move);
+  for (std::size_t last = 0; last < scene.stages.size(); ++last) {
+    Faults own(faults.origins());
+    auto root = parse_scene(text.toml, own);
+    for (std::size_t i = 0; i < text.sets.size(); ++i) {
+      apply_set(*root, text.sets[i], i, own);
+    }
+    toml::array *stages = (*root)["stage"].as_array();
+    bool changes = false;
+    std::optional<toml::source_region> stress_set; // in this stage
+    for (std::size_t k = 0; k <= last; ++k) {
+      const toml::table *stage = (*stages)[k].as_table();
+      toml::table *set = stage == nullptr ? nullptr : (*stages)[k].as_table()->get_as<toml::table>("set");
+      changes = set != nullptr;
+      for (auto entry = set == nullptr ? toml::table::iterator() : set->begin();
+           changes && entry != set->end(); ++entry) {
+        if (k == last && sets_stress(entry->first.str())) {
+          stress_set = entry->first.source();
+        }
+        apply_change(*root, entry->first, entry->second, own);
+      }
+    }
+    if (!changes) {
+      continue;
+    }
+    auto after = std::make_shared<Scene>();
+    const FaultyNodes faulty = check_keys(*root, own);
+    const SceneSource source{*root, faulty, own};
+    read_parts(source, text.file, *after);
+    if (stress_set) {
+      after->in_situ = read_in_situ(source, *after);
+      read_stressed_sides(source, *after);
+      if (after->in_situ.present) { // else it has been told
+        check_changed_stress(source, *stress_set, *after, stress);
+      }
+      stress = after->in_situ;
+      scene.stages[last].changes_stress = true;
+    }
+    faults.add_new(own);
+    hold_where_they_are(*after, could_move);
+    scene.stages[last].after = std::move(after);
+  }
+}
+
+SceneReading read_alone(std::string_view text, const std::string &file, const std::vector<std::string> &sets);
+
+/// A member of the ensemble is the scene with other values: what is wrong with the median of each is told
+/// where it is said to vary.
+void check_variations(const Text &text, SceneReading &reading) {
+  for (const Variation &variation : reading.scene.ensemble.variations) {
+    std::vector<std::string> sets = text.sets;
+    sets.push_back(assignment(variation, variation.quantile(0.5)));
+    for (Diagnostic &fault : read_alone(text.toml, text.file, sets).diagnostics) {
+      if (fault.severity == Severity::error) {
+        fault.where = variation.where;
+        fault.what = fmt::format("'{}' cannot vary: {}", variation.key, fault.what);
+        reading.diagnostics.push_back(fault);
+      }
+    }
+  }
+}
+
+/// The resolved scene will lie in another folder, and may be read from a third one.
+void name_from_everywhere(const Scene &scene, toml::table &root) {
+  const auto name = [](const std::string &path, toml::node *node) {
+    const std::string whole = path.empty() ? "" : std::filesystem::absolute(path).string();
+    if (!whole.empty() && whole.size() <= longest_text) {
+      *node->as_string() = whole;
+    }
+  };
+  name(scene.block_file.path, root["blocks"]["file"].node());
+  name(scene.earthquake.file, root["earthquake"]["record"].node());
+  for (std::size_t i = 0; i < scene.region.maps.size(); ++i) {
+    name(scene.region.maps[i].path, root["joint_map"][i]["file"].node());
+  }
+}
+
+SceneReading read_alone(std::string_view text, const std::string &file,
+                        const std::vector<std::string> &sets) {
+  const Origins origins(file, sets);
+  Faults faults(origins);
+  SceneReading reading;
+  reading.scene.stem = std::filesystem::path(file).stem().string();
+  if (auto root = parse_scene(text, faults)) {
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      apply_set(*root, sets[i], i, faults);
+    }
+    const FaultyNodes faulty = check_keys(*root, faults);
+    read_parts({*root, faulty, faults}, file, reading.scene);
+    reading.scene.in_situ = read_in_situ({*root, faulty, faults}, reading.scene);
+    read_stressed_sides({*root, faulty, faults}, reading.scene);
+    reading.scene.stages = read_stages({*root, faulty, faults}, reading.scene);
+    reading.scene.earthquake = read_earthquake({*root, faulty, faults}, reading.scene, file);
+    read_viscous_sides({*root, faulty, faults}, reading.scene);
+    reading.scene.ensemble = read_ensemble({*root, faulty, faults}, reading.scene);
+    read_changes({text, file, sets}, faults, reading.scene);
+    reading.diagnostics = faults.sorted();
+    if (!has_errors(reading.diagnostics)) {
+      name_from_everywhere(reading.scene, *root);
+      reading.scene.resolved = to_toml(*root, origins);
+    }
+  } else {
+    reading.diagnostics = faults.sorted();
+  }
+  return reading;
+}
+
+} // namespace
+
+} // namespace scene_text
+
+std::string assignment(const Variation &variation, double value) {
+  return fmt::format("{}={}", variation.key, value);
+}
+
+SceneReading read_scene(std::string_view text, const std::string &file,
+                        const std::vector<std::string> &sets) {
+  SceneReading reading = scene_text::read_alone(text, file, sets);
+  if (!has_errors(reading.diagnostics)) {
+    scene_text::check_variations({text, file, sets}, reading);
+  }
+  return reading;
+}
+
+} // namespace gcpdda

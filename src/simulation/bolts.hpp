@@ -1,0 +1,159 @@
+#pragma once
+
+// The bolts of a run: where they cross which blocks, and what their links do in the step.
+//
+// Every rank knows all links, as it knows the scene (250 bytes each); a rank computes those of its own
+// blocks, a link between blocks of two ranks on both from bit-equal data. The blocks of a link are ghosts of
+// each other's owners however far apart they lie. At a refresh the ranks tell each other the memory of their
+// links, so that whoever owns a block next has it; sums over links go in their order along bolts in the order
+// of the scene.
+
+#include "base/exact_sum.hpp"
+#include "dynamics/bolt_link.hpp"
+#include "gcpdda/model/scene.hpp"
+#include "gcpdda/parallel/communicator.hpp"
+#include "parallel/ghosts.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace gcpdda {
+
+struct BlockContactSum;
+
+/// A stretch of a bolt within one block, as shares of its way from head to tip.
+struct BoltPiece {
+  std::int64_t bolt = 0; ///< index into Scene::bolts
+  std::int64_t block = 0;
+  double begin = 0.0;
+  double end = 0.0;
+};
+
+/// Append the stretches of a bolt inside a simple polygon.
+void append_pieces(const Bolt &bolt, std::int64_t index, std::span<const Vec2> polygon, std::int64_t block,
+                   std::vector<BoltPiece> &pieces);
+
+/// The links of one bolt; their ends are world positions yet, not those of a block.
+/// @param pieces  of the bolt, in any order; sorted on return
+std::vector<BoltLink> links_of(const Bolt &bolt, std::int64_t index, const SupportType &support,
+                               std::vector<BoltPiece> &pieces);
+
+/// A link as a line, from halfway to the link before, or the bolt's head, to halfway to the next, or its tip.
+struct LinkLine {
+  std::uint32_t link = 0; ///< index into Bolts::links()
+  /// m; the second and third are the middle of the link as the block towards the head and the one towards the
+  /// tip carry it, and part as the joint opens and slips.
+  std::array<Vec2, 4> points;
+  LinkMemory memory;
+};
+
+/// What is written of a bolt: largest values over its links, for one bolt.
+struct BoltReport {
+  std::int64_t bolt = 0;
+  Vec2 head; ///< m
+  Vec2 tip;
+  double axial = 0.0;     ///< largest tension, N
+  double shear = 0.0;     ///< largest absolute value, N
+  double extension = 0.0; ///< m
+  double slide = 0.0;     ///< largest absolute value, m
+  std::int64_t links = 0;
+  std::int64_t yielded = 0; ///< links that have yielded, broken ones included
+  std::int64_t broken = 0;
+};
+
+/// What a link does to an owned row at the last evaluation.
+struct LinkPull {
+  std::size_t row = 0;
+  RigidDof rigid; ///< about the trial centroid
+  Mat2 gradient;  ///< on F
+};
+
+/// Energies of links, J/m.
+struct LinkEnergies {
+  ExactSum stored;
+  ExactSum dissipated;
+};
+
+class Bolts {
+public:
+  [[nodiscard]] bool empty() const { return links_.empty(); }
+  [[nodiscard]] const std::vector<BoltLink> &links() const { return links_; }
+
+  /// Put bolts of the scene in where the blocks are at t_n; what is odd about them becomes a note.
+  /// Collective.
+  /// @param system  owned and fixed rows
+  /// @param which  indices into Scene::bolts, ascending
+  void install(const Communicator &communicator, const Scene &scene, const BlockSystem &system,
+               std::span<const std::int64_t> which, Diagnostics &notes);
+  /// Take out the links for which it holds. The memory has been shared.
+  void remove(const std::function<bool(const BoltLink &)> &is_gone);
+  /// The laws of the scene from here on.
+  void take_laws(const Scene &scene);
+
+  /// Every rank learns the memory of all links. Collective.
+  void share(const Communicator &communicator);
+  /// The same without a change.
+  [[nodiscard]] std::vector<BoltLink> shared(const Communicator &communicator) const;
+  /// Owned rows that other ranks need. Collective.
+  [[nodiscard]] std::vector<FarGhost> partners(const Communicator &communicator,
+                                               const BlockSystem &system) const;
+  /// Find the rows of this rank's links, ghosts among them.
+  void connect(const BlockSystem &system);
+
+  /// Forces at the posed trial configuration; the memory moves on to it.
+  void evaluate(const BlockSystem &system);
+  /// Add them to owned rows.
+  void add_forces(const BlockSystem &system, std::span<BlockContactSum> sums) const;
+  /// What they do to F, by entry of BlockSystem::deformation of owned rows.
+  [[nodiscard]] Mat2 gradient_force(std::size_t deformation) const { return gradient_[deformation]; }
+
+  /// On the owned blocks that stay, of links from blocks that go; in the order of the links.
+  [[nodiscard]] std::vector<LinkPull> pulls_from(const std::function<bool(std::int64_t)> &goes,
+                                                 const BlockSystem &system) const;
+
+  /// Of the links at a block.
+  [[nodiscard]] std::span<const PointSpring> springs_at(std::int64_t block) const;
+
+  /// Of the links that count on this rank: as they are ...
+  void add_energies(double share, LinkEnergies &sums) const;
+  /// ... and as they would be in the posed trial configuration.
+  void add_energies_at(const BlockSystem &system, double share, LinkEnergies &sums) const;
+
+  /// Of all links, in their order, in the posed trial configuration. Collective.
+  [[nodiscard]] std::vector<LinkLine> lines(const Communicator &communicator,
+                                            const BlockSystem &system) const;
+  /// Of all bolts that have links, in their order. Collective.
+  [[nodiscard]] std::vector<BoltReport> report(const Communicator &communicator, const Scene &scene,
+                                               const BlockSystem &system) const;
+
+  /// For a checkpoint, and back.
+  static constexpr std::size_t counts_per_link = 6;
+  static constexpr std::size_t numbers_per_link = 19;
+  static void to_numbers(const std::vector<BoltLink> &links, std::vector<std::int64_t> &counts,
+                         std::vector<double> &numbers);
+  static Bolts from_numbers(std::span<const std::int64_t> counts, std::span<const double> numbers);
+
+private:
+  /// A link with an owned block.
+  struct Here {
+    std::uint32_t link = 0;
+    std::array<std::size_t, 2> rows{};
+    bool counts = false; ///< this rank tells the others of it
+  };
+  void find_ends(const Communicator &communicator, const BlockSystem &system, std::size_t first);
+  [[nodiscard]] std::array<double, 2> reach_of(std::size_t link) const;
+
+  std::vector<BoltLink> links_;
+  std::vector<LinkLaw> laws_;
+  std::vector<std::int64_t> spring_block_; ///< ascending, of each of springs_
+  std::vector<PointSpring> springs_;
+  std::vector<Here> here_;
+  std::vector<LinkForce> forces_; ///< by here_
+  std::vector<Mat2> gradient_;    ///< by entry of BlockSystem::deformation
+  bool connected_ = false;
+};
+
+} // namespace gcpdda

@@ -1,0 +1,204 @@
+// Which law a contact takes where edges belong to joint families, and what it costs where none does.
+
+#include "contact/laws/region_law.hpp"
+
+#include "contact/stiffness_bound.hpp"
+#include "gcpdda/io/scene_reader.hpp"
+#include "parallel/packing.hpp"
+#include "simulation/energy_ledger.hpp"
+#include "simulation/simulation.hpp"
+#include "support/blocks.hpp"
+#include "support/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace gcpdda::region_law_test {
+namespace {
+
+using namespace testing;
+
+constexpr std::int32_t smooth = 1;
+constexpr std::int32_t rough = 2;
+constexpr std::int32_t smooth_and_glued = 3;
+
+/// A default, and families that differ in stiffness too.
+JointLaws families() {
+  JointLaws joints = one_law(1e6, 0.9);
+  joints.laws.resize(4, joints.laws.front());
+  joints.laws[smooth].tan_friction = 0.1;
+  joints.laws[smooth].normal_stiffness = 2e6;
+  joints.laws[rough].tan_friction = 0.7;
+  joints.laws[rough].normal_stiffness = 4e6;
+  joints.laws[smooth_and_glued].tan_friction = 0.1;
+  joints.laws[smooth_and_glued].cohesion = 10.0;
+  for (JointLaw &law : joints.laws) {
+    law.is_on_edges = true;
+  }
+  return joints;
+}
+
+const std::vector<Vec2> plane = rectangle({-5.0, -1.0}, {5.0, 0.0});
+
+TEST(RegionLaw, OfTwoEdgesIsTheWeakerWhicheverBlockHasIt) {
+  const JointLaws joints = families();
+  EXPECT_EQ(joints.of_edges(-1, -1, 0), 0);
+  EXPECT_EQ(joints.of_edges(rough, -1, 0), rough);
+  EXPECT_EQ(joints.of_edges(-1, rough, 0), rough);
+  for (const auto &[a, b, weaker] : {std::tuple(smooth, rough, smooth), {smooth, smooth_and_glued, smooth}}) {
+    EXPECT_EQ(joints.of_edges(a, b, 0), weaker);
+    EXPECT_EQ(joints.of_edges(b, a, 0), weaker);
+  }
+  JointLaws alike = joints;
+  alike.laws[rough] = alike.laws[smooth];
+  EXPECT_EQ(alike.of_edges(rough, smooth, 0), smooth) << "the first in the scene";
+}
+
+// A brick on its lower face, and then on its right one: each face has a family.
+TEST(RegionLaw, OfTheEdgesThatCarryAndItsConstantsHold) {
+  const double depth = 1e-3;
+  const BlockSystem system = system_of({rectangle({0.0, -depth}, {1.0, 1.0 - depth})}, {plane});
+  for (const bool turned : {false, true}) {
+    ContactBench bench(with_edges(system, {{smooth, rough, -1, -1}, {}}), families());
+    ASSERT_TRUE(bench.candidates.pairs[0].is_mixed);
+    EXPECT_EQ(bench.candidates.plain.size(), 1U);
+    if (turned) {
+      bench.system.trial[0].r = -0.5 * std::numbers::pi;
+    }
+    bench.evaluate();
+    const JointLaw &law = bench.forces.parameters().joints.laws[turned ? rough : smooth];
+    EXPECT_EQ(bench.memory().law, turned ? rough : smooth);
+    // (2 p_n l d/H)(1 - d/(2l)) = k_n l d (1 - d/2) with l = 1 [method: flush joint on a wider face]; depth
+    // and turn are rounded.
+    const double normal = law.normal_stiffness * depth * (1.0 - 0.5 * depth);
+    EXPECT_NEAR(bench.seen.normal_force, normal, 1e-12 * normal / depth);
+    EXPECT_NEAR(bench.seen.cap, law.tan_friction * bench.seen.normal_force, 1e-9);
+  }
+}
+
+// It rolls over its edge without losing touch: the law stays until it has been away.
+TEST(RegionLaw, IsKeptAsLongAsTheRegionLives) {
+  const BlockSystem system = system_of({rectangle({-0.5, -0.5}, {0.5, 0.5})}, {plane});
+  ContactBench bench(with_edges(system, {{smooth, rough, -1, -1}, {}}), families());
+  const auto put = [&](double angle, double sunk) {
+    bench.system.trial[0] = {{0.0, 0.5 * (std::abs(std::cos(angle)) + std::abs(std::sin(angle))) - sunk},
+                             angle};
+    bench.evaluate();
+  };
+  for (int k = 0; k <= 20; ++k) { // clockwise, on to the right face
+    put(-0.025 * std::numbers::pi * k, 1e-3);
+    ASSERT_EQ(testing::memories(bench.history).size(), 1U);
+    EXPECT_EQ(bench.memory().law, smooth) << k;
+  }
+  put(-0.5 * std::numbers::pi, -1e-3);
+  EXPECT_TRUE(testing::memories(bench.history).empty());
+  put(-0.5 * std::numbers::pi, 1e-3);
+  EXPECT_EQ(bench.memory().law, rough);
+}
+
+TEST(RegionLaw, PairsWhoseEdgesLeadToOneLawAreAsWithoutFamilies) {
+  const std::vector<std::vector<Vec2>> bricks{rectangle({0.0, 0.0}, {1.0, 1.0}),
+                                              rectangle({0.0, 0.999}, {1.0, 2.0})};
+  const std::vector<std::int32_t> all_rough(4, rough);
+  const std::vector<std::int32_t> bedded{rough, -1, rough, -1};
+  const ContactBench one(with_edges(system_of(bricks, {}), {all_rough, bedded}), families());
+  EXPECT_FALSE(one.candidates.pairs[0].is_mixed);
+  EXPECT_EQ(one.candidates.pairs[0].law, rough);
+  EXPECT_EQ(one.candidates.plain.size(), 1U);
+  const ContactBench two(with_edges(system_of(bricks, {}), {bedded, bedded}), families());
+  EXPECT_TRUE(two.candidates.pairs[0].is_mixed) << "the upright sides are of the default";
+}
+
+TEST(RegionLaw, BoundTakesTheStiffestLawThatTheEdgesCanMeet) {
+  JointLaws joints = families();
+  EXPECT_EQ(stiffness_bound(joints, 0).normal, 4e6) << "an edge without a law may meet any family";
+  EXPECT_EQ(stiffness_bound(joints, 0, std::vector{smooth, smooth}).normal, 2e6) << "the weaker one holds";
+  EXPECT_EQ(stiffness_bound(joints, 0, std::vector{smooth, -1}).normal, 4e6);
+  for (JointLaw &law : joints.laws) {
+    law.is_on_edges = false;
+  }
+  EXPECT_EQ(stiffness_bound(joints, 0).normal, 1e6) << "nobody has a family";
+}
+
+TEST(EdgeJoints, TravelWithTheirRowAndCostNothingElse) {
+  const BlockSystem bare = system_of({plane, plane}, {});
+  const BlockSystem joined = with_edges(bare, {{}, {smooth, -1, rough, -1}});
+  EXPECT_TRUE(bare.edge_joint.empty());
+  Bytes bare_message;
+  Bytes message;
+  for (const std::size_t row : {0U, 1U}) {
+    pack_row(bare, row, bare_message);
+    pack_row(joined, row, message);
+  }
+  EXPECT_EQ(message.size(), bare_message.size() + 4 * sizeof(std::int32_t));
+  BlockSystem arrived;
+  unpack_rows(message, arrived);
+  EXPECT_EQ(arrived.edge_joint, joined.edge_joint);
+  EXPECT_TRUE(arrived.edge_joints(0).empty());
+  ASSERT_EQ(arrived.edge_joints(1).size(), 4U);
+  EXPECT_EQ(arrived.edge_joints(1)[2], rough);
+  keep_rows(arrived, 1);
+  EXPECT_EQ(arrived.edge_joint.size(), 4U);
+  append_row(arrived, joined, 1);
+  EXPECT_EQ(arrived.edge_joint, joined.edge_joint);
+}
+
+/// Largest |residual| of a square that bounces on one face of another one, over its energy at first.
+/// @param joints  of the edges of the lower square, from the bottom one on
+double bounce_residual(const std::string &joints, std::int32_t expected_law) {
+  const std::string toml =
+      R"([run]
+duration = 0.1
+time_step = 1e-4
+gravity = [0, 0]
+contact_damping = 0.0
+fidelity = "rigid"
+[material.rock]
+density = 2500
+[joint.default]
+normal_stiffness = 1e8
+friction_angle_deg = 0
+[joint.soft]
+normal_stiffness = 1e7
+friction_angle_deg = 0
+)" + block_toml("floor", rectangle({-1.0, -1.0}, {2.0, 0.0}), "fixed = true\nedge_joints = " + joints) +
+      block_toml("square", rectangle({0.0, 1e-3}, {1.0, 1.001}), "velocity = [0.0, -1.0, 0.0]");
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  EXPECT_TRUE(simulation.candidates().pairs.at(0).is_mixed);
+  EnergyLedger ledger(simulation);
+  double largest = 0.0;
+  bool has_touched = false;
+  while (!simulation.finished()) {
+    simulation.step();
+    if (!simulation.candidates().pairs.empty() && simulation.history().has_plain(0)) {
+      EXPECT_EQ(simulation.history().plain[0].law, expected_law);
+      has_touched = true;
+    }
+    largest = std::max(largest, std::abs(ledger.row(simulation).residual));
+  }
+  EXPECT_TRUE(has_touched);
+  EXPECT_GT(simulation.blocks().velocity[0].u.y, 0.9) << "it has bounced";
+  return largest / (0.5 * 2500.0);
+}
+
+// The ledger is off by the square of omega dt = 0.02 at most, of the stiffer law.
+TEST(EdgeJoints, EachRegionHasTheEnergyOfItsOwnLaw) {
+  EXPECT_LT(bounce_residual(R"(["soft", "", "", ""])", 0), 0.02 * 0.02);
+  EXPECT_LT(bounce_residual(R"(["", "", "soft", ""])", 1), 0.02 * 0.02);
+}
+
+TEST(EdgeJoints, TurnRoundWithAnOutlineGivenClockwise) {
+  const std::string head = rock_toml(1.0, 0.1, "a") + "[joint.s]\ncohesion = 1\n[joint.r]\ncohesion = 2\n";
+  const Scene scene =
+      scene_of(head + block_toml("a", {{0, 0}, {1, 0}, {1, 1}}, "edge_joints = [\"s\", \"r\", \"\"]") +
+               block_toml("b", {{0, 0}, {1, 1}, {1, 0}}, "edge_joints = [\"\", \"r\", \"s\"]"));
+  EXPECT_EQ(scene.blocks[0].edge_joint, (std::vector<std::int32_t>{1, 2, -1}));
+  EXPECT_EQ(scene.blocks[1].vertices, scene.blocks[0].vertices);
+  EXPECT_EQ(scene.blocks[1].edge_joint, scene.blocks[0].edge_joint);
+}
+
+} // namespace
+} // namespace gcpdda::region_law_test

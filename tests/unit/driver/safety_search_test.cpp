@@ -1,0 +1,169 @@
+// Which factors a search for the factor of safety tries.
+
+#include "driver/safety_factor.hpp"
+
+#include "unit/scene_texts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+namespace gcpdda::safety_search_test {
+namespace {
+
+/// Blocks that hold below `limit`, and say nothing within `fog` of it.
+Verdict verdict_at(double factor, double limit, double fog = 0.0) {
+  return std::abs(factor - limit) < fog ? Verdict::undecided
+         : factor < limit               ? Verdict::settled
+                                        : Verdict::failed;
+}
+
+struct Outcome {
+  SafetySearch search;
+  std::map<double, Verdict> tried;
+  int rounds = 0;
+};
+
+Outcome search(const StrengthReduction &reduction, double limit, double fog, std::size_t at_once) {
+  Outcome outcome;
+  const TrialVerdicts known = [&](double factor) -> std::optional<Verdict> {
+    const auto found = outcome.tried.find(factor);
+    return found == outcome.tried.end() ? std::nullopt : std::optional(found->second);
+  };
+  for (std::vector<double> next = next_factors(reduction, known, at_once); !next.empty();
+       next = next_factors(reduction, known, at_once)) {
+    EXPECT_LE(next.size(), at_once);
+    EXPECT_EQ(next.front(), follow(reduction, known).next) << "what is asked for comes first";
+    for (const double factor : next) {
+      EXPECT_TRUE(outcome.tried.emplace(factor, verdict_at(factor, limit, fog)).second) << "no trial twice";
+    }
+    ++outcome.rounds;
+  }
+  outcome.search = follow(reduction, known);
+  return outcome;
+}
+
+TEST(SafetySearch, BracketsTheLimit) {
+  StrengthReduction reduction;
+  reduction.tolerance = 0.002;
+  for (const double limit : {0.51, 1.0, 1.4534, 3.99}) {
+    const Outcome found = search(reduction, limit, 0.0, 1);
+    ASSERT_TRUE(found.search.holds && found.search.fails);
+    EXPECT_LT(*found.search.holds, limit);
+    EXPECT_GE(*found.search.fails, limit);
+    EXPECT_LE(*found.search.fails - *found.search.holds, 0.002 * *found.search.holds);
+    EXPECT_EQ(found.search.decisive.size(), found.tried.size()) << "one at a time tries nothing in vain";
+    EXPECT_LE(found.tried.size(), 2 + static_cast<std::size_t>(std::ceil(std::log2(3.5 / (0.002 * 0.5)))));
+  }
+}
+
+TEST(SafetySearch, IsTheSameForAnyNumberOfTrialsAtOnce) {
+  StrengthReduction reduction;
+  for (const double fog : {0.0, 0.05}) {
+    const Outcome alone = search(reduction, 1.4534, fog, 1);
+    for (const std::size_t at_once : {2U, 3U, 4U, 7U}) {
+      const Outcome together = search(reduction, 1.4534, fog, at_once);
+      EXPECT_EQ(together.search.holds, alone.search.holds);
+      EXPECT_EQ(together.search.fails, alone.search.fails);
+      EXPECT_EQ(together.search.undecided, alone.search.undecided);
+      EXPECT_EQ(together.search.decisive, alone.search.decisive);
+    }
+    EXPECT_LE(search(reduction, 1.4534, fog, 3).rounds, (alone.rounds + 2) / 2) << "two levels in a round";
+  }
+}
+
+TEST(SafetySearch, KeepsWhatIsUndecidedInTheBracket) {
+  StrengthReduction reduction;
+  const Outcome found = search(reduction, 1.4534, 0.05, 1);
+  ASSERT_FALSE(found.search.undecided.empty());
+  EXPECT_LE(*found.search.holds, 1.4034);
+  EXPECT_GE(*found.search.fails, 1.5034);
+  EXPECT_NEAR(*found.search.holds, 1.4034, 0.015) << "as near as the tolerance asks for";
+  EXPECT_NEAR(*found.search.fails, 1.5034, 0.015);
+  for (const double factor : found.search.undecided) {
+    EXPECT_EQ(verdict_at(factor, 1.4534, 0.05), Verdict::undecided);
+  }
+}
+
+TEST(SafetySearch, EndsWhereTheEndsDoNotBracketIt) {
+  const StrengthReduction reduction;
+  const Outcome weak = search(reduction, 0.3, 0.0, 4);
+  EXPECT_FALSE(weak.search.holds);
+  EXPECT_EQ(weak.search.fails, reduction.from);
+  const Outcome strong = search(reduction, 9.0, 0.0, 1);
+  EXPECT_EQ(strong.search.holds, reduction.to);
+  EXPECT_FALSE(strong.search.fails);
+}
+
+Scene staged_scene() {
+  Scene scene;
+  scene.joints.laws.resize(3);
+  for (JointLaw &law : scene.joints.laws) {
+    law.tan_friction = 0.8;
+    law.residual_tan_friction = 0.6;
+    law.cohesion = 4e5;
+    law.residual_cohesion = 1e5;
+    law.tension = 2e5;
+    law.tan_dilation = 0.35;
+    law.dilation_limit = 0.01;
+  }
+  scene.joints.laws[2].is_barton_bandis = true;
+  scene.joints.laws[2].roughness = 10.0;
+  scene.joints.laws[2].strength = 5e7;
+  scene.stages.resize(4);
+  scene.stages[0].kind = StageKind::settle;
+  scene.stages[0].duration = 7.0;
+  scene.stages[1].kind = StageKind::change;
+  auto after = std::make_shared<Scene>(scene);
+  after->joints.laws[0].cohesion = 8e5;
+  scene.stages[1].after = after;
+  scene.stages[2].kind = StageKind::excavate;
+  scene.stages[3].kind = StageKind::run;
+  return scene;
+}
+
+TEST(WeakenedScene, DividesTheStrengthThatIsInForce) {
+  Scene scene = staged_scene();
+  scene.reduction.families = {0, 2};
+  const Scene trial = weakened_scene(scene, 2.0);
+  ASSERT_EQ(trial.stages.size(), 4U) << "settle, what changes at once, and the trial in place of the run";
+  EXPECT_EQ(trial.stages[2].kind, StageKind::excavate);
+  EXPECT_TRUE(trial.stages[3].until_verdict);
+  EXPECT_EQ(trial.stages[3].duration, 7.0);
+  const std::vector<JointLaw> &laws = trial.stages[3].after->joints.laws;
+  EXPECT_EQ(laws[0].tan_friction, 0.4);
+  EXPECT_EQ(laws[0].residual_tan_friction, 0.3);
+  EXPECT_EQ(laws[0].cohesion, 4e5) << "half of what the change has set";
+  EXPECT_EQ(laws[0].tension, 1e5);
+  EXPECT_EQ(laws[0].residual_cohesion, 0.5e5);
+  EXPECT_EQ(laws[1].tan_friction, 0.8) << "not chosen";
+  EXPECT_EQ(laws[1].cohesion, 4e5);
+  const JointLaw &whole = scene.joints.laws[2];
+  for (const double stress : {1e4, 5e5, 1e7, 1e8}) {
+    EXPECT_DOUBLE_EQ(laws[2].tan_friction_at(stress), 0.5 * whole.tan_friction_at(stress));
+  }
+}
+
+TEST(WeakenedScene, DilatesNoMoreThanItsFrictionAllows) {
+  const std::vector<JointLaw> laws = weakened_scene(staged_scene(), 2.0).stages.back().after->joints.laws;
+  EXPECT_EQ(laws[0].tan_dilation, 0.35);
+  EXPECT_EQ(weakened_scene(staged_scene(), 4.0).stages.back().after->joints.laws[0].tan_dilation, 0.2);
+}
+
+// What is said of [fos].
+TEST(SafetySearch, FaultsAreToldAllAtOnce) {
+  const std::string text = testing::small_scene + R"([fos]
+families = ["defalt", "default"]
+from = 2
+to = 1.5
+)";
+  const std::vector<std::string> expected{
+      "s.toml:12:13: error: no joint is named 'defalt', did you mean 'default'?",
+      "s.toml:14:6: error: 'to' in [fos] is 1.5 and from is 2, the factor is searched from the one to the "
+      "other, exchange them"};
+  EXPECT_EQ(testing::messages(read_scene(text, "s.toml", {})), expected);
+}
+
+} // namespace
+} // namespace gcpdda::safety_search_test
