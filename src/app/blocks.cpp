@@ -8,6 +8,7 @@
 #include "blockgen/joint_map.hpp"
 #include "blockgen/quality.hpp"
 #include "blockgen/region_cutter.hpp"
+#include "gcpdda/blockgen/region_blocks.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "geometry/polygon.hpp"
 #include "io/blocks/block_file.hpp"
@@ -285,7 +286,7 @@ void prepare_region(const Communicator &world, Scene &scene) {
   if (!faults.empty()) {
     throw SceneError(faults);
   }
-  scene.region_blocks = std::make_shared<RegionCutter>(scene);
+  cut_region(scene);
 }
 
 int cut_blocks(const Communicator &world, const Scene &scene, const BlocksOptions &options) {

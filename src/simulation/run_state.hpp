@@ -5,6 +5,7 @@
 #include "base/phase_timer.hpp"
 #include "contact/contact_forces.hpp"
 #include "dynamics/scheme.hpp"
+#include "gcpdda/base/scene_error.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "io/checkpoint/checkpoint.hpp"
@@ -17,23 +18,9 @@
 
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
 namespace gcpdda {
-
-/// A scene that cannot be run (exit code 3); what it says goes to people.
-class SceneError : public std::runtime_error {
-public:
-  explicit SceneError(Diagnostics diagnostics)
-      : std::runtime_error(diagnostics.empty() ? "bad scene" : to_string(diagnostics.front())),
-        diagnostics_(std::move(diagnostics)) {}
-  [[nodiscard]] const Diagnostics &diagnostics() const { return diagnostics_; }
-
-private:
-  Diagnostics diagnostics_;
-};
 
 /// Counts of this rank since the start.
 struct Counters {

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "gcpdda/base/diagnostic.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace gcpdda {
+
+/// A scene that cannot be run (exit code 3); what it says goes to people.
+class SceneError : public std::runtime_error {
+public:
+  explicit SceneError(Diagnostics diagnostics)
+      : std::runtime_error(diagnostics.empty() ? "bad scene" : to_string(diagnostics.front())),
+        diagnostics_(std::move(diagnostics)) {}
+  [[nodiscard]] const Diagnostics &diagnostics() const { return diagnostics_; }
+
+private:
+  Diagnostics diagnostics_;
+};
+
+} // namespace gcpdda
