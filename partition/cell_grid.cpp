@@ -1,3 +1,5 @@
+// The grid of background cells (domain_map.hpp).
+
 #include "partition/domain_map.hpp"
 
 #include "base/check.hpp"

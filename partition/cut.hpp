@@ -1,5 +1,7 @@
 #pragma once
 
+// The ways to cut the graph of cells into parts: METIS, or a space-filling curve.
+
 #include "partition/domain_map.hpp"
 
 #include <cstdint>

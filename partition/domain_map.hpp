@@ -1,5 +1,7 @@
 #pragma once
 
+// Background cells and the rank that owns each.
+
 #include "geometry/aabb.hpp"
 
 #include <cstdint>

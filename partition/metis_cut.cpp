@@ -1,3 +1,5 @@
+// Cells cut by METIS (cut.hpp).
+
 #include "partition/cut.hpp"
 
 #include "base/check.hpp"

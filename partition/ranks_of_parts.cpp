@@ -1,3 +1,5 @@
+// Which part goes to which rank (domain_map.hpp).
+
 #include "partition/domain_map.hpp"
 
 #include <algorithm>

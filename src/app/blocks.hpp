@@ -1,5 +1,7 @@
 #pragma once
 
+// The program `gcpdda blocks`: cut the region of a scene and tell of its blocks.
+
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Many faults of one kind in one line.
+
 #include "gcpdda/base/diagnostic.hpp"
 
 namespace gcpdda {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Files that the root reads for all ranks.
+
 #include "gcpdda/parallel/communicator.hpp"
 
 #include <cstdint>

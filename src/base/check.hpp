@@ -1,5 +1,7 @@
 #pragma once
 
+// Promises between functions, and the errors that end a program.
+
 #include <stdexcept>
 
 namespace gcpdda {

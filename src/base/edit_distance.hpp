@@ -1,5 +1,7 @@
 #pragma once
 
+// Words that are near each other, for "did you mean".
+
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Memory that has been freed goes back to the system.
+
 #include <algorithm>
 #include <cstddef>
 #include <fstream>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Numbers of blocks: global ids and local rows as types that cannot be mixed up.
+
 #include <compare>
 #include <cstdint>
 #include <limits>

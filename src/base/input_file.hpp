@@ -1,5 +1,7 @@
 #pragma once
 
+// The one way in which files that a user names are opened and read.
+
 #include <cerrno>
 #include <cstdint>
 #include <cstring>

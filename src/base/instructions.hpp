@@ -1,5 +1,7 @@
 #pragma once
 
+// The instruction sets that kernels are compiled for.
+
 #include <cstddef>
 
 namespace gcpdda {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Wall time of the phases of a step.
+
 #include <array>
 #include <chrono>
 #include <cstddef>

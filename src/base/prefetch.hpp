@@ -1,5 +1,7 @@
 #pragma once
 
+// Memory that is read soon.
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The picture of the blocks of a region (SVG).
+
 #include "blockgen/quality.hpp"
 #include "gcpdda/model/scene.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Which joint law each edge of a block has.
+
 #include "blockgen/traces.hpp"
 
 #include <span>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Faces that are too small or too thin become part of a neighbour.
+
 #include "blockgen/planar_graph.hpp"
 #include "geometry/aabb.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Joint maps: traces from GeoJSON or CSV text.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 

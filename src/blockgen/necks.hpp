@@ -1,5 +1,7 @@
 #pragma once
 
+// Blocks that hang together by a narrow neck are cut there.
+
 #include "blockgen/planar_graph.hpp"
 
 #include <vector>

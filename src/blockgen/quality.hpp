@@ -1,5 +1,7 @@
 #pragma once
 
+// How good the blocks of a region are: areas, widths, angles.
+
 #include "base/exact_sum.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "geometry/mean_width.hpp"

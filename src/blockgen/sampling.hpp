@@ -1,5 +1,7 @@
 #pragma once
 
+// Spacings, lengths and dips of joints, drawn at random.
+
 #include "gcpdda/model/rock_region.hpp"
 #include "model/draw.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// One tile of a region, cut into blocks.
+
 #include "blockgen/edge_joints.hpp"
 #include "blockgen/face_merger.hpp"
 #include "blockgen/region_cutter.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// The traces of joint sets, faults and maps within a box.
+
 #include "gcpdda/model/rock_region.hpp"
 #include "geometry/aabb.hpp"
 

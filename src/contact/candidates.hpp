@@ -1,5 +1,7 @@
 #pragma once
 
+// Pairs of blocks that may touch until the next refresh, in groups and by the way they are computed.
+
 #include "base/ids.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "model/block_system.hpp"

@@ -1,3 +1,5 @@
+// Pairs of blocks whose boxes meet (candidates.hpp).
+
 #include "contact/candidates.hpp"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 #pragma once
 
+// How the two blocks of a pair move against each other at a point.
+
 #include "contact/contact_forces.hpp"
 
 #include <algorithm>

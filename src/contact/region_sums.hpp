@@ -1,5 +1,7 @@
 #pragma once
 
+// What one touching region of a pair does to its two blocks.
+
 #include "base/ids.hpp"
 #include "gcpdda/geometry/mat2.hpp"
 #include "model/block_system.hpp"

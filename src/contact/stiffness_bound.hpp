@@ -1,5 +1,7 @@
 #pragma once
 
+// The stiffest contact that a block can have.
+
 #include "gcpdda/model/joint_law.hpp"
 
 #include <cstdint>

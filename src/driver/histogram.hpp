@@ -1,5 +1,7 @@
 #pragma once
 
+// The picture of an ensemble: how often which factor of safety was found.
+
 #include "io/results/ensemble_report.hpp"
 
 #include <string>

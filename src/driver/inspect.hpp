@@ -1,5 +1,7 @@
 #pragma once
 
+// The program `gcpdda inspect`: what a scene will take and what it will do, without a run.
+
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The program `gcpdda restart`: a run goes on from its newest checkpoint.
+
 #include "gcpdda/io/result_manifest.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// The log of a run: on the terminal and in run.log.
+
 #include "gcpdda/base/diagnostic.hpp"
 
 #include <chrono>

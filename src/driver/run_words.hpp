@@ -1,5 +1,7 @@
 #pragma once
 
+// Sentences of the log on faults, progress, laws, bolts and verdicts.
+
 #include "gcpdda/io/result_files.hpp"
 #include "simulation/simulation.hpp"
 

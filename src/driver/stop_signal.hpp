@@ -1,5 +1,7 @@
 #pragma once
 
+// SIGUSR1 asks a run to stop with a checkpoint.
+
 namespace gcpdda {
 
 /// From now on SIGUSR1 does not end the process: a run writes a checkpoint after its current step and stops.

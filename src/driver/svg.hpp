@@ -1,5 +1,7 @@
 #pragma once
 
+// Pictures (SVG) of the blocks of a model and of how they fail.
+
 #include "gcpdda/geometry/vec2.hpp"
 #include "io/results/safety_report.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// The largest eigenvalue of a small matrix, for the stability of a scheme.
+
 #include <span>
 
 namespace gcpdda {

@@ -1,3 +1,5 @@
+// Rows on which only contacts and gravity act, in lanes (block_solve.hpp).
+
 #include "dynamics/block_solve.hpp"
 
 #include "base/prefetch.hpp"

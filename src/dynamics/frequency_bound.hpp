@@ -1,5 +1,7 @@
 #pragma once
 
+// An upper bound of the contact frequencies of a block, from which the time step follows.
+
 #include "model/block_system.hpp"
 
 #include <span>

@@ -1,3 +1,5 @@
+// Works of the forces of an evaluation on the half step around it (integrate.hpp).
+
 #include "dynamics/lanes/block_lanes.hpp"
 
 namespace gcpdda {

@@ -1,5 +1,7 @@
 #pragma once
 
+// The step of the blocks: predict trial configurations, solve each block's own system, update.
+
 #include "base/instructions.hpp"
 #include "dynamics/scheme.hpp"
 #include "model/block_system.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Boxes along the axes.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <algorithm>

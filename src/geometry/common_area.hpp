@@ -1,5 +1,7 @@
 #pragma once
 
+// The area that two polygons have in common.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <span>

@@ -1,5 +1,7 @@
 #pragma once
 
+// A tree of boxes over the edges of a polygon, for outlines with many vertices.
+
 #include "geometry/aabb.hpp"
 
 #include <bit>

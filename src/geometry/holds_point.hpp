@@ -1,5 +1,7 @@
 #pragma once
 
+// Whether a point lies in a polygon.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <span>

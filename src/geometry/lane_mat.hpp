@@ -1,5 +1,7 @@
 #pragma once
 
+// 2x2 matrices, one in each lane.
+
 #include "base/lanes.hpp"
 #include "gcpdda/geometry/mat2.hpp"
 

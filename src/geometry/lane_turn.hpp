@@ -1,5 +1,7 @@
 #pragma once
 
+// Small rotations, one in each lane.
+
 #include "base/lanes.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 

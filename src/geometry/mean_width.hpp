@@ -1,5 +1,7 @@
 #pragma once
 
+// The mean width of a polygon, which is small for slivers.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <span>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Area, moments, widths and soundness of polygons.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <span>

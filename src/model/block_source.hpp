@@ -1,5 +1,7 @@
 #pragma once
 
+// What makes the blocks of a scene share by share, so that no rank holds them all.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 

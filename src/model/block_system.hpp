@@ -1,5 +1,7 @@
 #pragma once
 
+// The state of the blocks of one rank as plain arrays by field: owned rows, ghosts, fixed blocks.
+
 #include "base/ids.hpp"
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/geometry/vec2.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// What contacts remember from one evaluation to the next, by candidate pair and region.
+
 #include "base/ids.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 

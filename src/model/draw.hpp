@@ -1,5 +1,7 @@
 #pragma once
 
+// Random numbers that depend on their address alone, and distributions that every compiler draws alike.
+
 #include "model/fingerprint.hpp"
 
 #include <cstdint>

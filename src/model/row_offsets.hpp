@@ -1,5 +1,7 @@
 #pragma once
 
+// Where the entries of each row begin in an array that holds those of all rows one after the other.
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The normal distribution, and what a count of trials says of a probability.
+
 #include <cstdint>
 #include <span>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Joint stiffness from an allowed overlap, and sizes of a model that it follows from.
+
 #include "gcpdda/model/scene.hpp"
 
 #include <limits>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Blocks move to the rank whose cell holds their centroid, with the memory of their contacts.
+
 #include "gcpdda/parallel/communicator.hpp"
 #include "model/block_system.hpp"
 #include "model/contact_history.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Rows of blocks as bytes of a message, and back.
+
 #include "gcpdda/parallel/communicator.hpp"
 #include "model/block_system.hpp"
 

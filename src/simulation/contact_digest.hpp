@@ -1,5 +1,7 @@
 #pragma once
 
+// What frames and histories tell of contacts, from one pass over their details.
+
 #include "contact/contact_forces.hpp"
 
 #include <array>

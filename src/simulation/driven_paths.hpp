@@ -1,5 +1,7 @@
 #pragma once
 
+// Driven blocks whose path leads into others.
+
 #include "gcpdda/model/scene.hpp"
 #include "model/block_system.hpp"
 

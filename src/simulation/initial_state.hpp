@@ -1,5 +1,7 @@
 #pragma once
 
+// The consistent initial state of a run.
+
 #include "simulation/run_state.hpp"
 
 namespace gcpdda {

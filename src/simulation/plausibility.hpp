@@ -1,5 +1,7 @@
 #pragma once
 
+// Values that are hardly meant: outside what rock, soil, concrete, steel or masonry have.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 

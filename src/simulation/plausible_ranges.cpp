@@ -1,3 +1,5 @@
+// The table of plausible values (plausibility.hpp).
+
 #include "simulation/plausibility.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Blocks cut out of a region, on their way to the ranks of their ids.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"

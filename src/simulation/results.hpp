@@ -1,5 +1,7 @@
 #pragma once
 
+// Rows of frames, histories and checkpoints from the state of a run.
+
 #include "gcpdda/io/result_files.hpp"
 #include "simulation/simulation.hpp"
 

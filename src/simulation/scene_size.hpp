@@ -1,5 +1,7 @@
 #pragma once
 
+// What a scene will take, judged before the work.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"

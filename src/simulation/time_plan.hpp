@@ -1,5 +1,7 @@
 #pragma once
 
+// The steps of a run and when its outputs are due.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 

@@ -232,6 +232,25 @@ TEST(Includes, OfPublicHeadersArePublic) {
   EXPECT_GE(found, 10U);
 }
 
+/// A file opens with what it is for: a comment, or as a source the header of its own name.
+bool opens_with_its_purpose(const std::string &path, const std::string &text) {
+  if (path.ends_with(".hpp")) {
+    return text.starts_with("#pragma once\n\n//");
+  }
+  const std::vector<Include> includes = includes_in(text);
+  const std::string own = fs::path(path).stem().string() + ".hpp";
+  return text.starts_with("//") || (!includes.empty() && fs::path(includes.front().header).filename() == own);
+}
+
+TEST(Files, OpenWithTheirPurpose) {
+  EXPECT_TRUE(opens_with_its_purpose("a/b.cpp", "#include \"a/b.hpp\"\n"));
+  EXPECT_FALSE(opens_with_its_purpose("a/b.cpp", "#include \"a/c.hpp\"\n"));
+  EXPECT_FALSE(opens_with_its_purpose("a/b.hpp", "#pragma once\n\n#include <vector>\n"));
+  for (const auto &[path, text] : sources()) {
+    EXPECT_TRUE(opens_with_its_purpose(path, text)) << path;
+  }
+}
+
 struct Planted {
   const char *path;
   const char *line;

@@ -1,5 +1,7 @@
 #pragma once
 
+// Messages to people: what, where, why, and what to try.
+
 #include <string>
 #include <vector>
 

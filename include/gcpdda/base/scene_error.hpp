@@ -1,5 +1,7 @@
 #pragma once
 
+// The exception that lists what is wrong with a scene.
+
 #include "gcpdda/base/diagnostic.hpp"
 
 #include <stdexcept>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Regions of rock that are cut into blocks.
+
 #include "gcpdda/model/scene.hpp"
 
 namespace gcpdda {

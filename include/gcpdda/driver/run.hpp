@@ -1,5 +1,7 @@
 #pragma once
 
+// A run from its scene to its result folder.
+
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// A run that its caller steps and looks at.
+
 #include "gcpdda/base/scene_error.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/model/scene.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// 2x2 matrices.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 namespace gcpdda {

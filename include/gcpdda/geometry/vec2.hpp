@@ -1,5 +1,7 @@
 #pragma once
 
+// Vectors in the plane.
+
 #include <cmath>
 
 namespace gcpdda {

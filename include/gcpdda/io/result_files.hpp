@@ -1,5 +1,7 @@
 #pragma once
 
+// The files of a result folder: frames, histories, summary.
+
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/io/result_manifest.hpp"
 #include "gcpdda/model/scene.hpp"

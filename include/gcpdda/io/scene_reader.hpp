@@ -1,5 +1,7 @@
 #pragma once
 
+// From TOML text to a scene.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Ground motion and the sides through which waves leave.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/in_situ.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// The stress that rock is under before anything is done to it.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/geometry/vec2.hpp"

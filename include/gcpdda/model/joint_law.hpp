@@ -1,5 +1,7 @@
 #pragma once
 
+// Contact laws of families of joints, and which of them a pair of edges or materials has.
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

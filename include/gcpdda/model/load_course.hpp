@@ -1,5 +1,7 @@
 #pragma once
 
+// What a load is multiplied by in the course of time.
+
 #include <algorithm>
 #include <cstddef>
 #include <limits>

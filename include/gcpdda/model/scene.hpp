@@ -1,5 +1,7 @@
 #pragma once
 
+// The whole input of a run as plain data.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/earthquake.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Water tables and pressures.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <cstdint>

@@ -1,5 +1,7 @@
 #pragma once
 
+// The only way to MPI: communicators, collectives, messages, and its beginning and end.
+
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

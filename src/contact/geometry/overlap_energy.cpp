@@ -1,3 +1,5 @@
+// The energy of an overlap (overlap.hpp).
+
 #include "contact/geometry/overlap.hpp"
 
 #include "contact/geometry/convex_cut.hpp"

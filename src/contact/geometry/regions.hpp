@@ -1,5 +1,7 @@
 #pragma once
 
+// The connected pieces of the overlap of two blocks.
+
 #include "contact/geometry/overlap.hpp"
 
 #include <cstddef>

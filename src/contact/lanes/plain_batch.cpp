@@ -1,3 +1,5 @@
+// The kernels of plain_batch.hpp for the instruction set of the build.
+
 #include "base/lanes_of_build.hpp"
 
 #include "contact/lanes/plain_kernel.hpp"

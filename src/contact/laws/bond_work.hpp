@@ -1,5 +1,7 @@
 #pragma once
 
+// A bond of the pair at hand during an evaluation (contact_forces.hpp, bonds.hpp).
+
 #include "contact/contact_forces.hpp"
 #include "contact/laws/bonds.hpp"
 #include "contact/pair_motion.hpp"

@@ -1,3 +1,5 @@
+// The kernels of block_lanes.hpp for the instruction set of the build.
+
 #include "base/lanes_of_build.hpp"
 
 #include "dynamics/lanes/block_kernel.hpp"

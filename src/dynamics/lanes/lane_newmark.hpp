@@ -1,5 +1,7 @@
 #pragma once
 
+// The update of velocity and displacement, for as many blocks at a time as there are lanes.
+
 #include "base/lanes.hpp"
 #include "dynamics/scheme.hpp"
 

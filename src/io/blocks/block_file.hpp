@@ -1,5 +1,7 @@
 #pragma once
 
+// Blocks in an HDF5 file, of which each rank reads its share.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// The datasets of a block file and the first look at one.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 

@@ -1,3 +1,5 @@
+// Block files written (block_file.hpp).
+
 #include "io/blocks/block_file.hpp"
 
 #include "base/check.hpp"

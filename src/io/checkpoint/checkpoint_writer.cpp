@@ -1,3 +1,5 @@
+// Checkpoints written (checkpoint.hpp).
+
 #include "gcpdda/io/result_files.hpp"
 #include "io/checkpoint/checkpoint_layout.hpp"
 #include "io/checkpoint/checkpoint_seal.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Files that appear under their name only when they are whole and on the disk.
+
 #include <cstdint>
 #include <filesystem>
 #include <string>

@@ -1,5 +1,7 @@
 #pragma once
 
+// HDF5 files that all ranks write together.
+
 #include "gcpdda/parallel/communicator.hpp"
 #include "io/hdf5/hdf5_handle.hpp"
 

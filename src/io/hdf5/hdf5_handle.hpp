@@ -1,5 +1,7 @@
 #pragma once
 
+// Owners of HDF5 handles.
+
 #include "base/check.hpp"
 
 #include <hdf5.h>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reading HDF5 files on one rank.
+
 #include "gcpdda/parallel/communicator.hpp"
 #include "io/hdf5/hdf5_handle.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Names of files with a number.
+
 #include <algorithm>
 #include <cstdint>
 #include <optional>

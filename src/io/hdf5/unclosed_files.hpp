@@ -1,5 +1,7 @@
 #pragma once
 
+// HDF5 files that could not be closed.
+
 namespace gcpdda {
 
 /// Whether HDF5 failed to close a file on this rank (its last bytes found no place). It then still counts the

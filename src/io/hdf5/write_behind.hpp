@@ -1,5 +1,7 @@
 #pragma once
 
+// Closing and publishing of files beside the run.
+
 #include <functional>
 #include <future>
 

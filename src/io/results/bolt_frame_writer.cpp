@@ -1,3 +1,5 @@
+// Frames of bolts (result_files.hpp).
+
 #include "gcpdda/io/result_files.hpp"
 
 #include "io/hdf5/hdf5_collective_file.hpp"

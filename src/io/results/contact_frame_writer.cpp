@@ -1,3 +1,5 @@
+// Frames of contacts (result_files.hpp).
+
 #include "gcpdda/io/result_files.hpp"
 
 #include "io/results/frame_strips.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// What became of the members of an ensemble, and the files that tell of it.
+
 #include "gcpdda/model/ensemble.hpp"
 #include "model/statistics.hpp"
 

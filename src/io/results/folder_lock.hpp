@@ -1,5 +1,7 @@
 #pragma once
 
+// One run at a time in a result folder.
+
 #include <filesystem>
 
 namespace gcpdda {

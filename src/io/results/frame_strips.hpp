@@ -1,5 +1,7 @@
 #pragma once
 
+// The rows of a frame on their way from the ranks that have them to those that write them.
+
 #include "gcpdda/io/result_files.hpp"
 
 #include <cstdint>

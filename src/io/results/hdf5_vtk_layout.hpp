@@ -1,5 +1,7 @@
 #pragma once
 
+// The layout of VTKHDF files.
+
 #include "io/hdf5/hdf5_collective_file.hpp"
 
 #include <array>

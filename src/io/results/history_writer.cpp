@@ -1,3 +1,5 @@
+// Histories as CSV (result_files.hpp).
+
 #include "gcpdda/io/result_files.hpp"
 
 #include "base/check.hpp"

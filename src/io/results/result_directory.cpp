@@ -1,3 +1,5 @@
+// The folder of a run: made, taken up again, recognised (result_files.hpp).
+
 #include "gcpdda/io/result_files.hpp"
 
 #include "base/check.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Whether two runs have the same results, to the byte.
+
 #include <array>
 #include <cstdint>
 #include <filesystem>

@@ -1,5 +1,7 @@
 #pragma once
 
+// What a search for the factor of safety has found, and the files that tell of it.
+
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/stage.hpp"
 

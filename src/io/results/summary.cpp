@@ -1,3 +1,5 @@
+// summary.json (result_files.hpp).
+
 #include "gcpdda/io/result_files.hpp"
 
 #include "io/hdf5/durable_file.hpp"

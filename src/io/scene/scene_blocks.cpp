@@ -1,3 +1,5 @@
+// Tables [[block]] of a scene.
+
 #include "geometry/holds_point.hpp"
 #include "io/scene/scene_outline.hpp"
 #include "io/scene/scene_parts.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Faults of a scene with their places, and how its text is shown in messages.
+
 #include "gcpdda/base/diagnostic.hpp"
 #include "io/scene/scene_toml.hpp"
 

@@ -1,3 +1,5 @@
+// Tables [joint.NAME] of a scene: contact laws and which materials have them.
+
 #include "io/scene/scene_parts.hpp"
 
 #include "base/edit_distance.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// The list of all keys of a scene: kind, range, default, text.
+
 #include <cstddef>
 #include <cstdint>
 #include <limits>

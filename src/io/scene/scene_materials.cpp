@@ -1,3 +1,5 @@
+// Tables [material.NAME] of a scene.
+
 #include "io/scene/scene_parts.hpp"
 
 #include "base/edit_distance.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Outlines of blocks as a scene gives them, checked and made counter-clockwise.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <cstddef>

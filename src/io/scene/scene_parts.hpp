@@ -1,5 +1,7 @@
 #pragma once
 
+// Each table of a scene has one function that reads it; each is in the file scene_TABLE.cpp.
+
 #include "gcpdda/model/scene.hpp"
 #include "io/scene/scene_section.hpp"
 

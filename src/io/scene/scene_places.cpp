@@ -1,3 +1,5 @@
+// Where the values of a scene were written (scene_parts.hpp).
+
 #include "io/scene/scene_parts.hpp"
 
 #include <utility>

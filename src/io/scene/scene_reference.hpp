@@ -1,5 +1,7 @@
 #pragma once
 
+// The list of keys as a document.
+
 #include <string>
 
 namespace gcpdda {

@@ -1,5 +1,7 @@
 #pragma once
 
+// A table of a scene while it is read: values by key, with what is wrong with them.
+
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "io/scene/scene_faults.hpp"

@@ -1,5 +1,7 @@
 #pragma once
 
+// The arguments of --set, put into the text of a scene.
+
 #include "io/scene/scene_faults.hpp"
 #include "io/scene/scene_toml.hpp"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Outlines of slopes, openings and other shapes that a scene gives by their sizes.
+
 #include "gcpdda/geometry/vec2.hpp"
 
 #include <cstdint>

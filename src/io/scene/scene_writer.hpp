@@ -1,5 +1,7 @@
 #pragma once
 
+// A scene after --set as TOML text.
+
 #include "io/scene/scene_faults.hpp"
 #include "io/scene/scene_toml.hpp"
 

@@ -1,3 +1,5 @@
+// The part of a scene that decides its settled state (scene_reader.hpp).
+
 #include "gcpdda/io/scene_reader.hpp"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Waiting until the other threads of the process sleep, before MPI is finalised.
+
 #include <chrono>
 
 namespace gcpdda {
