@@ -9,6 +9,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <optional>
 #include <regex>
@@ -230,6 +231,40 @@ TEST(Includes, OfPublicHeadersArePublic) {
     }
   }
   EXPECT_GE(found, 10U);
+}
+
+/// The first file found that includes itself on some way, with the way; nothing where there is none.
+std::vector<std::string> circle_in(const std::map<std::string, std::string> &texts) {
+  std::set<std::string> done;
+  std::vector<std::string> way;
+  std::vector<std::string> circle;
+  const std::function<bool(const std::string &)> visit = [&](const std::string &path) {
+    if (const auto before = std::find(way.begin(), way.end(), path); before != way.end()) {
+      circle.assign(before, way.end());
+      return true;
+    }
+    if (done.contains(path) || !texts.contains(path)) {
+      return false;
+    }
+    way.push_back(path);
+    for (const Include &include : includes_in(texts.at(path))) {
+      const std::optional<std::string> target = target_of(include);
+      if (target && visit(*target)) {
+        return true;
+      }
+    }
+    way.pop_back();
+    done.insert(path);
+    return false;
+  };
+  std::any_of(texts.begin(), texts.end(), [&](const auto &text) { return visit(text.first); });
+  return circle;
+}
+
+TEST(Includes, MakeNoCircle) {
+  EXPECT_EQ(circle_in({{"src/io/a.hpp", "#include \"io/b.hpp\""}, {"src/io/b.hpp", "#include \"io/a.hpp\""}}),
+            (std::vector<std::string>{"src/io/a.hpp", "src/io/b.hpp"}));
+  EXPECT_EQ(circle_in(sources()), std::vector<std::string>());
 }
 
 /// A file opens with what it is for: a comment, or as a source the header of its own name.
