@@ -109,11 +109,12 @@ void Simulation::go_on() {
   const RunFacts &facts = restored_->facts;
   step_count_ = stage_.ended ? facts.step : stage_.first_step;
   if (!stage_.ended) {
-    step_count_ += step_to_go_on_from(plan_, facts.time - stage_.start_time, facts.time_step, notes_);
+    step_count_ += step_to_go_on_from(plan_, facts.time - stage_.start_time - stage_.iteration.skipped,
+                                      facts.time_step, notes_);
   }
-  load_time_ = stage_step() == 0
-                   ? time()
-                   : stage_.start_time + plan_.time(stage_step() - 1) + scheme_.load_time * plan_.time_step;
+  load_time_ = stage_step() == 0 ? time()
+                                 : stage_.start_time + stage_.iteration.skipped +
+                                       plan_.time(stage_step() - 1) + scheme_.load_time * plan_.time_step;
   counters_.contact_steps = communicator_.is_root() ? facts.contact_steps : 0;
   counters_.max_overlap = facts.max_overlap;
   counters_.max_overlap_share = facts.max_overlap_share;
@@ -130,6 +131,11 @@ RunFacts Simulation::facts() const {
   facts.stage_counts = std::move(numbers.counts);
   facts.stage_numbers = std::move(numbers.reals);
   Bolts::to_numbers(bolts_.shared(communicator_), facts.bolt_counts, facts.bolt_numbers);
+  if (is_static() && statics_) {
+    StaticNumbers state = gcpdda::to_numbers(gathered_state(communicator_, blocks_, statics_->springs()));
+    facts.static_counts = std::move(state.counts);
+    facts.static_numbers = std::move(state.reals);
+  }
   facts.time = time();
   facts.time_step = plan_.time_step;
   facts.contact_steps = counters_.contact_steps;

@@ -19,6 +19,17 @@ constexpr double failed = 3.0;
 } // namespace
 
 void Simulation::step() {
+  if (is_static() && !statics_) {
+    if (const std::string reason = not_served(); !reason.empty()) {
+      leave_statics(reason);
+    } else {
+      open_statics();
+    }
+  }
+  if (is_static()) {
+    static_step();
+    return;
+  }
   rebalance_if_uneven();
   if (stale_) { // some block may use up half the skin in this step; all ranks agree
     refresh();

@@ -18,7 +18,9 @@
 #include "simulation/bolts.hpp"
 #include "simulation/contact_digest.hpp"
 #include "simulation/stages.hpp"
+#include "simulation/static_state.hpp"
 #include "simulation/time_plan.hpp"
+#include "statics/pseudo_time.hpp"
 
 #include <array>
 #include <cstdint>
@@ -117,9 +119,13 @@ public:
 
   [[nodiscard]] bool finished() const;
   [[nodiscard]] double time() const {
-    return stage_.ended ? stage_.end_time : stage_.start_time + plan_.time(stage_step());
+    return stage_.ended ? stage_.end_time
+                        : stage_.start_time + stage_.iteration.skipped + plan_.time(stage_step());
   }
   [[nodiscard]] std::int64_t step_count() const { return step_count_; }
+
+  /// A checkpoint of the state at hand is due.
+  [[nodiscard]] bool checkpoint_is_due() const;
 
   /// The scene has stages; else all of the run is one stage.
   [[nodiscard]] bool is_staged() const { return is_staged_; }
@@ -339,6 +345,20 @@ private:
   void prescribe_motion();
   void judge_stage();
   void report();
+  // Steps of the static solver, see static_stage.cpp.
+  [[nodiscard]] bool is_static() const;
+  [[nodiscard]] std::string not_served() const;
+  [[nodiscard]] double end_of_loads() const;
+  void leave_statics(const std::string &reason);
+  void lay_statics();
+  void open_statics();
+  void refresh_statics();
+  void static_step();
+  void evaluate_statically();
+  void book_static_work();
+  void find_static_motion();
+  void judge_statics();
+  void report_statically();
 
   void find_prescribed_rows();
   void prepare_forces();
@@ -402,7 +422,12 @@ private:
   StepBound bound_;
   TimePlan plan_;
   std::int64_t step_count_ = 0;
-  std::vector<Stage> stages_; ///< at least one
+  /// Share of the skin that blocks in a stage with the static solver may use up before a refresh: pairs that
+  /// are twice as far apart are still known, and springs of contacts that have opened with them.
+  static constexpr double share_of_skin_kept = 0.25;
+  std::optional<statics::PseudoTime> statics_; ///< while a stage has it
+  StaticState restored_statics_;               ///< until the first step
+  std::vector<Stage> stages_;                  ///< at least one
   StageState stage_;
   bool is_staged_ = false;
   double local_damping_ = 0.0; ///< of this stage

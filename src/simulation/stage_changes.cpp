@@ -141,6 +141,7 @@ void Simulation::begin_as_restored(const Scene &start, const BlockSystem &rows, 
   remove_blocks(saved.removed);
   stage_ = saved;
   bolts_ = Bolts::from_numbers(facts.bolt_counts, facts.bolt_numbers);
+  restored_statics_ = to_static_state(facts.static_counts, facts.static_numbers);
   for (const BoltLink &link : bolts_.links()) {
     if (link.bolt < 0 || link.bolt >= std::ssize(scene_.bolts)) {
       throw FileError("a bolt of it is not in the scene");

@@ -244,6 +244,8 @@ void Simulation::end_stage() {
   stage_.end_time = time();
   stage_.ended = true;
   if (stage.kind == StageKind::settle) {
+    statics_.reset();
+    drop_pseudo_rows(blocks_);
     unscale_masses();
     if (stage_.verdict == Verdict::settled) {
       set_to_rest();
@@ -296,6 +298,7 @@ void Simulation::begin_next_stage() {
   stage_.ended = false;
   stage_.verdict = Verdict::undecided;
   stage_.memory = {};
+  stage_.iteration = {};
   stage_.contact_steps_before = counters_.contact_steps;
   communicator_.sum(std::span(&stage_.contact_steps_before, 1));
   std::erase_if(stage_.unloading, [&](const Unloading &u) { return time() >= u.begin + u.duration; });
