@@ -350,6 +350,7 @@ private:
   [[nodiscard]] std::string not_served() const;
   [[nodiscard]] double end_of_loads() const;
   void leave_statics(const std::string &reason);
+  void close_statics();
   void lay_statics();
   void open_statics();
   void refresh_statics();

@@ -244,8 +244,7 @@ void Simulation::end_stage() {
   stage_.end_time = time();
   stage_.ended = true;
   if (stage.kind == StageKind::settle) {
-    statics_.reset();
-    drop_pseudo_rows(blocks_);
+    close_statics();
     unscale_masses();
     if (stage_.verdict == Verdict::settled) {
       set_to_rest();

@@ -77,10 +77,15 @@ double Simulation::end_of_loads() const {
   return end;
 }
 
+void Simulation::close_statics() {
+  statics_.reset();
+  contacts_.keep_details(false);
+  drop_pseudo_rows(blocks_);
+}
+
 void Simulation::leave_statics(const std::string &reason) {
   stage_.iteration.is_left = 1;
-  statics_.reset();
-  drop_pseudo_rows(blocks_);
+  close_statics();
   notes_.push_back({Severity::info, stages_[static_cast<std::size_t>(stage_.index)].where,
                     fmt::format("stage '{}' goes on with solver = \"dynamic\"",
                                 stages_[static_cast<std::size_t>(stage_.index)].name),
@@ -108,6 +113,7 @@ void Simulation::open_statics() {
   // Boxes of two blocks that are this near meet within what each may move before the next refresh.
   rules.springs.reach = share_of_skin_kept * base_skin_;
   statics_.emplace(communicator_, rules);
+  contacts_.keep_details(true);
   // The limit of the stage comes where the iteration may pause, because a restart may go on from there: after
   // n steps it has found n + 1 motions.
   plan_.num_steps += rules.coarse_every - 1 - plan_.num_steps % rules.coarse_every;

@@ -16,12 +16,20 @@ std::array<double, 6> forces_of(bool is_deformable, Vec2 d, Vec2 arm) {
   return b;
 }
 
-void add_square(const std::array<double, 6> &b, double stiffness, std::size_t freedoms, double *matrix,
-                std::size_t width) {
+template <std::size_t freedoms>
+void add_fixed_square(const std::array<double, 6> &b, double stiffness, double *matrix, std::size_t width) {
   for (std::size_t i = 0; i < freedoms; ++i) {
     for (std::size_t j = 0; j < freedoms; ++j) {
       matrix[i * width + j] += stiffness * b[i] * b[j];
     }
+  }
+}
+void add_square(const std::array<double, 6> &b, double stiffness, std::size_t freedoms, double *matrix,
+                std::size_t width) {
+  if (freedoms == 3) {
+    add_fixed_square<3>(b, stiffness, matrix, width);
+  } else {
+    add_fixed_square<6>(b, stiffness, matrix, width);
   }
 }
 

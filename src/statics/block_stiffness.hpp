@@ -55,15 +55,23 @@ void add_diagonal(const BlockSystem &system, std::span<const ContactSpring> spri
 /// Inverse of a symmetric positive definite matrix in the places of it.
 void invert(double *matrix, std::size_t freedoms, std::size_t width);
 
-/// y += matrix p for one row.
-inline void add_block_product(const double *matrix, std::size_t freedoms, std::size_t width, const double *p,
-                              double *y) {
+/// y += matrix p for the freedoms of one row.
+template <std::size_t freedoms>
+void add_square_product(const double *matrix, std::size_t width, const double *p, double *y) {
   for (std::size_t i = 0; i < freedoms; ++i) {
     double sum = 0.0;
     for (std::size_t j = 0; j < freedoms; ++j) {
       sum += matrix[i * width + j] * p[j];
     }
     y[i] += sum;
+  }
+}
+inline void add_block_product(const double *matrix, std::size_t freedoms, std::size_t width, const double *p,
+                              double *y) {
+  if (freedoms == 3) {
+    add_square_product<3>(matrix, width, p, y);
+  } else {
+    add_square_product<6>(matrix, width, p, y);
   }
 }
 

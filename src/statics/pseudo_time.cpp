@@ -90,7 +90,7 @@ double PseudoTime::power(const BlockSystem &system) const {
 }
 
 void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
-                             ContactForces &contacts, double overlap, IterationState &state) {
+                             const ContactForces &contacts, double overlap, IterationState &state) {
   springs_.update(system, candidates, history, contacts, rules_.springs);
   gather(system, load_share(state.evaluations));
   const double power_behind = power(system);

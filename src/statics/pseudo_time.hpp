@@ -73,7 +73,7 @@ public:
   /// From the forces of an evaluation to the motion of the next step, in PseudoMotion::velocity. Collective.
   /// @param overlap  largest one of all ranks, m
   void find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
-                   ContactForces &contacts, double overlap, IterationState &state);
+                   const ContactForces &contacts, double overlap, IterationState &state);
   /// Owned rows move by it. Their trial configurations and states are the same afterwards, and at rest.
   void move(BlockSystem &system) const;
 

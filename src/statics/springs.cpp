@@ -1,5 +1,7 @@
 #include "statics/springs.hpp"
 
+#include "base/check.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -14,7 +16,7 @@ bool are_near(const BlockSystem &system, const ContactSpring &spring, double rea
 }
 
 /// The springs of a region for which all of k_t counts.
-ContactSpring spring_of(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
+ContactSpring spring_of(const BlockSystem &system, const CandidatePair &pair, const RegionDetails &force,
                         const RegionState &memory, const LawConstants &law) {
   ContactSpring spring;
   const Vec2 tangent = perp(force.normal);
@@ -73,46 +75,39 @@ void ContactSprings::keep_open(const BlockSystem &system, std::size_t number, co
 }
 
 void ContactSprings::update(const BlockSystem &system, const Candidates &candidates,
-                            const ContactHistory &history, ContactForces &contacts,
+                            const ContactHistory &history, const ContactForces &contacts,
                             const SpringRules &rules) {
+  expect(contacts.keeps_details(), "the last evaluation has left its details behind");
   next_springs_.clear();
   next_memories_.clear();
   num_closed_ = 0;
   std::size_t old = 0;
-  contacts.for_regions(system, candidates, history, 0, static_cast<std::uint32_t>(candidates.pairs.size()),
-                       [&](std::uint32_t number, std::span<const RegionForce> regions) {
-                         const CandidatePair &pair = candidates.pairs[number];
-                         SpringMemory key;
-                         key.lower = system.properties[pair.lower.value].id;
-                         key.higher = system.properties[pair.higher.value].id;
-                         for (; old < memories_.size() && is_before(memories_[old], key); ++old) {
-                           keep_open(system, old, rules);
-                         }
-                         for (std::size_t k = 0; k < regions.size(); ++k) {
-                           const RegionForce &force = regions[k];
-                           const bool is_known = old < memories_.size() && !is_before(key, memories_[old]);
-                           if (force.normal_undefined) {
-                             old += is_known ? 1 : 0;
-                             continue;
-                           }
-                           const RegionState &state = history.state(number, k);
-                           const SpringMemory memory =
-                               moved_on(is_known ? memories_[old] : key, state, force.cap, rules);
-                           old += is_known ? 1 : 0;
-                           const std::int32_t law = state.law >= 0 ? state.law : pair.law;
-                           ContactSpring spring =
-                               spring_of(system, pair, force, state, contacts.parameters().constants(law));
-                           if (state.state == ContactState::slip && memory.turned == 0) {
-                             spring.tangential *= rules.slip_share;
-                           }
-                           next_springs_.push_back(spring);
-                           next_memories_.push_back(memory);
-                           ++num_closed_;
-                         }
-                         for (; old < memories_.size() && !is_before(key, memories_[old]); ++old) {
-                           keep_open(system, old, rules);
-                         }
-                       });
+  const auto add = [&](std::uint32_t number, std::uint32_t k, const RegionDetails &force) {
+    const CandidatePair &pair = candidates.pairs[number];
+    SpringMemory key;
+    key.lower = system.properties[pair.lower.value].id;
+    key.higher = system.properties[pair.higher.value].id;
+    for (; old < memories_.size() && is_before(memories_[old], key); ++old) {
+      keep_open(system, old, rules);
+    }
+    const bool is_known = old < memories_.size() && !is_before(key, memories_[old]);
+    const SpringMemory &before = is_known ? memories_[old] : key;
+    old += is_known ? 1 : 0;
+    if (force.normal_undefined) {
+      return;
+    }
+    const RegionState &state = history.state(number, k);
+    const SpringMemory memory = moved_on(before, state, force.cap, rules);
+    const std::int32_t law = state.law >= 0 ? state.law : pair.law;
+    ContactSpring spring = spring_of(system, pair, force, state, contacts.parameters().constants(law));
+    if (state.state == ContactState::slip && memory.turned == 0) {
+      spring.tangential *= rules.slip_share;
+    }
+    next_springs_.push_back(spring);
+    next_memories_.push_back(memory);
+    ++num_closed_;
+  };
+  contacts.for_kept_details(candidates, history, add);
   for (; old < memories_.size(); ++old) {
     keep_open(system, old, rules);
   }

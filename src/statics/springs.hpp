@@ -76,9 +76,9 @@ struct SpringRules {
 class ContactSprings {
 public:
   /// Springs of all regions of the last evaluation and those that are kept. The arguments are those of the
-  /// evaluation.
+  /// evaluation, which has kept its details.
   void update(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
-              ContactForces &contacts, const SpringRules &rules);
+              const ContactForces &contacts, const SpringRules &rules);
 
   [[nodiscard]] std::span<const ContactSpring> springs() const { return springs_; }
   [[nodiscard]] std::span<const SpringMemory> memories() const { return memories_; }

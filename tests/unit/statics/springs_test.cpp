@@ -61,6 +61,7 @@ TEST(ContactSprings, OfAFlushJointAreTheDerivativeOfItsForces) {
     ContactBench bench(
         strained_blocks(engine, {shapes.lower, shapes.higher}, {lower_deforms, higher_deforms}, 1e10, 1e-4),
         one_law(k_n, 1.0));
+    bench.forces.keep_details(true);
     bench.evaluate();
     bench.evaluate(); // the spring is there now
     statics::ContactSprings springs;
@@ -98,6 +99,7 @@ TEST(ContactSprings, LeaveRigidMotionsAlone) {
   const TouchingPair shapes = touching_pair(engine, Touch::face_on_face, 1e-3);
   ContactBench bench(strained_blocks(engine, {shapes.lower, shapes.higher}, {false, false}, 1e10),
                      one_law(k_n, 1.0));
+  bench.forces.keep_details(true);
   bench.evaluate();
   statics::ContactSprings springs;
   springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
@@ -131,9 +133,11 @@ TEST(ContactSprings, LeaveRigidMotionsAlone) {
 
 /// Two unit squares, the higher one sunk into the lower one, which is fixed.
 ContactBench stacked_squares(double tan_friction) {
-  return ContactBench(system_of({{{0.0, 0.999}, {1.0, 0.999}, {1.0, 1.999}, {0.0, 1.999}}},
-                                {{{-1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {-1.0, 1.0}}}),
-                      one_law(k_n, tan_friction));
+  ContactBench bench(system_of({{{0.0, 0.999}, {1.0, 0.999}, {1.0, 1.999}, {0.0, 1.999}}},
+                               {{{-1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {-1.0, 1.0}}}),
+                     one_law(k_n, tan_friction));
+  bench.forces.keep_details(true);
+  return bench;
 }
 
 TEST(ContactSprings, SlipTakesMostOfTheTangentialStiffness) {
@@ -198,6 +202,7 @@ TEST(ContactSprings, AreTakenFromRecordsInAnyOrder) {
   }
   ContactBench bench(system_of(squares, {{{-1.0, -1.0}, {2.0, -1.0}, {2.0, 0.001}, {-1.0, 0.001}}}),
                      one_law(k_n, 0.5));
+  bench.forces.keep_details(true);
   bench.evaluate();
   statics::ContactSprings springs;
   springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});

@@ -38,6 +38,7 @@ struct Problem {
 
   Problem(BlockSystem system, double rho)
       : bench(std::move(system), one_law(k_n, 0.6)), width(bench.system.deformation.empty() ? 3 : 6) {
+    bench.forces.keep_details(true);
     bench.evaluate();
     bench.evaluate();
     springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
