@@ -50,9 +50,6 @@ std::string Simulation::not_served() const {
   if (!scene_.earthquake.viscous.empty()) {
     return "the region has viscous sides";
   }
-  if (!bolts_.empty()) {
-    return "bolts yield and break for good, also in a swing of the iteration";
-  }
   if (has_law([](const JointLaw &law) { return law.has_bonds; })) {
     return "bonds break for good, also in a swing of the iteration";
   }
@@ -93,10 +90,11 @@ void Simulation::leave_statics(const std::string &reason) {
 }
 
 void Simulation::lay_statics() {
-  std::vector<statics::JointStiffness> joints;
+  std::vector<statics::Surroundings> around;
   for (std::size_t row = 0; row < blocks_.num_owned; ++row) {
     const StiffnessBound stiffness = stiffness_bound(scene_.joints, blocks_.properties[row].material);
-    joints.push_back({stiffness.normal, stiffness.tangential});
+    around.push_back(
+        {stiffness.normal, stiffness.tangential, bolts_.springs_at(blocks_.properties[row].id.value)});
   }
   const bool any_deformable = communicator_.max(blocks_.deformation.empty() ? 0.0 : 1.0) > 0.0;
   std::vector<statics::BorderRows> border;
@@ -104,7 +102,7 @@ void Simulation::lay_statics() {
       [&](int rank, const std::vector<std::uint32_t> &send, const std::vector<std::uint32_t> &receive) {
         border.push_back({rank, send, receive});
       });
-  statics_->lay(blocks_, joints, any_deformable, std::move(border));
+  statics_->lay(blocks_, around, any_deformable, std::move(border));
 }
 
 /// The iteration of a stage that begins, or goes on after a restart.

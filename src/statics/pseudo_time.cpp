@@ -23,16 +23,18 @@ std::array<double, 6> unbalanced_forces(const BlockSystem &system, std::size_t r
   return force;
 }
 
-void PseudoTime::lay(const BlockSystem &system, std::span<const JointStiffness> joints, bool any_deformable,
+void PseudoTime::lay(const BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
                      std::vector<BorderRows> border) {
   width_ = any_deformable ? 6 : 3;
   BlockMatrices mass(system.num_owned, width_);
+  BlockMatrices bolts(system.num_owned, width_);
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (!system.properties[row].keeps_its_velocity()) {
-      add_boundary(system, row, joints[row], mass.of(row), width_);
+      add_boundary(system, row, around[row], mass.of(row), width_);
+      add_bolts(system, row, around[row].bolts, bolts.of(row), width_);
     }
   }
-  solver_.lay(system, width_, std::move(mass), std::move(border));
+  solver_.lay(system, std::move(mass), std::move(bolts), std::move(border));
   force_ = Field(system.num_rows(), width_);
   direction_ = Field(system.num_rows(), width_);
 }

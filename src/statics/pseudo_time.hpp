@@ -64,9 +64,9 @@ public:
   }
 
   /// Rows have been found anew. Collective.
-  /// @param joints  largest stiffness of the joints of each owned row
+  /// @param around  of each owned row
   /// @param any_deformable  on any rank
-  void lay(const BlockSystem &system, std::span<const JointStiffness> joints, bool any_deformable,
+  void lay(const BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
            std::vector<BorderRows> border);
   /// What is out of balance is held from here on. The forces are those of the last evaluation.
   void hold(BlockSystem &system);

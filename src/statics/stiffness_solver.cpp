@@ -25,13 +25,14 @@ double exact_product(const Communicator &communicator, const BlockSystem &system
   return sum.value();
 }
 
-void StiffnessSolver::lay(const BlockSystem &system, std::size_t width, BlockMatrices mass,
+void StiffnessSolver::lay(const BlockSystem &system, BlockMatrices mass, BlockMatrices bolts,
                           std::vector<BorderRows> border) {
   mass_ = std::move(mass);
+  bolts_ = std::move(bolts);
   border_.take(std::move(border));
   coarse_.lay(system);
   for (Field *field : {&r_, &z_, &p_, &q_}) {
-    *field = Field(system.num_rows(), width);
+    *field = Field(system.num_rows(), mass_.width());
   }
 }
 
@@ -44,8 +45,9 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     double *const own = own_.of(row);
     const double *const mass = mass_.of(row);
+    const double *const bolts = bolts_.of(row);
     for (std::size_t i = 0; i < width * width; ++i) {
-      own[i] = rho * mass[i];
+      own[i] = rho * mass[i] + bolts[i];
     }
     add_own_springs(system, row, own, width);
     if (with_coarse) {

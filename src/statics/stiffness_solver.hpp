@@ -28,7 +28,10 @@ public:
       : communicator_(communicator), coarse_(communicator), border_(communicator) {}
 
   /// A neighbourhood that has been made anew. Collective.
-  void lay(const BlockSystem &system, std::size_t width, BlockMatrices mass, std::vector<BorderRows> border);
+  /// @param mass  D of owned rows
+  /// @param bolts  of owned rows
+  void lay(const BlockSystem &system, BlockMatrices mass, BlockMatrices bolts,
+           std::vector<BorderRows> border);
   /// K of these springs, from here on. Collective.
   /// @param rho  of each owned row
   /// @param with_coarse  make the coarse matrix anew
@@ -54,6 +57,7 @@ private:
   BorderExchange border_;
   double rho_ = 0.0;
   BlockMatrices mass_;
+  BlockMatrices bolts_;
   BlockMatrices own_;     ///< rho D and own springs
   BlockMatrices inverse_; ///< B^-1
   Field r_;
