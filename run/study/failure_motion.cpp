@@ -187,12 +187,12 @@ Outcome spin(double rate, bool deformable, const std::string &elasticity) {
       ground() +
       block_toml("b", rectangle({0.0, 3.0}, {1.0, 4.0}), fmt::format("velocity = [0.0, 0.0, {:.17g}]", rate));
   return try_scene(toml, [&](Simulation &simulation) {
-    const EnergyLedger ledger(simulation);
-    const double start = ledger.row(simulation).kinetic;
+    const EnergyLedger ledger(simulation.state());
+    const double start = ledger.row(simulation.state()).kinetic;
     double largest = 0.0;
     for (int part = 1; part <= 50; ++part) {
       advance(simulation, duration * part / 50);
-      const double lost = ledger.row(simulation).residual / start;
+      const double lost = ledger.row(simulation.state()).residual / start;
       largest = std::abs(lost) > std::abs(largest) ? lost : largest;
     }
     const double stretch =
@@ -215,13 +215,13 @@ Outcome land(double rate, bool deformable) {
       ground() +
       block_toml("b", rectangle({0.0, 0.5}, {1.0, 1.5}), fmt::format("velocity = [0.0, 0.0, {:.17g}]", rate));
   return try_scene(toml, [&](Simulation &simulation) {
-    const EnergyLedger ledger(simulation);
-    const EnergyRow first = ledger.row(simulation);
+    const EnergyLedger ledger(simulation.state());
+    const EnergyRow first = ledger.row(simulation.state());
     const double available = first.kinetic + rock_density * earth_gravity * 0.5;
     double largest = 0.0;
     for (int part = 1; part <= 50 && !simulation.fault(); ++part) {
       advance(simulation, part * 0.02);
-      const double lost = simulation.fault() ? 0.0 : ledger.row(simulation).residual / available;
+      const double lost = simulation.fault() ? 0.0 : ledger.row(simulation.state()).residual / available;
       largest = std::abs(lost) > std::abs(largest) ? lost : largest;
     }
     return judged(std::abs(largest) < 0.05, fmt::format("energy off by {:.1e}, largest overlap {:.2g} m",

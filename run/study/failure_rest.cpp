@@ -78,7 +78,7 @@ void mass_ratio(const Options &options, Boundaries &boundaries, bool heavy_above
     const double lower = depth_under(weight * (1.0 + 1.0 / ratio), k, 0.5);
     return try_scene(toml,
                      [&](Simulation &simulation) {
-                       const EnergyLedger ledger(simulation);
+                       const EnergyLedger ledger(simulation.state());
                        advance(simulation, ramp);
                        const Unrest early = largest_unrest(simulation, 1.3, lower, upper);
                        Unrest late = largest_unrest(simulation, 1.6, lower, upper);
@@ -87,7 +87,7 @@ void mass_ratio(const Options &options, Boundaries &boundaries, bool heavy_above
                               late.speed <= 100.0 * early.speed) {
                          late = largest_unrest(simulation, simulation.time() + 0.1, lower, upper);
                        }
-                       const EnergyRow energy = ledger.row(simulation);
+                       const EnergyRow energy = ledger.row(simulation.state());
                        const std::string text = fmt::format(
                            "depths off by {:.1e} of the closed form, speed {:.1e} m/s after {:.1e}, {} steps",
                            late.depth, late.speed, early.speed, simulation.step_count());
@@ -179,7 +179,7 @@ Outcome stand(int num_blocks, bool ramp, double friction_deg) {
             .run_keys = fmt::format("gravity_ramp = {:.17g}", ramp ? 2.0 * period : 0.0)}) +
       column(num_blocks);
   return try_scene(toml, [&](Simulation &simulation) {
-    const EnergyLedger ledger(simulation);
+    const EnergyLedger ledger(simulation.state());
     double gap = 0.0;
     double sideways = 0.0;
     while (!simulation.finished()) {
@@ -192,7 +192,8 @@ Outcome stand(int num_blocks, bool ramp, double friction_deg) {
     }
     const double weight = num_blocks * rock_density * earth_gravity;
     const double fall = simulation.counters().max_overlap * num_blocks; // at most, of the centroid
-    const double residual = simulation.fault() ? 0.0 : ledger.row(simulation).residual / (weight * fall);
+    const double residual =
+        simulation.fault() ? 0.0 : ledger.row(simulation.state()).residual / (weight * fall);
     const std::string text =
         fmt::format("joints open by {:.1e} m, blocks aside by {:.1e} m, largest overlap {:.3g} m, "
                     "energy residual {:.1e}, {} steps",

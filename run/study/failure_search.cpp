@@ -64,7 +64,7 @@ Outcome try_scene(const std::string &toml, const Drive &drive, const std::vector
       return {Ending::stopped, fault_text(simulation)};
     }
     std::string warning = told(simulation.notes(), Severity::warning);
-    const std::string at_the_end = told(simulation.warnings(), Severity::warning);
+    const std::string at_the_end = told(warnings_of(simulation.state()), Severity::warning);
     warning += (warning.empty() || at_the_end.empty() ? "" : "; ") + at_the_end;
     if (outcome.ending == Ending::silent && !warning.empty()) {
       return {Ending::warned, outcome.text + "; " + warning};

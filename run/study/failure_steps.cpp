@@ -39,7 +39,7 @@ Outcome stays(double factor, double recommended) {
   setting.time_step = factor * recommended;
   setting.duration = std::ceil(setting.duration / setting.time_step) * setting.time_step;
   return try_scene(wall(setting), [](Simulation &simulation) {
-    const EnergyLedger ledger(simulation);
+    const EnergyLedger ledger(simulation.state());
     advance(simulation, 1.0);
     double fastest = 0.0;
     while (!simulation.finished()) {
@@ -48,7 +48,7 @@ Outcome stays(double factor, double recommended) {
         fastest = std::max(fastest, norm(v.u));
       }
     }
-    const EnergyRow row = simulation.fault() ? EnergyRow{} : ledger.row(simulation);
+    const EnergyRow row = simulation.fault() ? EnergyRow{} : ledger.row(simulation.state());
     return judged(fastest < 0.01, fmt::format("fastest {:.1e} m/s after the ramp, residual {:.1e} J/m",
                                               fastest, row.residual));
   });
@@ -100,15 +100,15 @@ Outcome rattle(double safety, double stiffness_ratio, const std::string &elastic
   });
   setting.duration = num_steps * step;
   return try_scene(head(setting) + blocks, [&](Simulation &simulation) {
-    const EnergyLedger ledger(simulation);
-    const double start = ledger.row(simulation).kinetic;
+    const EnergyLedger ledger(simulation.state());
+    const double start = ledger.row(simulation.state()).kinetic;
     double most = 0.0;
     while (!simulation.finished()) {
       for (int k_step = 0; k_step < 50 && !simulation.finished(); ++k_step) {
         simulation.step();
       }
       if (!simulation.fault()) {
-        const EnergyRow row = ledger.row(simulation);
+        const EnergyRow row = ledger.row(simulation.state());
         most = std::max(most, (row.kinetic + row.strain + row.contact_normal) / start);
       }
     }

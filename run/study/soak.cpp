@@ -102,8 +102,8 @@ void soak(const Options &options) {
   const double step = Simulation(Communicator::self(), testing::scene_of(box(1.0))).bound().time_step;
   const double duration = step * block_steps / num_polygons;
   Simulation simulation(Communicator::self(), testing::scene_of(box(duration)));
-  const EnergyLedger ledger(simulation);
-  const double start = ledger.row(simulation).kinetic;
+  const EnergyLedger ledger(simulation.state());
+  const double start = ledger.row(simulation.state()).kinetic;
   Table table(options.folder / "soak.csv", {"steps", "block_steps", "time", "energy_ratio"});
   std::vector<double> millions;
   std::vector<double> logs;
@@ -112,7 +112,7 @@ void soak(const Options &options) {
     const Cost part = advance(simulation, duration * row / num_rows);
     cost.cpu += part.cpu;
     cost.contact_steps += part.contact_steps;
-    const EnergyRow energy = ledger.row(simulation);
+    const EnergyRow energy = ledger.row(simulation.state());
     const double ratio = (energy.kinetic + energy.contact_normal) / start;
     table.add({simulation.step_count(), simulation.step_count() * num_polygons, simulation.time(), ratio});
     millions.push_back(1e-6 * static_cast<double>(simulation.step_count() * num_polygons));

@@ -12,6 +12,7 @@
 #include "simulation/rank_facts.hpp"
 #include "simulation/results.hpp"
 #include "simulation/simulation.hpp"
+#include "simulation/static_stage.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -107,9 +108,9 @@ private:
     if (!simulation_.is_staged() || !simulation_.stage_is_over() || simulation_.fault()) {
       return;
     }
-    ledger_->note_end(simulation_);
+    ledger_->note_end(simulation_.state());
     simulation_.end_stage(); // a settled pile is set to rest
-    ledger_->step_over(simulation_);
+    ledger_->step_over(simulation_.state());
     log_stage();
   }
 
@@ -118,7 +119,7 @@ private:
     while (simulation_.is_staged() && simulation_.stage_is_over() && !simulation_.finished() &&
            !simulation_.stop_agreed()) {
       simulation_.begin_next_stage();
-      ledger_->step_over(simulation_);
+      ledger_->step_over(simulation_.state());
       impacts_.forget();
       tell_of_bolts();
       if (simulation_.stage_is_over()) {
@@ -150,7 +151,8 @@ private:
     });
     log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet, options.progress_of);
     frames_.emplace(communicator_, directory_, simulation_.num_blocks());
-    simulation_.restored() ? ledger_.emplace(simulation_.restored()->facts) : ledger_.emplace(simulation_);
+    simulation_.restored() ? ledger_.emplace(simulation_.restored()->facts)
+                           : ledger_.emplace(simulation_.state());
     checkpoints_.emplace(communicator_, directory_, std::filesystem::path());
   }
 
@@ -158,7 +160,7 @@ private:
   void continue_results(const Scene &scene, const Restored &restored) {
     const RunFacts &facts = restored.facts;
     on_root(communicator_, [&] {
-      if (const auto before = simulation_.changed_from();
+      if (const auto before = changed_from(simulation_.state());
           !before.empty()) { // first: a restart may be repeated
         remember_scenes(directory_, before);
       }
@@ -270,15 +272,15 @@ private:
     if (!output_due && !history_due) {
       if (impacts_.lacks_reference(simulation_)) {
         const auto scope = simulation_.phases().measure(Phase::output);
-        impacts_.look(simulation_, ledger_->row(simulation_));
-        simulation_.forget_contact_digest();
+        impacts_.look(simulation_, ledger_->row(simulation_.state()));
+        simulation_.state().digest.reset();
       }
       return;
     }
     const auto scope = simulation_.phases().measure(Phase::output);
     const double cpu_start = cpu_seconds();
-    if (history_due && !failed) {          // the energies of a broken state say nothing
-      energy_ = ledger_->row(simulation_); // first: frames take what it has seen of the contacts
+    if (history_due && !failed) {                  // the energies of a broken state say nothing
+      energy_ = ledger_->row(simulation_.state()); // first: frames take what it has seen of the contacts
       if (const auto gain = impacts_.look(simulation_, energy_)) {
         log_->diagnostic(warning_of(simulation_, *gain));
       }
@@ -296,7 +298,7 @@ private:
     if (history_due) {
       write_history(failed);
     }
-    simulation_.forget_contact_digest();
+    simulation_.state().digest.reset();
     output_cpu_seconds_ += cpu_seconds() - cpu_start;
   }
 
@@ -305,7 +307,7 @@ private:
     const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
     const bool stage_ends = simulation_.is_staged() && simulation_.stage_is_over();
     if (simulation_.fault() || is_bare_ || is_once_ ||
-        (!stopping && !stage_ends && !simulation_.checkpoint_is_due())) {
+        (!stopping && !stage_ends && !checkpoint_is_due(simulation_.state()))) {
       return;
     }
     const auto scope = simulation_.phases().measure(Phase::output);
@@ -313,7 +315,7 @@ private:
     const Clock::time_point start = Clock::now();
     on_root(communicator_, [&] { histories_->sync(); });
     frames_->sync();
-    RunFacts facts = simulation_.facts();
+    RunFacts facts = facts_of(simulation_.state());
     on_root(communicator_, [&] {
       facts.results = histories_->files();
       facts.results.insert(facts.results.end(), frames_->files().begin(), frames_->files().end());
@@ -378,7 +380,7 @@ private:
       contacts_at_end_ = count_contacts();
     }
     fill(summary);
-    for (const Diagnostic &warning : simulation_.warnings()) {
+    for (const Diagnostic &warning : warnings_of(simulation_.state())) {
       log_->line(to_string(warning));
     }
     frames_->sync();
@@ -429,7 +431,7 @@ private:
     double max_overlap = counters.max_overlap;
     communicator_.max(std::span(&max_overlap, 1));
     summary.max_overlap = max_overlap;
-    if (const auto farthest = simulation_.permanent_displacement()) {
+    if (const auto farthest = permanent_displacement(simulation_.state())) {
       summary.permanent_displacement = farthest->distance;
       summary.permanent_block = block_name(simulation_.scene(), farthest->block);
     }

@@ -1,4 +1,4 @@
-// What is implausible of the blocks of a valid scene together: warnings, one line for each kind.
+#include "simulation/doubts.hpp"
 
 #include "base/edit_distance.hpp"
 #include "contact/stiffness_bound.hpp"
@@ -7,7 +7,7 @@
 #include "geometry/polygon.hpp"
 #include "simulation/plausibility.hpp"
 #include "simulation/rank_facts.hpp"
-#include "simulation/simulation.hpp"
+#include "simulation/stage_changes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -150,33 +150,20 @@ void warn_of_light_loads(const Scene &scene, Diagnostics &notes) {
   }
 }
 
-} // namespace
-
-void Simulation::doubt_blocks(std::span<const SceneBlock> slab) {
-  doubt_use(slab);
-  doubt_holds(slab);
-  doubt_sizes(slab);
-  doubt_slivers(slab);
-  warn_of_light_loads(scene_, notes_);
-  if (has_errors(notes_)) {
-    throw SceneError(notes_);
-  }
-}
-
 // A law is used by edges, by a part of the region or by a pair of materials that are.
-void Simulation::doubt_use(std::span<const SceneBlock> slab) {
-  std::vector<std::int64_t> materials(scene_.materials.size(), 0);
+void doubt_use(RunState &run, std::span<const SceneBlock> slab) {
+  std::vector<std::int64_t> materials(run.scene.materials.size(), 0);
   for (const SceneBlock &block : slab) {
     materials[static_cast<std::size_t>(block.material)] = 1;
   }
-  if (scene_.region.present()) {
-    materials[static_cast<std::size_t>(scene_.region.material)] = 1;
-    for (const Layer &layer : scene_.region.layers) {
+  if (run.scene.region.present()) {
+    materials[static_cast<std::size_t>(run.scene.region.material)] = 1;
+    for (const Layer &layer : run.scene.region.layers) {
       materials[static_cast<std::size_t>(layer.material)] = 1;
     }
   }
-  communicator_.max(materials);
-  const JointLaws &joints = scene_.joints;
+  run.communicator.max(materials);
+  const JointLaws &joints = run.scene.joints;
   std::vector<std::int64_t> laws(joints.laws.size(), 0);
   std::vector<std::string> names;
   laws[0] = 1; // the others take what they do not say from it
@@ -184,7 +171,7 @@ void Simulation::doubt_use(std::span<const SceneBlock> slab) {
     names.push_back(joints.laws[i].name);
     laws[i] = std::max<std::int64_t>(laws[i], joints.laws[i].is_on_edges ? 1 : 0);
   }
-  note_laws_of_region(scene_.region, laws);
+  note_laws_of_region(run.scene.region, laws);
   for (std::int32_t a = 0; a < joints.num_materials; ++a) {
     for (std::int32_t b = 0; b < joints.num_materials; ++b) {
       if (materials[static_cast<std::size_t>(a)] != 0 && materials[static_cast<std::size_t>(b)] != 0) {
@@ -192,86 +179,52 @@ void Simulation::doubt_use(std::span<const SceneBlock> slab) {
       }
     }
   }
-  warn_of_unused(scene_, "joint", names, laws, notes_);
+  warn_of_unused(run.scene, "joint", names, laws, run.notes);
   names.clear();
-  for (const Material &material : scene_.materials) {
+  for (const Material &material : run.scene.materials) {
     names.push_back(material.name);
   }
-  warn_of_unused(scene_, "material", names, materials, notes_);
+  warn_of_unused(run.scene, "material", names, materials, run.notes);
 }
 
-void Simulation::doubt_holds(std::span<const SceneBlock> slab) {
+void doubt_holds(RunState &run, std::span<const SceneBlock> slab) {
   const auto is_held = [](const SceneBlock &b) { return b.fixed || b.driven || !b.fixed_points.empty(); };
   const auto can_move = [](const SceneBlock &b) { return !b.fixed; };
-  const std::int64_t held = total(communicator_, std::count_if(slab.begin(), slab.end(), is_held));
-  const std::int64_t mobile = total(communicator_, std::count_if(slab.begin(), slab.end(), can_move));
-  const Vec2 gravity = scene_.run.gravity;
-  const bool is_carried = std::any_of(scene_.in_situ.boundaries.begin(), scene_.in_situ.boundaries.end(),
-                                      [&](const Boundary &side) { return dot(side.normal, gravity) > 0.0; });
+  const std::int64_t held = total(run.communicator, std::count_if(slab.begin(), slab.end(), is_held));
+  const std::int64_t mobile = total(run.communicator, std::count_if(slab.begin(), slab.end(), can_move));
+  const Vec2 gravity = run.scene.run.gravity;
+  const bool is_carried =
+      std::any_of(run.scene.in_situ.boundaries.begin(), run.scene.in_situ.boundaries.end(),
+                  [&](const Boundary &side) { return dot(side.normal, gravity) > 0.0; });
   if (held == 0 && norm(gravity) > 0.0 && !is_carried) {
-    notes_.push_back({Severity::warning, place_in(scene_, "run.gravity"),
-                      "gravity acts and no block is fixed, held at a point or driven",
-                      "all blocks fall together",
-                      "write fixed = true for a block below them, or region.fixed = [\"bottom\"]"});
+    run.notes.push_back({Severity::warning, place_in(run.scene, "run.gravity"),
+                         "gravity acts and no block is fixed, held at a point or driven",
+                         "all blocks fall together",
+                         "write fixed = true for a block below them, or region.fixed = [\"bottom\"]"});
   }
   if (mobile == 0) {
-    notes_.push_back({Severity::warning,
-                      {},
-                      "all blocks are fixed",
-                      "nothing moves",
-                      "leave fixed = true out where a block is to move"});
+    run.notes.push_back({Severity::warning,
+                         {},
+                         "all blocks are fixed",
+                         "nothing moves",
+                         "leave fixed = true out where a block is to move"});
   }
-}
-
-// The deepest contact of a pile bears its weight, or the in-situ stress if that is more.
-void Simulation::doubt_sizes(std::span<const SceneBlock> slab) {
-  const double gravity = norm(scene_.run.gravity);
-  const Vec2 down = gravity > 0.0 ? (1.0 / gravity) * scene_.run.gravity : Vec2{0.0, -1.0};
-  std::vector<double> sizes;
-  std::array<double, 3> largest{0.0, -std::numeric_limits<double>::infinity(),
-                                -std::numeric_limits<double>::infinity()};
-  auto &[densest, lowest, minus_highest] = largest;
-  for (const SceneBlock &block : slab) {
-    if (!block.fixed) {
-      sizes.push_back(std::sqrt(signed_area(block.vertices)));
-      densest = std::max(densest, scene_.materials[static_cast<std::size_t>(block.material)].density);
-      for (const Vec2 x : block.vertices) {
-        lowest = std::max(lowest, dot(x, down));
-        minus_highest = std::max(minus_highest, -dot(x, down));
-      }
-    }
-  }
-  communicator_.max(largest);
-  if (total(communicator_, std::ssize(sizes)) == 0) {
-    return;
-  }
-  const double size = agreed_median(communicator_, sizes);
-  double pressure = densest * gravity * (lowest + minus_highest);
-  if (scene_.in_situ.present) {
-    for (const double head : {-minus_highest, lowest}) {
-      const Mat2 stress = scene_.in_situ.compression_at(head * scene_.in_situ.down);
-      pressure = std::max(pressure, principal_values(stress).largest);
-    }
-  }
-  doubt_stiffness(pressure, size);
-  const Diagnostics doubts = implausible_size(scene_, size);
-  notes_.insert(notes_.end(), doubts.begin(), doubts.end());
 }
 
 // One line where a wrong stiffness shows in all contacts. Under in-situ stress they would all be refused.
-void Simulation::doubt_stiffness(double pressure, double size) {
+void doubt_stiffness(RunState &run, double pressure, double size) {
   constexpr double largest_share = 0.01;
   constexpr double good_share = 1e-3;
   constexpr double hopeless_share = 0.5;
   std::int64_t others = -1;
   Diagnostic warning;
-  for (const JointLaw &law : scene_.joints.laws) {
+  for (const JointLaw &law : run.scene.joints.laws) {
     const double overlap = pressure / law.normal_stiffness;
     const std::string path = fmt::format("joint.{}.normal_stiffness", law.name);
-    const bool is_given = scene_.places.empty() || scene_.places.contains(path);
+    const bool is_given = run.scene.places.empty() || run.scene.places.contains(path);
     if (law.allowed_overlap == 0.0 && is_given && overlap > largest_share * size && ++others == 0) {
       warning = {
-          Severity::warning, place_in(scene_, path),
+          Severity::warning, place_in(run.scene, path),
           fmt::format("{} is {:g} Pa/m: contacts at rest overlap by up to {:.2g} m, and the median block "
                       "measures {:.2g} m",
                       path, law.normal_stiffness, overlap, size),
@@ -283,37 +236,74 @@ void Simulation::doubt_stiffness(double pressure, double size) {
   }
   if (others >= 0) {
     warning.what += and_more(others, "laws like it");
-    notes_.push_back(std::move(warning));
+    run.notes.push_back(std::move(warning));
   }
-  if (scene_.in_situ.present && others + 1 == std::ssize(scene_.joints.laws) &&
-      pressure > hopeless_share * size * stiffest_joint(scene_.joints)) {
-    notes_.back().severity = Severity::error;
+  if (run.scene.in_situ.present && others + 1 == std::ssize(run.scene.joints.laws) &&
+      pressure > hopeless_share * size * stiffest_joint(run.scene.joints)) {
+    run.notes.back().severity = Severity::error;
   }
 }
 
+// The deepest contact of a pile bears its weight, or the in-situ stress if that is more.
+void doubt_sizes(RunState &run, std::span<const SceneBlock> slab) {
+  const double gravity = norm(run.scene.run.gravity);
+  const Vec2 down = gravity > 0.0 ? (1.0 / gravity) * run.scene.run.gravity : Vec2{0.0, -1.0};
+  std::vector<double> sizes;
+  std::array<double, 3> largest{0.0, -std::numeric_limits<double>::infinity(),
+                                -std::numeric_limits<double>::infinity()};
+  auto &[densest, lowest, minus_highest] = largest;
+  for (const SceneBlock &block : slab) {
+    if (!block.fixed) {
+      sizes.push_back(std::sqrt(signed_area(block.vertices)));
+      densest = std::max(densest, run.scene.materials[static_cast<std::size_t>(block.material)].density);
+      for (const Vec2 x : block.vertices) {
+        lowest = std::max(lowest, dot(x, down));
+        minus_highest = std::max(minus_highest, -dot(x, down));
+      }
+    }
+  }
+  run.communicator.max(largest);
+  if (total(run.communicator, std::ssize(sizes)) == 0) {
+    return;
+  }
+  const double size = agreed_median(run.communicator, sizes);
+  double pressure = densest * gravity * (lowest + minus_highest);
+  if (run.scene.in_situ.present) {
+    for (const double head : {-minus_highest, lowest}) {
+      const Mat2 stress = run.scene.in_situ.compression_at(head * run.scene.in_situ.down);
+      pressure = std::max(pressure, principal_values(stress).largest);
+    }
+  }
+  doubt_stiffness(run, pressure, size);
+  const Diagnostics doubts = implausible_size(run.scene, size);
+  run.notes.insert(run.notes.end(), doubts.begin(), doubts.end());
+}
+
 // Contacts push a thin block together by as much as a thick one.
-void Simulation::doubt_slivers(std::span<const SceneBlock> slab) {
-  if (!scene_.in_situ.present || !scene_.region.present()) {
+void doubt_slivers(RunState &run, std::span<const SceneBlock> slab) {
+  if (!run.scene.in_situ.present || !run.scene.region.present()) {
     return;
   }
   constexpr double thin_share = 0.05;
-  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+  const std::int64_t first =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank());
   std::vector<double> widths; // of blocks cut out of the region
   for (std::size_t k = 0; k < slab.size(); ++k) {
-    const bool is_cut = first + static_cast<std::int64_t>(k) >= num_blocks() - scene_.num_region_blocks;
+    const bool is_cut =
+        first + static_cast<std::int64_t>(k) >= num_blocks(run.scene) - run.scene.num_region_blocks;
     if (is_cut && !slab[k].fixed) {
       widths.push_back(mean_width(signed_area(slab[k].vertices), slab[k].vertices));
     }
   }
-  if (total(communicator_, widths.size()) == 0) {
+  if (total(run.communicator, widths.size()) == 0) {
     return;
   }
-  const double limit = thin_share * agreed_median(communicator_, widths);
+  const double limit = thin_share * agreed_median(run.communicator, widths);
   const auto is_thin = [limit](double width) { return width < limit; };
-  const std::int64_t count = total(communicator_, std::count_if(widths.begin(), widths.end(), is_thin));
+  const std::int64_t count = total(run.communicator, std::count_if(widths.begin(), widths.end(), is_thin));
   if (count > 0) {
-    notes_.push_back(
-        {Severity::warning, scene_.region.where,
+    run.notes.push_back(
+        {Severity::warning, run.scene.region.where,
          fmt::format("{} under in-situ stress {} a mean width below {:.2g} m, 1/20 of the median",
                      count == 1 ? "1 block" : fmt::format("{} blocks", count), count == 1 ? "has" : "have",
                      limit),
@@ -322,39 +312,54 @@ void Simulation::doubt_slivers(std::span<const SceneBlock> slab) {
   }
 }
 
+} // namespace
+
+void doubt_blocks(RunState &run, std::span<const SceneBlock> slab) {
+  doubt_use(run, slab);
+  doubt_holds(run, slab);
+  doubt_sizes(run, slab);
+  doubt_slivers(run, slab);
+  warn_of_light_loads(run.scene, run.notes);
+  if (has_errors(run.notes)) {
+    throw SceneError(run.notes);
+  }
+}
+
 // Why pairs of blocks have been refused, and which width would merge the thin ones. A block may be thin at
 // one end.
-void Simulation::explain_slivers() {
-  if (!scene_.in_situ.present || !scene_.region.present() || !has_errors(notes_)) {
+void explain_slivers(RunState &run) {
+  if (!run.scene.in_situ.present || !run.scene.region.present() || !has_errors(run.notes)) {
     return;
   }
   constexpr double deepest_share = 0.05;
   std::vector<std::int64_t> mine;
   double width = 0.0;
-  for_regions(0, candidates_.pairs.size(), [&](std::uint32_t number, std::span<const RegionForce> regions) {
-    const CandidatePair &pair = candidates_.pairs[number];
-    const BlockProperties &a = blocks_.properties[pair.lower.value];
-    const BlockProperties &b = blocks_.properties[pair.higher.value];
-    const std::size_t row = a.width < b.width ? pair.lower.value : pair.higher.value;
-    const BlockProperties &thin = blocks_.properties[row];
-    const auto is_too_deep = [&](const RegionForce &force) {
-      return force.overlap > deepest_share * thin.width;
-    };
-    if (!blocks_.is_fixed(row) && std::any_of(regions.begin(), regions.end(), is_too_deep)) {
-      mine.push_back(thin.id.value);
-      width = std::max(width, mean_width(thin.area, blocks_.of_row(blocks_.reference_vertex, row)));
-    }
-  });
+  for_regions(run, 0, run.neighbours.candidates.pairs.size(),
+              [&](std::uint32_t number, std::span<const RegionForce> regions) {
+                const CandidatePair &pair = run.neighbours.candidates.pairs[number];
+                const BlockProperties &a = run.blocks.properties[pair.lower.value];
+                const BlockProperties &b = run.blocks.properties[pair.higher.value];
+                const std::size_t row = a.width < b.width ? pair.lower.value : pair.higher.value;
+                const BlockProperties &thin = run.blocks.properties[row];
+                const auto is_too_deep = [&](const RegionForce &force) {
+                  return force.overlap > deepest_share * thin.width;
+                };
+                if (!run.blocks.is_fixed(row) && std::any_of(regions.begin(), regions.end(), is_too_deep)) {
+                  mine.push_back(thin.id.value);
+                  width = std::max(
+                      width, mean_width(thin.area, run.blocks.of_row(run.blocks.reference_vertex, row)));
+                }
+              });
   std::set<std::int64_t> all;
-  for (const std::vector<std::int64_t> &theirs : communicator_.all_gather(mine)) {
+  for (const std::vector<std::int64_t> &theirs : run.communicator.all_gather(mine)) {
     all.insert(theirs.begin(), theirs.end());
   }
-  width = communicator_.max(width);
+  width = run.communicator.max(width);
   if (!all.empty()) {
     constexpr double above = 1.0 + 1e-6;
-    notes_.insert(
-        notes_.begin(),
-        {Severity::warning, scene_.region.where,
+    run.notes.insert(
+        run.notes.begin(),
+        {Severity::warning, run.scene.region.where,
          fmt::format("the in-situ stress presses {} thin block{} together by more than 5 % of the width",
                      all.size(), all.size() == 1 ? "" : "s"),
          "contacts close by stress/normal_stiffness, whatever the width of their blocks",
@@ -365,59 +370,59 @@ void Simulation::explain_slivers() {
   }
 }
 
-void Simulation::doubt_gaps() {
+void doubt_gaps(RunState &run) {
   constexpr double widest_share = 0.1 * (1.0 + 1e-9);
   constexpr double rounding = 1e-6;
   std::vector<Gap> mine(1);
   std::int64_t count = 0;
-  for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    const CandidatePair &pair = candidates_.pairs[k];
+  for (std::size_t k = 0; k < run.neighbours.candidates.pairs.size(); ++k) {
+    const CandidatePair &pair = run.neighbours.candidates.pairs[k];
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
-    const bool moves = norm(blocks_.velocity[a].u) > 0.0 || norm(blocks_.velocity[b].u) > 0.0;
-    if (history_.is_living(k) || moves || !counts_here(pair)) {
+    const bool moves = norm(run.blocks.velocity[a].u) > 0.0 || norm(run.blocks.velocity[b].u) > 0.0;
+    if (run.neighbours.history.is_living(k) || moves || !counts_here(run.blocks, pair.lower)) {
       continue;
     }
-    const BlockProperties &first = blocks_.properties[a];
-    const BlockProperties &second = blocks_.properties[b];
+    const BlockProperties &first = run.blocks.properties[a];
+    const BlockProperties &second = run.blocks.properties[b];
     const double size = std::sqrt(std::min(first.area, second.area));
-    const double gap = gap_between(current_vertices(blocks_, a), current_vertices(blocks_, b));
+    const double gap = gap_between(current_vertices(run.blocks, a), current_vertices(run.blocks, b));
     if (gap > rounding * size && gap <= widest_share * size &&
-        !is_given_gap(scene_, first.id.value, second.id.value)) {
+        !is_given_gap(run.scene, first.id.value, second.id.value)) {
       ++count;
       const Gap found{gap, first.id.value, second.id.value};
       mine[0] = gap > mine[0].width ? found : mine[0];
     }
   }
-  count = total(communicator_, count);
+  count = total(run.communicator, count);
   Gap widest;
-  for (const auto &theirs : communicator_.all_gather(mine)) {
+  for (const auto &theirs : run.communicator.all_gather(mine)) {
     const Gap &other = theirs[0];
     const bool is_first = other.width == widest.width &&
                           std::pair(other.lower, other.higher) < std::pair(widest.lower, widest.higher);
     widest = other.width > widest.width || is_first ? other : widest;
   }
   if (count > 0) {
-    notes_.push_back(
-        {Severity::warning, block_position(scene_, widest.higher),
+    run.notes.push_back(
+        {Severity::warning, block_position(run.scene, widest.higher),
          fmt::format("blocks '{}' and '{}' face each other across a gap of {:.2g} m{}",
-                     block_name(scene_, widest.lower), block_name(scene_, widest.higher), widest.width,
+                     block_name(run.scene, widest.lower), block_name(run.scene, widest.higher), widest.width,
                      and_more(count - 1, "pairs of blocks across smaller gaps or equal ones")),
          "they do not touch, and nothing holds them together until the gap has closed",
          "give them the same coordinates where they are to touch"});
   }
 }
 
-void Simulation::doubt_monitors() {
-  for (const Stage &stage : stages_) {
-    const std::vector<std::int64_t> ids = select_blocks(stage.excavated);
-    for (const Monitor &monitor : scene_.monitors) {
+void doubt_monitors(RunState &run) {
+  for (const Stage &stage : run.clock.stages) {
+    const std::vector<std::int64_t> ids = select_blocks(run, stage.excavated);
+    for (const Monitor &monitor : run.scene.monitors) {
       if (std::binary_search(ids.begin(), ids.end(), monitor.block)) {
-        notes_.push_back({Severity::warning, monitor.where,
-                          fmt::format("monitor '{}' follows block '{}', which stage '{}' excavates",
-                                      monitor.name, block_name(scene_, monitor.block), stage.name),
-                          "its history ends there",
-                          "monitor a block that stays, or move the point out of the opening"});
+        run.notes.push_back({Severity::warning, monitor.where,
+                             fmt::format("monitor '{}' follows block '{}', which stage '{}' excavates",
+                                         monitor.name, block_name(run.scene, monitor.block), stage.name),
+                             "its history ends there",
+                             "monitor a block that stays, or move the point out of the opening"});
       }
     }
   }

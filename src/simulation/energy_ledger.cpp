@@ -5,6 +5,7 @@
 #include "contact/laws/region_law.hpp"
 #include "contact/pair_energies.hpp"
 #include "dynamics/deformable.hpp"
+#include "simulation/step_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,17 +50,17 @@ double kinetic_energy(const BlockSystem &blocks, std::size_t row, const RigidDof
 
 /// k_n/2 of a mixed pair: that of its regions in the ratio of their energies, which to first order is that of
 /// int d^2 ds; of a region that nobody has evaluated yet that of the law it would be born with.
-double mean_stiffness(const Simulation &simulation, std::size_t number, const BlockView &first,
+double mean_stiffness(const RunState &run, std::size_t number, const BlockView &first,
                       const BlockView &second) {
-  const CandidatePair &pair = simulation.candidates().pairs[number];
-  const ContactParameters &parameters = simulation.contacts().parameters();
-  const std::vector<RegionMemory> known = simulation.history().of_pair(number);
+  const CandidatePair &pair = run.neighbours.candidates.pairs[number];
+  const ContactParameters &parameters = run.contacts.parameters();
+  const std::vector<RegionMemory> known = run.neighbours.history.of_pair(number);
   Overlap overlap;
   overlap.find(first, second, parameters.potential);
   double weights = 0.0;
   double weighted = 0.0;
   for (const Region &region : overlap.regions()) {
-    std::int32_t law = law_at_birth(simulation.blocks(), parameters.joints, pair, overlap.pieces(), region);
+    std::int32_t law = law_at_birth(run.blocks, parameters.joints, pair, overlap.pieces(), region);
     for (const RegionMemory &memory : known) {
       const bool same =
           memory.lower_stretch == region.faces.first && memory.higher_stretch == region.faces.second;
@@ -85,11 +86,11 @@ template <class Counts> double energy_share(const Overlap &overlap, Counts &&cou
 }
 
 /// Of a pair with dilated regions: each with its own opening taken out, the rest as the blocks lie.
-double dilated_energy(const Simulation &simulation, std::size_t number, const BlockView &first,
+double dilated_energy(const RunState &run, std::size_t number, const BlockView &first,
                       const BlockView &second) {
-  const CandidatePair &pair = simulation.candidates().pairs[number];
-  const ContactParameters &parameters = simulation.contacts().parameters();
-  const std::vector<RegionMemory> known = simulation.history().of_pair(number);
+  const CandidatePair &pair = run.neighbours.candidates.pairs[number];
+  const ContactParameters &parameters = run.contacts.parameters();
+  const std::vector<RegionMemory> known = run.neighbours.history.of_pair(number);
   Overlap overlap;
   ClosedPair closed;
   double sum = 0.0;
@@ -97,12 +98,12 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
     if (!memory.is_dilated()) {
       continue;
     }
-    closed.move(simulation.blocks(), pair, memory.dilation);
+    closed.move(run.blocks, pair, memory.dilation);
     if (!closed.lower().box.meets(closed.higher().box) ||
         !overlap.find(closed.lower(), closed.higher(), parameters.potential)) {
       continue;
     }
-    const Region *own = region_of(simulation.blocks(), pair, overlap, memory);
+    const Region *own = region_of(run.blocks, pair, overlap, memory);
     sum += parameters.constants(memory.law >= 0 ? memory.law : pair.law).half_stiffness *
            overlap_energy(closed.lower(), closed.higher()) *
            energy_share(overlap, [&](const Region &region) { return &region == own; });
@@ -115,33 +116,34 @@ double dilated_energy(const Simulation &simulation, std::size_t number, const Bl
       return memory.is_dilated() && region.faces == RegionFaces{memory.lower_stretch, memory.higher_stretch};
     });
   };
-  const double half_stiffness = pair.is_mixed ? mean_stiffness(simulation, number, first, second)
+  const double half_stiffness = pair.is_mixed ? mean_stiffness(run, number, first, second)
                                               : parameters.constants(pair.law).half_stiffness;
   return sum + half_stiffness * overlap_energy(first, second) * energy_share(overlap, is_fresh);
 }
 
 /// Potential of the contact pressure of each candidate pair, J/m; zero where the pair counts on another rank.
-std::vector<double> normal_energies(const Simulation &simulation) {
-  std::vector<double> found(simulation.candidates().pairs.size(), 0.0);
-  const BlockSystem &blocks = simulation.blocks();
+std::vector<double> normal_energies(const RunState &run) {
+  std::vector<double> found(run.neighbours.candidates.pairs.size(), 0.0);
+  const BlockSystem &blocks = run.blocks;
   PairEnergies energies;
   std::array<TrialOutline, 2> outlines;
   std::span<const double> of_group;
-  const ContactHistory &history = simulation.history();
+  const ContactHistory &history = run.neighbours.history;
   const auto half_stiffness_of = [&](std::int32_t law) {
-    return simulation.contacts().parameters().constants(law).half_stiffness;
+    return run.contacts.parameters().constants(law).half_stiffness;
   };
-  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
-    const CandidatePair &pair = simulation.candidates().pairs[k];
+  for (std::size_t k = 0; k < run.neighbours.candidates.pairs.size(); ++k) {
+    const CandidatePair &pair = run.neighbours.candidates.pairs[k];
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
     const bool is_dilated = history.is_dilated(k);
     const std::size_t place = k % PlainPair::pairs_in_group;
     if (place == 0) {
-      of_group = energies.of_group(blocks, simulation.candidates(),
+      of_group = energies.of_group(blocks, run.neighbours.candidates,
                                    static_cast<std::uint32_t>(k / PlainPair::pairs_in_group));
     }
-    if (!simulation.counts_here(pair) || !(is_dilated || blocks.motion[a].box.meets(blocks.motion[b].box))) {
+    if (!counts_here(run.blocks, pair.lower) ||
+        !(is_dilated || blocks.motion[a].box.meets(blocks.motion[b].box))) {
       continue;
     }
     const double energy = of_group[place];
@@ -156,10 +158,10 @@ std::vector<double> normal_energies(const Simulation &simulation) {
     const BlockView first = view_of(blocks, a, outlines[0]);
     const BlockView second = view_of(blocks, b, outlines[1]);
     if (is_dilated) {
-      found[k] = dilated_energy(simulation, k, first, second);
+      found[k] = dilated_energy(run, k, first, second);
     } else {
       const double half_stiffness =
-          has_one_law ? half_stiffness_of(law) : mean_stiffness(simulation, k, first, second);
+          has_one_law ? half_stiffness_of(law) : mean_stiffness(run, k, first, second);
       found[k] = half_stiffness * (is_known ? energy : overlap_energy(first, second));
     }
   }
@@ -184,27 +186,26 @@ struct Spring {
   double half_stiffness = 0.0;
 };
 
-Spring spring_of(const Simulation &simulation, const CandidatePair &pair, const RegionState &memory) {
-  const LawConstants constants =
-      simulation.contacts().parameters().constants(memory.law >= 0 ? memory.law : pair.law);
+Spring spring_of(const RunState &run, const CandidatePair &pair, const RegionState &memory) {
+  const LawConstants constants = run.contacts.parameters().constants(memory.law >= 0 ? memory.law : pair.law);
   return {constants.tangential_stiffness * memory.longest, constants.half_stiffness};
 }
 
 /// visit(pair, memory) for all regions and bonds that count here.
-template <class Visit> void for_memories(const Simulation &simulation, Visit &&visit) {
-  for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
-    const CandidatePair &pair = simulation.candidates().pairs[k];
-    if (simulation.counts_here(pair)) {
-      simulation.history().for_pair(k, [&](const RegionMemory &memory) { visit(pair, memory); });
+template <class Visit> void for_memories(const RunState &run, Visit &&visit) {
+  for (std::size_t k = 0; k < run.neighbours.candidates.pairs.size(); ++k) {
+    const CandidatePair &pair = run.neighbours.candidates.pairs[k];
+    if (counts_here(run.blocks, pair.lower)) {
+      run.neighbours.history.for_pair(k, [&](const RegionMemory &memory) { visit(pair, memory); });
     }
   }
 }
 
-void add_stick(const Simulation &simulation, ExactSum &sum) {
-  for_memories(simulation, [&](const CandidatePair &pair, const RegionMemory &memory) {
-    const Spring spring = spring_of(simulation, pair, memory);
+void add_stick(const RunState &run, ExactSum &sum) {
+  for_memories(run, [&](const CandidatePair &pair, const RegionMemory &memory) {
+    const Spring spring = spring_of(run, pair, memory);
     if (memory.is_bond()) {
-      sum.add(2.0 * spring.half_stiffness * bond_energy(simulation.blocks(), pair, memory, false));
+      sum.add(2.0 * spring.half_stiffness * bond_energy(run.blocks, pair, memory, false));
     }
     if (memory.shear != 0.0) {
       sum.add(0.5 * memory.shear * memory.shear / spring.stiffness);
@@ -213,15 +214,15 @@ void add_stick(const Simulation &simulation, ExactSum &sum) {
 }
 
 /// In the middle, while the coming configuration is looked at.
-void add_bonds(const Simulation &simulation, ExactSum &sum) {
-  for_memories(simulation, [&](const CandidatePair &pair, const RegionMemory &bond) {
+void add_bonds(const RunState &run, ExactSum &sum) {
+  for_memories(run, [&](const CandidatePair &pair, const RegionMemory &bond) {
     if (!bond.is_bond()) {
       return;
     }
-    const Spring spring = spring_of(simulation, pair, bond);
-    sum.add(2.0 * spring.half_stiffness * bond_energy(simulation.blocks(), pair, bond, true));
+    const Spring spring = spring_of(run, pair, bond);
+    sum.add(2.0 * spring.half_stiffness * bond_energy(run.blocks, pair, bond, true));
     if (bond.shear != 0.0) {
-      const double slide = opening_of(simulation.blocks(), pair, bond, Configuration::trial).slide;
+      const double slide = opening_of(run.blocks, pair, bond, Configuration::trial).slide;
       const double next =
           bond.shear + (bond.state == ContactState::slip ? 0.0 : spring.stiffness * (slide - bond.slip));
       sum.add(0.5 * bond.shear * next / spring.stiffness);
@@ -230,19 +231,21 @@ void add_bonds(const Simulation &simulation, ExactSum &sum) {
 }
 
 /// In the middle, of all but bonds.
-void add_coming_stick(const Simulation &simulation, const ComingConfiguration &coming, ExactSum &sum) {
-  simulation.digest_contacts([&](std::uint32_t number, std::size_t k, const RegionForce &force) {
-    const CandidatePair &pair = simulation.candidates().pairs[number];
-    const RegionState &memory = simulation.history().state(number, k);
-    if (force.bonded || memory.shear == 0.0 || !simulation.counts_here(pair)) {
-      return;
-    }
-    const Spring spring = spring_of(simulation, pair, memory);
-    const double slide = memory.state == ContactState::slip
-                             ? 0.0
-                             : coming.slide(simulation.blocks(), pair, force.grip, force.normal);
-    sum.add(0.5 * memory.shear * (memory.shear + spring.stiffness * slide) / spring.stiffness);
-  });
+void add_coming_stick(RunState &run, const ComingConfiguration &coming, ExactSum &sum) {
+  run.digest.emplace().find(
+      run.blocks, run.neighbours.candidates, run.neighbours.history, run.contacts,
+      [&](std::uint32_t number, std::size_t k, const RegionForce &force) {
+        const CandidatePair &pair = run.neighbours.candidates.pairs[number];
+        const RegionState &memory = run.neighbours.history.state(number, k);
+        if (force.bonded || memory.shear == 0.0 || !counts_here(run.blocks, pair.lower)) {
+          return;
+        }
+        const Spring spring = spring_of(run, pair, memory);
+        const double slide = memory.state == ContactState::slip
+                                 ? 0.0
+                                 : coming.slide(run.blocks, pair, force.grip, force.normal);
+        sum.add(0.5 * memory.shear * (memory.shear + spring.stiffness * slide) / spring.stiffness);
+      });
 }
 
 enum class Moment { now, middle };
@@ -266,29 +269,31 @@ Mat2 stretch_rate(const BlockSystem &blocks, std::size_t row, double time_step) 
   return blocks.is_deformable(row) ? (1.0 / time_step) * blocks.gradient_increment(row) : Mat2{};
 }
 
-Terms initial_terms(const Simulation &simulation) {
+Terms initial_terms(const RunState &run) {
   Terms terms;
-  const BlockSystem &blocks = simulation.blocks();
+  const BlockSystem &blocks = run.blocks;
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     const bool deformable = blocks.is_deformable(row);
     terms.kinetic.add(kinetic_energy(blocks, row, blocks.velocity[row],
                                      deformable ? blocks.deformation_of(row).rate : Mat2{}));
   }
   add_strain(blocks, Moment::now, terms.strain);
-  for (const double energy : normal_energies(simulation)) {
+  for (const double energy : normal_energies(run)) {
     terms.normal.add(energy);
   }
-  add_stick(simulation, terms.stick);
-  simulation.bolts().add_energies(1.0, terms.support);
+  add_stick(run, terms.stick);
+  run.bolts.add_energies(1.0, terms.support);
   return terms;
 }
 
-Terms current_terms(Simulation &simulation) {
+Terms current_terms(RunState &run) {
   Terms terms;
-  const double time_step = simulation.plan().time_step;
+  const double time_step = run.clock.plan.time_step;
   std::optional<ComingConfiguration> coming;
   std::vector<double> coming_normal;
-  simulation.look_ahead([&](const BlockSystem &blocks) {
+  {
+    const ComingTrial ahead(run);
+    const BlockSystem &blocks = run.blocks;
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
       const BlockLedger &ledger = blocks.ledger[row];
       const HalfWorks half = half_works(blocks, row, applied_forces(blocks, row));
@@ -301,58 +306,57 @@ Terms current_terms(Simulation &simulation) {
       terms.load_work.add(ledger.load + half.load + anchor_half_work(blocks, row));
     }
     add_strain(blocks, Moment::middle, terms.strain);
-    coming_normal = normal_energies(simulation);
-    add_bonds(simulation, terms.stick);
-    simulation.bolts().add_energies_at(blocks, 0.5, terms.support);
+    coming_normal = normal_energies(run);
+    add_bonds(run, terms.stick);
+    run.bolts.add_energies_at(blocks, 0.5, terms.support);
     coming.emplace(blocks);
-  });
-  add_coming_stick(simulation, *coming, terms.stick);
-  add_normal(normal_energies(simulation), coming_normal, terms);
-  simulation.bolts().add_energies(0.5, terms.support);
+  }
+  add_coming_stick(run, *coming, terms.stick);
+  add_normal(normal_energies(run), coming_normal, terms);
+  run.bolts.add_energies(0.5, terms.support);
   return terms;
 }
 
 /// Largest net force over the largest force that acts anywhere; rows and pairs of the last evaluation.
-double unbalanced_ratio(const Simulation &simulation) {
-  const BlockSystem &blocks = simulation.blocks();
+double unbalanced_ratio(const RunState &run) {
+  const BlockSystem &blocks = run.blocks;
   std::array<double, 2> largest{};
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     if (!blocks.properties[row].keeps_its_velocity()) {
       largest[0] = std::max(largest[0], norm(blocks.contact[row].force.u));
-      largest[1] =
-          std::max(largest[1], blocks.properties[row].heavy_mass() * norm(simulation.scene().run.gravity));
+      largest[1] = std::max(largest[1], blocks.properties[row].heavy_mass() * norm(run.scene.run.gravity));
     }
   }
-  largest[1] = std::max(largest[1], simulation.contacts().sums().largest_force());
-  simulation.communicator().max(largest);
+  largest[1] = std::max(largest[1], run.contacts.sums().largest_force());
+  run.communicator.max(largest);
   return largest[1] > 0.0 ? largest[0] / largest[1] : 0.0;
 }
 
-double max_speed(const Simulation &simulation) {
+double max_speed(const RunState &run) {
   double fastest = 0.0;
-  for (std::size_t row = 0; row < simulation.blocks().num_owned; ++row) {
-    fastest = std::max(fastest, norm(simulation.blocks().velocity[row].u));
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    fastest = std::max(fastest, norm(run.blocks.velocity[row].u));
   }
-  simulation.communicator().max(std::span(&fastest, 1));
+  run.communicator.max(std::span(&fastest, 1));
   return fastest;
 }
 
 } // namespace
 
-EnergyLedger::EnergyLedger(Simulation &simulation) {
-  Terms terms = initial_terms(simulation);
-  terms.agree(simulation.communicator());
+EnergyLedger::EnergyLedger(RunState &run) {
+  Terms terms = initial_terms(run);
+  terms.agree(run.communicator);
   stick_at_start_ = terms.stick.value();
   total_at_start_ = terms.kinetic.value() + terms.strain.value() + terms.normal.value() +
                     terms.stick.value() + terms.support.stored.value();
 }
 
-EnergyRow EnergyLedger::row(Simulation &simulation) const {
+EnergyRow EnergyLedger::row(RunState &run) const {
   EnergyRow row;
-  row.unbalanced_ratio = unbalanced_ratio(simulation);
-  row.max_speed = max_speed(simulation);
-  Terms terms = simulation.step_count() == 0 ? initial_terms(simulation) : current_terms(simulation);
-  terms.agree(simulation.communicator());
+  row.unbalanced_ratio = unbalanced_ratio(run);
+  row.max_speed = max_speed(run);
+  Terms terms = run.clock.step_count == 0 ? initial_terms(run) : current_terms(run);
+  terms.agree(run.communicator);
   row.kinetic = terms.kinetic.value();
   row.strain = terms.strain.value();
   row.contact_normal = terms.normal.value();
@@ -375,16 +379,16 @@ EnergyRow EnergyLedger::row(Simulation &simulation) const {
   return row;
 }
 
-void EnergyLedger::note_end(Simulation &simulation) {
-  const EnergyRow now = row(simulation);
+void EnergyLedger::note_end(RunState &run) {
+  const EnergyRow now = row(run);
   at_end_.clear();
   for (double EnergyRow::*sum : carried) {
     at_end_.push_back(now.*sum);
   }
 }
 
-void EnergyLedger::step_over(Simulation &simulation) {
-  const EnergyRow now = row(simulation);
+void EnergyLedger::step_over(RunState &run) {
+  const EnergyRow now = row(run);
   before_.resize(carried.size());
   at_end_.resize(carried.size());
   for (std::size_t k = 0; k < carried.size(); ++k) {

@@ -20,7 +20,7 @@
 // as the means of both trial configurations.
 
 #include "gcpdda/io/result_files.hpp"
-#include "simulation/simulation.hpp"
+#include "simulation/run_state.hpp"
 
 #include <array>
 #include <vector>
@@ -30,7 +30,7 @@ namespace gcpdda {
 class EnergyLedger {
 public:
   /// Energies of the initial state. Collective.
-  explicit EnergyLedger(Simulation &simulation);
+  explicit EnergyLedger(RunState &run);
   /// Of a run that goes on: what the first one found.
   explicit EnergyLedger(const RunFacts &facts)
       : total_at_start_(facts.total_at_start), stick_at_start_(facts.stick_at_start) {
@@ -40,15 +40,15 @@ public:
   }
 
   /// A stage has ended. Collective.
-  void note_end(Simulation &simulation);
+  void note_end(RunState &run);
   /// The state has been changed at once since: what was lost and worked so far stays, and the residual goes
   /// on from where it was. Collective.
-  void step_over(Simulation &simulation);
+  void step_over(RunState &run);
   /// Into what a checkpoint holds.
   void tell(RunFacts &facts) const;
 
   /// The row of the current state, which stays as it is. Collective.
-  [[nodiscard]] EnergyRow row(Simulation &simulation) const;
+  [[nodiscard]] EnergyRow row(RunState &run) const;
 
 private:
   double total_at_start_ = 0.0;

@@ -1,16 +1,6 @@
-// Blocks that overlap at the start by more than a contact may.
-//
-// The overlap of a contact is thin: nowhere deeper than a share of the narrower block's width. The depth of
-// an overlap is that of the edges inside, and it vanishes where outlines coincide: a block that is listed
-// twice touches itself without a force. There the area tells. Where all edges inside are in a thin depth, the
-// common area is either thin itself, less than a third of the smaller block even if it goes all around a
-// triangle, or nearly the whole of it; a half separates them.
-//
-// Between blocks that keep their motion no contact acts, and supports may overlap on purpose. The same of
-// them twice is a slip all the same.
+#include "simulation/initial_overlaps.hpp"
 
 #include "geometry/common_area.hpp"
-#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <array>
@@ -141,12 +131,12 @@ private:
 } // namespace
 
 // Each rank lists its faults and the deepest of its other overlaps; all ranks make the same list of them.
-void Simulation::check_initial_overlaps() {
-  OverlapCheck check(blocks_);
+void check_initial_overlaps(RunState &run) {
+  OverlapCheck check(run.blocks);
   std::vector<InitialOverlap> mine;
-  for (const CandidatePair &pair : candidates_.pairs) {
+  for (const CandidatePair &pair : run.neighbours.candidates.pairs) {
     InitialOverlap overlap = check.of(pair.lower, pair.higher);
-    if (counts_here(pair)) {
+    if (counts_here(run.blocks, pair.lower)) {
       overlap.common_area =
           check.common_area_above(largest_common_share * overlap.smaller_area, pair.lower, pair.higher);
     }
@@ -154,7 +144,7 @@ void Simulation::check_initial_overlaps() {
       mine.push_back(overlap);
     }
   }
-  for (const auto &[lower, higher] : find_kept_pairs(blocks_)) {
+  for (const auto &[lower, higher] : find_kept_pairs(run.blocks)) {
     InitialOverlap overlap = check.of(lower, higher);
     overlap.common_area = check.common_area_above(share_of_same * overlap.larger_area, lower, higher);
     if (overlap.is_same_twice()) {
@@ -162,31 +152,32 @@ void Simulation::check_initial_overlaps() {
     }
   }
   InitialOverlap deepest;
-  for_regions(0, candidates_.pairs.size(), [&](std::uint32_t number, std::span<const RegionForce> regions) {
-    const CandidatePair &pair = candidates_.pairs[number];
-    if (!counts_here(pair)) {
-      return;
-    }
-    for (const RegionForce &force : regions) {
-      InitialOverlap overlap = check.of(pair.lower, pair.higher);
-      overlap.depth = force.overlap;
-      if (overlap.is_too_deep()) {
-        mine.push_back(overlap);
-      } else if (overlap.depth > deepest.depth) {
-        deepest = overlap;
-      }
-    }
-  });
+  for_regions(run, 0, run.neighbours.candidates.pairs.size(),
+              [&](std::uint32_t number, std::span<const RegionForce> regions) {
+                const CandidatePair &pair = run.neighbours.candidates.pairs[number];
+                if (!counts_here(run.blocks, pair.lower)) {
+                  return;
+                }
+                for (const RegionForce &force : regions) {
+                  InitialOverlap overlap = check.of(pair.lower, pair.higher);
+                  overlap.depth = force.overlap;
+                  if (overlap.is_too_deep()) {
+                    mine.push_back(overlap);
+                  } else if (overlap.depth > deepest.depth) {
+                    deepest = overlap;
+                  }
+                }
+              });
   mine.push_back(deepest);
   std::vector<InitialOverlap> all;
-  for (const auto &from_rank : communicator_.all_gather(mine)) {
+  for (const auto &from_rank : run.communicator.all_gather(mine)) {
     all.insert(all.end(), from_rank.begin(), from_rank.end());
   }
-  const Diagnostics found = notes_of(scene_, std::move(all));
+  const Diagnostics found = notes_of(run.scene, std::move(all));
   if (has_errors(found)) {
-    local_fault_.reset(); // the list says it better
+    run.local_fault.reset(); // the list says it better
   }
-  notes_.insert(notes_.end(), found.begin(), found.end());
+  run.notes.insert(run.notes.end(), found.begin(), found.end());
 }
 
 } // namespace gcpdda

@@ -1,75 +1,48 @@
-// The consistent initial state of a Simulation.
+#include "simulation/initial_state.hpp"
 
 #include "contact/laws/bonds.hpp"
 #include "contact/laws/initial_friction.hpp"
-#include "simulation/simulation.hpp"
+#include "simulation/doubts.hpp"
+#include "simulation/evaluation.hpp"
+#include "simulation/in_situ_state.hpp"
+#include "simulation/initial_overlaps.hpp"
+#include "simulation/step_report.hpp"
+#include "simulation/step_rows.hpp"
 
 #include <fmt/format.h>
 
 namespace gcpdda {
 
+namespace {
+
 // The blocks of a bond must stay candidates until it breaks.
-void Simulation::check_bonds() {
-  for (const JointLaw &law : scene_.joints.laws) {
+void check_bonds(RunState &run) {
+  for (const JointLaw &law : run.scene.joints.laws) {
     const double opening = law.tension / law.normal_stiffness;
-    if (law.has_bonds && opening > 0.5 * base_skin_) {
-      notes_.push_back(
+    if (law.has_bonds && opening > 0.5 * run.neighbours.base_skin) {
+      run.notes.push_back(
           {Severity::error,
            {},
            fmt::format("bonds of [joint.{}] open by {:.3g} m before they break", law.name, opening),
            fmt::format("that is tension/normal_stiffness, and blocks are looked for within {:.3g} m",
-                       0.5 * base_skin_),
+                       0.5 * run.neighbours.base_skin),
            "raise normal_stiffness or lower tension"});
     }
   }
 }
 
-void Simulation::accelerate_owned() {
-  sum_forces();
-  prepare_forces();
-  blocks_.body = {gravity(), ground_acceleration()};
-  gather_forces(0, blocks_.num_owned, blocks_.body);
-  accelerate(blocks_);
-  prescribe_motion();
-}
-
-// a_0 = M^-1 F(0): constant acceleration is then exact from the first step.
-void Simulation::find_initial_state() {
-  check_bonds(); // told with the other faults of the initial state
-  bond_joints(blocks_, candidates_, contacts_.parameters().joints, in_situ_overlap_, history_);
-  take(contacts_.evaluate(blocks_, candidates_, history_)); // ghosts are whole copies yet
-  evaluate_bolts();
-  check_initial_overlaps();
-  explain_slivers();
-  if (scene_.run.initial_friction == InitialFriction::consistent && !scene_.in_situ.present) {
-    find_initial_friction();
-  } else {
-    if (scene_.in_situ.present) {
-      put_initial_shear();
-    }
-    accelerate_owned();
-  }
-  progress_.report.rows_to_check = {{0, blocks_.num_owned}};
-  report();
-  counters_.evaluations = 0; // these are of steps
-  counters_.block_steps = 0;
-  counters_.contact_steps = 0;
-  counters_.messages = 0;
-  counters_.bytes = 0;
-}
-
-void Simulation::find_initial_friction() {
-  InitialStick stick(blocks_, candidates_, contacts_, history_);
-  ghosts_.copy(stick.contact_counts());
+void find_initial_friction(RunState &run) {
+  InitialStick stick(run.blocks, run.neighbours.candidates, run.contacts, run.neighbours.history);
+  run.neighbours.ghosts.copy(stick.contact_counts());
   const auto sweep = [&] {
-    ghosts_.copy_accelerations(blocks_);
+    run.neighbours.ghosts.copy_accelerations(run.blocks);
     double residual = stick.sweep();
-    communicator_.max(std::span(&residual, 1));
-    accelerate_owned();
+    run.communicator.max(std::span(&residual, 1));
+    accelerate_owned(run);
     return residual;
   };
   constexpr int num_sweeps = 50;
-  accelerate_owned();
+  accelerate_owned(run);
   const double before = sweep();
   double after = before;
   for (int done = 1; done <= num_sweeps && after > 0.0; ++done) {
@@ -77,14 +50,42 @@ void Simulation::find_initial_friction() {
   }
   if (before > 0.0 && !(after < before)) {
     stick.reset();
-    accelerate_owned();
-    notes_.push_back(
+    accelerate_owned(run);
+    run.notes.push_back(
         {Severity::info,
          {},
          "friction starts at zero",
          fmt::format("{} sweeps did not bring the initial stick forces nearer to equilibrium", num_sweeps),
          ""});
   }
+}
+
+} // namespace
+
+// a_0 = M^-1 F(0): constant acceleration is then exact from the first step.
+void find_initial_state(RunState &run) {
+  check_bonds(run); // told with the other faults of the initial state
+  bond_joints(run.blocks, run.neighbours.candidates, run.contacts.parameters().joints, run.in_situ_overlap,
+              run.neighbours.history);
+  evaluate_all(run);
+  check_initial_overlaps(run);
+  explain_slivers(run);
+  if (run.scene.run.initial_friction == InitialFriction::consistent && !run.scene.in_situ.present) {
+    find_initial_friction(run);
+  } else {
+    if (run.scene.in_situ.present) {
+      put_initial_shear(run);
+    }
+    accelerate_owned(run);
+  }
+  AdvanceReport all;
+  all.rows_to_check = {{0, run.blocks.num_owned}};
+  report_step(run, all);
+  run.counters.evaluations = 0; // these are of steps
+  run.counters.block_steps = 0;
+  run.counters.contact_steps = 0;
+  run.counters.messages = 0;
+  run.counters.bytes = 0;
 }
 
 } // namespace gcpdda

@@ -1,14 +1,4 @@
-// Forces of a Simulation that change in the course of time (model/load_course.hpp): point loads and the
-// stress on sides of the region.
-//
-// A material load names its course by a number; course 0 is the constant one. The list of courses is made
-// from the scene and the times at which its stages began, the same on every rank, and stands in no
-// checkpoint: a restart makes it again. First come those of the stress on sides, where a stage changes it: an
-// edge on such a side has the forces of every stress that it will be under from the start on, and the course
-// of each says when it acts. Those of point loads follow. A row's point loads stand before those of its
-// sides, in the order of SceneBlock::loads.
-
-#include "simulation/simulation.hpp"
+#include "simulation/loads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,11 +32,23 @@ void replace_loads(BlockSystem &system, std::size_t row, std::size_t num_before,
 
 } // namespace
 
-// Those of the start.
-void Simulation::list_courses() {
+Loads::Loads(const Scene &scene) {
+  for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
+    if (!scene.blocks[i].velocity_table.empty()) {
+      prescribed.emplace_back(BlockId{static_cast<std::int64_t>(i)},
+                              PrescribedMotion(scene.blocks[i].velocity_table));
+    }
+  }
+}
+
+Vec2 Loads::gravity(const RunSettings &run) const {
+  return Rise{0.0, run.gravity_ramp}.at(time) * run.gravity;
+}
+
+void Loads::list_courses(Scene &scene, std::span<const Stage> stages) {
   courses_.assign(1, LoadCourse{});
-  side_stresses_.assign(1, scene_.in_situ);
-  for (const Stage &stage : stages_) {
+  side_stresses_.assign(1, scene.in_situ);
+  for (const Stage &stage : stages) {
     if (stage.changes_stress) {
       side_stresses_.push_back(stage.after->in_situ);
     }
@@ -57,25 +59,25 @@ void Simulation::list_courses() {
       courses_[k].in.begin = std::numeric_limits<double>::infinity();
     }
   }
-  for (SceneBlock &block : scene_.blocks) {
+  for (SceneBlock &block : scene.blocks) {
     for (PointLoad &load : block.loads) {
       load.course = is_constant(load) ? 0 : new_course({0.0, load.ramp, load.table});
     }
   }
 }
 
-std::int64_t Simulation::new_course(LoadCourse course) {
+std::int64_t Loads::new_course(LoadCourse course) {
   courses_.push_back(std::move(course));
   return std::ssize(courses_) - 1;
 }
 
-Vec2 Simulation::force_of(const MaterialLoad &load) const {
+Vec2 Loads::force_of(const MaterialLoad &load) const {
   return load.course == 0 ? load.force
-                          : courses_[static_cast<std::size_t>(load.course)].factor(load_time_) * load.force;
+                          : courses_[static_cast<std::size_t>(load.course)].factor(time) * load.force;
 }
 
 // Linear along an edge, and so at its ends: what does the same work on any motion that is linear there.
-void Simulation::load_sides(std::span<SceneBlock> slab) const {
+void Loads::load_sides(std::span<SceneBlock> slab) const {
   for (std::size_t number = 0; number < side_stresses_.size(); ++number) {
     const InSituStress &stress = side_stresses_[number];
     const std::int64_t course = side_stresses_.size() > 1 ? static_cast<std::int64_t>(1 + number) : 0;
@@ -98,15 +100,7 @@ void Simulation::load_sides(std::span<SceneBlock> slab) const {
   }
 }
 
-// As a rank knows it without a look at the blocks.
-double Simulation::start_of_stage(std::int64_t stage, const StageState &state) {
-  return stage == 0             ? 0.0
-         : stage == state.index ? state.start_time
-                                : state.results[static_cast<std::size_t>(stage - 1)].time;
-}
-
-// The next stress on sides comes in, those before go.
-void Simulation::change_side_stress(const Rise &change) {
+void Loads::change_side_stress(const Rise &change) {
   std::size_t next = 2;
   while (std::isfinite(courses_[next].in.begin)) {
     ++next;
@@ -117,12 +111,8 @@ void Simulation::change_side_stress(const Rise &change) {
   }
 }
 
-/// What acts on a block once a stage has changed its loads.
-///
-/// @param acting  before; numbered
-/// @param listed  in the scene of the stage
-std::vector<PointLoad> Simulation::loads_after(std::vector<PointLoad> acting, std::vector<PointLoad> listed,
-                                               const Rise &change) {
+std::vector<PointLoad> Loads::after(std::vector<PointLoad> acting, std::vector<PointLoad> listed,
+                                    const Rise &change) {
   const auto is_going = [&](const PointLoad &load) {
     return !courses_[static_cast<std::size_t>(load.course)].out.empty();
   };
@@ -148,27 +138,36 @@ std::vector<PointLoad> Simulation::loads_after(std::vector<PointLoad> acting, st
   return listed;
 }
 
-void Simulation::adopt_loads(std::size_t row, const std::vector<PointLoad> &before,
-                             const std::vector<PointLoad> &after) {
+void adopt_loads(BlockSystem &blocks, std::size_t row, const std::vector<PointLoad> &before,
+                 const std::vector<PointLoad> &after) {
   const auto same = [](const PointLoad &a, const PointLoad &b) {
     return same_load(a, b) && a.course == b.course;
   };
   if (!std::equal(before.begin(), before.end(), after.begin(), after.end(), same)) {
-    replace_loads(blocks_, row, before.size(), after);
+    replace_loads(blocks, row, before.size(), after);
   }
 }
 
-// Of forces that act on blocks that are still there.
-bool Simulation::loads_are_changing() const {
-  const auto is_changing = [&](std::size_t course) { return time() < courses_[course].end(); };
+double Loads::end_of_changes(double now) const {
+  double end = now;
+  for (const LoadCourse &course : courses_) {
+    if (course.in.begin <= now) { // else the force comes in with a later stage
+      end = std::max(end, course.end());
+    }
+  }
+  return end;
+}
+
+bool Loads::are_changing(const Scene &scene, const StageState &stage, double now) const {
+  const auto is_changing = [&](std::size_t course) { return now < courses_[course].end(); };
   for (std::size_t k = 1; side_stresses_.size() > 1 && k <= side_stresses_.size(); ++k) {
-    if (courses_[k].in.begin <= time() && is_changing(k)) {
+    if (courses_[k].in.begin <= now && is_changing(k)) {
       return true;
     }
   }
-  for (std::size_t i = 0; i < scene_.blocks.size(); ++i) {
-    const std::vector<PointLoad> &loads = scene_.blocks[i].loads;
-    if (!loads.empty() && !is_removed(static_cast<std::int64_t>(i)) &&
+  for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
+    const std::vector<PointLoad> &loads = scene.blocks[i].loads;
+    if (!loads.empty() && !is_removed(stage, static_cast<std::int64_t>(i)) &&
         std::any_of(loads.begin(), loads.end(), [&](const PointLoad &load) {
           return is_changing(static_cast<std::size_t>(load.course));
         })) {

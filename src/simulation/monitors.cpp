@@ -1,8 +1,7 @@
-// Which blocks the monitored points of a scene follow.
+#include "simulation/monitors.hpp"
 
 #include "gcpdda/io/result_files.hpp"
 #include "geometry/holds_point.hpp"
-#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,28 +10,11 @@
 
 namespace gcpdda {
 
-// A point follows the block that the scene names for it, else the first mobile block that holds it, else the
-// first fixed one.
-void Simulation::place_monitors(std::span<const SceneBlock> slab) {
-  for (Monitor &monitor : scene_.monitors) {
-    if (monitor.block >= num_blocks()) {
-      notes_.push_back(
-          {Severity::error, monitor.where,
-           fmt::format("no block is named '{}'", monitor.is_point ? monitor.block_name : monitor.name),
-           fmt::format("the scene has {} blocks", num_blocks()), "check the name"});
-    } else if (monitor.is_point && monitor.block_name.empty()) {
-      place_point(slab, monitor);
-    } else if (monitor.is_point) {
-      check_named_block(slab, monitor);
-    }
-  }
-  if (has_errors(notes_)) {
-    throw SceneError(notes_);
-  }
-}
+namespace {
 
-void Simulation::place_point(std::span<const SceneBlock> slab, Monitor &monitor) {
-  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+void place_point(RunState &run, std::span<const SceneBlock> slab, Monitor &monitor) {
+  const std::int64_t first =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank());
   constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
   std::array<std::int64_t, 2> minus_ids{none, none}; // the first mobile and the first fixed block
   std::int64_t holders = 0;
@@ -43,42 +25,65 @@ void Simulation::place_point(std::span<const SceneBlock> slab, Monitor &monitor)
       ++holders;
     }
   }
-  communicator_.max(minus_ids);
-  communicator_.sum(std::span(&holders, 1));
+  run.communicator.max(minus_ids);
+  run.communicator.sum(std::span(&holders, 1));
   if (holders == 0) {
-    notes_.push_back({Severity::error, monitor.where,
-                      fmt::format("no block holds the point ({}, {}) of monitor '{}'", monitor.point.x,
-                                  monitor.point.y, monitor.name),
-                      "a monitored point follows the block it lies in", "check 'point'"});
+    run.notes.push_back({Severity::error, monitor.where,
+                         fmt::format("no block holds the point ({}, {}) of monitor '{}'", monitor.point.x,
+                                     monitor.point.y, monitor.name),
+                         "a monitored point follows the block it lies in", "check 'point'"});
     return;
   }
   const bool is_mobile = minus_ids[0] > none;
   monitor.block = -minus_ids[is_mobile ? 0 : 1];
   if (holders > 1) {
-    notes_.push_back(
+    run.notes.push_back(
         {Severity::info, monitor.where,
          fmt::format("monitor '{}' follows the {} block '{}'", monitor.name, is_mobile ? "mobile" : "fixed",
-                     block_name(scene_, monitor.block)),
+                     block_name(run.scene, monitor.block)),
          fmt::format("{} blocks share its point ({}, {})", holders, monitor.point.x, monitor.point.y),
          "set monitor.block to follow another one"});
   }
 }
 
-void Simulation::check_named_block(std::span<const SceneBlock> slab, const Monitor &monitor) {
-  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+void check_named_block(RunState &run, std::span<const SceneBlock> slab, const Monitor &monitor) {
+  const std::int64_t first =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank());
   const std::int64_t place = monitor.block - first;
   double distance = 0.0;
   if (place >= 0 && place < std::ssize(slab)) {
     const std::vector<Vec2> &vertices = slab[static_cast<std::size_t>(place)].vertices;
     distance = holds_point(vertices, monitor.point) ? 0.0 : distance_to_boundary(vertices, monitor.point);
   }
-  distance = communicator_.max(distance);
+  distance = run.communicator.max(distance);
   if (distance > 0.0) {
-    notes_.push_back({Severity::error, monitor.where,
-                      fmt::format("block '{}' does not hold the point ({}, {}) of monitor '{}'",
-                                  monitor.block_name, monitor.point.x, monitor.point.y, monitor.name),
-                      fmt::format("the point lies {:.3g} m outside it", distance),
-                      "move 'point' into the block, or leave monitor.block out"});
+    run.notes.push_back({Severity::error, monitor.where,
+                         fmt::format("block '{}' does not hold the point ({}, {}) of monitor '{}'",
+                                     monitor.block_name, monitor.point.x, monitor.point.y, monitor.name),
+                         fmt::format("the point lies {:.3g} m outside it", distance),
+                         "move 'point' into the block, or leave monitor.block out"});
+  }
+}
+
+} // namespace
+
+// A point follows the block that the scene names for it, else the first mobile block that holds it, else the
+// first fixed one.
+void place_monitors(RunState &run, std::span<const SceneBlock> slab) {
+  for (Monitor &monitor : run.scene.monitors) {
+    if (monitor.block >= num_blocks(run.scene)) {
+      run.notes.push_back(
+          {Severity::error, monitor.where,
+           fmt::format("no block is named '{}'", monitor.is_point ? monitor.block_name : monitor.name),
+           fmt::format("the scene has {} blocks", num_blocks(run.scene)), "check the name"});
+    } else if (monitor.is_point && monitor.block_name.empty()) {
+      place_point(run, slab, monitor);
+    } else if (monitor.is_point) {
+      check_named_block(run, slab, monitor);
+    }
+  }
+  if (has_errors(run.notes)) {
+    throw SceneError(run.notes);
   }
 }
 

@@ -3,7 +3,6 @@
 #include "base/check.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "model/block_source.hpp"
-#include "simulation/simulation.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -119,38 +118,38 @@ void send_to_slabs(const Communicator &communicator, std::int64_t num_blocks, st
   }
 }
 
-// Each rank cuts its share of the tiles; how many blocks there are is known then.
-std::vector<SceneBlock> Simulation::cut_region() {
-  if (!scene_.region_blocks) {
-    expect(!scene_.region.present(), "a scene with a region comes with what cuts it");
+std::vector<SceneBlock> cut_region(RunState &run) {
+  if (!run.scene.region_blocks) {
+    expect(!run.scene.region.present(), "a scene with a region comes with what cuts it");
     return {};
   }
-  const std::int64_t tiles = scene_.region_blocks->num_tiles();
+  const std::int64_t tiles = run.scene.region_blocks->num_tiles();
   BlockSource::Made made =
-      scene_.region_blocks->make(slab_begin(tiles, communicator_.size(), communicator_.rank()),
-                                 slab_begin(tiles, communicator_.size(), communicator_.rank() + 1));
-  if (const Diagnostics faults = all_faults(communicator_, made.faults); has_errors(faults)) {
+      run.scene.region_blocks->make(slab_begin(tiles, run.communicator.size(), run.communicator.rank()),
+                                    slab_begin(tiles, run.communicator.size(), run.communicator.rank() + 1));
+  if (const Diagnostics faults = all_faults(run.communicator, made.faults); has_errors(faults)) {
     throw SceneError(faults);
   }
   std::int64_t count = static_cast<std::int64_t>(made.blocks.size());
-  communicator_.sum(std::span(&count, 1));
-  scene_.num_region_blocks = count;
+  run.communicator.sum(std::span(&count, 1));
+  run.scene.num_region_blocks = count;
   return std::move(made.blocks);
 }
 
-// Everybody learns which blocks lie in the openings.
-void Simulation::note_groups(std::span<const SceneBlock> slab) {
-  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
-  scene_.groups.clear();
-  for (std::size_t opening = 0; opening < scene_.region.openings.size(); ++opening) {
+void note_groups(RunState &run, std::span<const SceneBlock> slab) {
+  const std::int64_t first =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank());
+  run.scene.groups.clear();
+  for (std::size_t opening = 0; opening < run.scene.region.openings.size(); ++opening) {
     std::vector<std::int64_t> mine;
     for (std::size_t k = 0; k < slab.size(); ++k) {
       if (slab[k].opening == static_cast<std::int32_t>(opening)) {
         mine.push_back(first + static_cast<std::int64_t>(k));
       }
     }
-    BlockGroup &group = scene_.groups.emplace_back(BlockGroup{scene_.region.openings[opening].name, {}});
-    for (const std::vector<std::int64_t> &theirs : communicator_.all_gather(mine)) {
+    BlockGroup &group =
+        run.scene.groups.emplace_back(BlockGroup{run.scene.region.openings[opening].name, {}});
+    for (const std::vector<std::int64_t> &theirs : run.communicator.all_gather(mine)) {
       group.blocks.insert(group.blocks.end(), theirs.begin(), theirs.end());
     }
   }

@@ -3,8 +3,10 @@
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
+#include "simulation/run_state.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace gcpdda {
@@ -18,5 +20,12 @@ Diagnostics all_faults(const Communicator &communicator, const Diagnostics &mine
 /// @param num_blocks  of the scene
 void send_to_slabs(const Communicator &communicator, std::int64_t num_blocks, std::int64_t first,
                    std::vector<SceneBlock> cut, std::vector<SceneBlock> &slab);
+
+/// Each rank cuts its share of the tiles of the scene's region; how many blocks there are is known then.
+/// Collective.
+/// @throws SceneError
+std::vector<SceneBlock> cut_region(RunState &run);
+/// Everybody learns which blocks lie in the openings. Collective.
+void note_groups(RunState &run, std::span<const SceneBlock> slab);
 
 } // namespace gcpdda

@@ -24,11 +24,11 @@ FrameRow row_of(const BlockSystem &blocks, std::size_t row) {
 }
 
 /// Reactions on the fixed blocks of this rank's id slab, by fixed id, then by mobile id.
-std::vector<Reaction> collect_reactions(const Simulation &simulation) {
+std::vector<Reaction> collect_reactions(Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
   const int num_ranks = simulation.communicator().size();
   std::vector<std::vector<Reaction>> outgoing(static_cast<std::size_t>(num_ranks));
-  for (const ContactDigest::OnFixed &on_fixed : simulation.contact_digest().on_fixed) {
+  for (const ContactDigest::OnFixed &on_fixed : contact_digest(simulation.state()).on_fixed) {
     const std::int64_t id = blocks.properties[on_fixed.row].id.value;
     const auto writer = static_cast<std::size_t>(slab_owner(simulation.num_blocks(), num_ranks, id));
     outgoing[writer].push_back({id, blocks.properties[on_fixed.other].id.value, on_fixed.part});
@@ -64,13 +64,13 @@ BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 sta
 }
 
 /// (1/area) int sym(x f) of a rigid row's contacts and loads: on an edge under load half of it is the load's.
-std::array<double, 3> mean_rigid_stress(const Simulation &simulation, std::size_t index) {
+std::array<double, 3> mean_rigid_stress(Simulation &simulation, std::size_t index) {
   const BlockSystem &blocks = simulation.blocks();
-  std::array<double, 3> stress = simulation.contact_digest().mean_stress(blocks, index);
+  std::array<double, 3> stress = contact_digest(simulation.state()).mean_stress(blocks, index);
   const Rotation turn = Rotation::of(blocks.trial[index].r);
   const double area = blocks.properties[index].area;
   for (const MaterialLoad &load : blocks.loads_of(index)) {
-    const Mat2 dyad = outer(turn(load.point), simulation.force_of(load));
+    const Mat2 dyad = outer(turn(load.point), simulation.state().loads.force_of(load));
     stress[0] += dyad.xx / area;
     stress[1] += dyad.yy / area;
     stress[2] += 0.5 * (dyad.xy + dyad.yx) / area;
@@ -78,9 +78,9 @@ std::array<double, 3> mean_rigid_stress(const Simulation &simulation, std::size_
   return stress;
 }
 
-FrameRow mobile_row(const Simulation &simulation, std::size_t index) {
+FrameRow mobile_row(Simulation &simulation, std::size_t index) {
   const BlockSystem &blocks = simulation.blocks();
-  const ContactDigest &contacts = simulation.contact_digest();
+  const ContactDigest &contacts = contact_digest(simulation.state());
   FrameRow row = row_of(blocks, index);
   row.stress = blocks.is_deformable(index)
                    ? mean_cauchy_stress(blocks.deformation_of(index), blocks.properties[index].area)
@@ -119,7 +119,7 @@ std::size_t first_row_from(const BlockSystem &blocks, std::size_t begin, std::si
 
 } // namespace
 
-SimulationFrame::SimulationFrame(const Simulation &simulation)
+SimulationFrame::SimulationFrame(Simulation &simulation)
     : simulation_(simulation), reactions_(collect_reactions(simulation)) {}
 
 std::int64_t SimulationFrame::num_rows() const {
@@ -211,7 +211,7 @@ void SimulationContacts::append(std::int64_t first, std::int64_t last, std::vect
     }
   };
   const auto [begin, end] = pairs_from(first, last);
-  simulation_.for_regions(begin, end, append_pair);
+  for_regions(simulation_.state(), begin, end, append_pair);
 }
 
 void SimulationContacts::append(std::int64_t first, std::int64_t last,
@@ -219,13 +219,14 @@ void SimulationContacts::append(std::int64_t first, std::int64_t last,
   const auto [begin, end] = pairs_from(first, last);
   for (std::size_t pair = begin; pair < end; ++pair) {
     if (simulation_.counts_here(simulation_.candidates().pairs[pair])) {
-      simulation_.history().for_pair(
-          pair, [&](const RegionMemory &region) { records.push_back(simulation_.record_of(pair, region)); });
+      simulation_.history().for_pair(pair, [&](const RegionMemory &region) {
+        records.push_back(simulation_.state().neighbours.record_of(simulation_.blocks(), pair, region));
+      });
     }
   }
 }
 
-std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation) {
+std::vector<BlockHistoryRow> collect_monitors(Simulation &simulation) {
   struct Found {
     std::int64_t monitor;
     BlockHistoryRow row;

@@ -19,20 +19,20 @@ struct Reaction {
 /// stresses belong to the last evaluation.
 class SimulationFrame : public FrameSource {
 public:
-  explicit SimulationFrame(const Simulation &simulation);
+  explicit SimulationFrame(Simulation &simulation);
   [[nodiscard]] std::int64_t num_rows() const override;
   void append(std::int64_t first, std::int64_t last, std::vector<FrameRow> &rows,
               std::vector<Vec2> &vertices) const override;
 
 private:
-  const Simulation &simulation_;
+  Simulation &simulation_;
   std::vector<Reaction> reactions_; ///< by fixed id, then by mobile id
 };
 
 /// Regions this rank hands over: for frames where they touch, for checkpoints what is remembered of them.
 class SimulationContacts : public ContactSource, public RegionSource {
 public:
-  explicit SimulationContacts(const Simulation &simulation) : simulation_(simulation) {}
+  explicit SimulationContacts(Simulation &simulation) : simulation_(simulation) {}
   [[nodiscard]] std::int64_t count(std::int64_t first, std::int64_t last) const override;
   void append(std::int64_t first, std::int64_t last, std::vector<ContactRow> &rows) const override;
   void append(std::int64_t first, std::int64_t last, std::vector<RegionRecord> &records) const override;
@@ -45,7 +45,7 @@ private:
   /// Those with a lower id in [first, last).
   [[nodiscard]] Pairs pairs_from(std::int64_t first, std::int64_t last) const;
 
-  const Simulation &simulation_;
+  Simulation &simulation_;
 };
 
 /// Rows of the bolts that are in place; complete on every rank. Collective.
@@ -60,6 +60,6 @@ std::vector<BoltLoad> with_installation(std::vector<BoltLoad> loads, const std::
                                         const Simulation &simulation);
 
 /// Rows of the scene's monitors, in their order; complete on every rank. Collective.
-std::vector<BlockHistoryRow> collect_monitors(const Simulation &simulation);
+std::vector<BlockHistoryRow> collect_monitors(Simulation &simulation);
 
 } // namespace gcpdda

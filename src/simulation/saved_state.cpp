@@ -1,11 +1,10 @@
-// What a Simulation gives to a checkpoint and takes from one. Physics does not depend on when the
-// neighbourhood was refreshed (a candidate that does not touch adds nothing, sums go in the order of ids), so
-// a run goes on from its blocks and the memory of its contacts alone: a restart begins with a refresh.
+#include "simulation/saved_state.hpp"
 
 #include "base/check.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "model/fingerprint.hpp"
-#include "simulation/simulation.hpp"
+#include "simulation/stage_changes.hpp"
+#include "simulation/static_stage.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -24,38 +23,15 @@ std::vector<ScenePrints> prints_by_stage(const Scene &start, std::span<const Sta
   return prints;
 }
 
-} // namespace
-
-void Simulation::take_prints(const Beginning &beginning) {
-  prints_ = prints_by_stage(scene_, stages_);
-  if (beginning.computed_with == nullptr) {
-    prints_before_ = prints_;
-    return;
-  }
-  Scene before = *beginning.computed_with;
-  before.earthquake.record = scene_.earthquake.record; // another one of this name is another earthquake
-  const std::vector<Stage> stages = std::exchange(before.stages, {});
-  prints_before_ = prints_by_stage(before, stages.empty() ? std::vector<Stage>(1) : stages);
-}
-
-std::vector<std::uint64_t> Simulation::changed_from() const {
-  std::vector<std::uint64_t> prints;
-  if (prints_before_ != prints_) {
-    std::transform(prints_before_.begin(), prints_before_.end(), std::back_inserter(prints),
-                   [](const ScenePrints &parts) { return fingerprint(parts); });
-  }
-  return prints;
-}
-
-void Simulation::expect_own_state(const ScenePrints &saved, std::int64_t stage,
-                                  std::span<const std::uint64_t> past) const {
+void expect_own_state(const RunState &run, const ScenePrints &saved, std::int64_t stage,
+                      std::span<const std::uint64_t> past) {
   if (std::find(past.begin(), past.end(), fingerprint(saved)) != past.end()) {
     return;
   }
-  if (stage >= std::min(std::ssize(prints_), std::ssize(prints_before_))) {
+  if (stage >= std::min(std::ssize(run.prints), std::ssize(run.prints_before))) {
     throw FileError("its stage is not in the scene");
   }
-  const ScenePrints &own = prints_before_[static_cast<std::size_t>(stage)];
+  const ScenePrints &own = run.prints_before[static_cast<std::size_t>(stage)];
   std::string different;
   for (std::size_t part = 0; part < own.size(); ++part) {
     if (saved[part] != own[part]) {
@@ -69,26 +45,75 @@ void Simulation::expect_own_state(const ScenePrints &saved, std::int64_t stage,
   }
 }
 
-void Simulation::restore(const Beginning &beginning, ContactMemory &memory) {
-  std::vector<std::uint64_t> past;
-  if (communicator_.is_root()) {
-    past = past_scenes(beginning.folder);
+void begin_as_restored(RunState &run, const Scene &start, const BlockSystem &rows, const StageState &saved,
+                       const RunFacts &facts) {
+  run.scene = start;
+  run.loads.list_courses(run.scene, run.clock.stages);
+  run.blocks = rows;
+  run.clock.state = {};
+  if (saved.index >= std::ssize(run.clock.stages)) {
+    throw FileError("its stage is not in the scene");
   }
-  past = communicator_.all_gather(past).front();
-  const Scene start = scene_;
-  const BlockSystem begin = blocks_;
-  const auto prepare = [&](const RunFacts &facts) {
-    const StageState saved = to_state({facts.stage_counts, facts.stage_numbers});
-    expect_own_state(facts.scene.parts, saved.index, past);
-    begin_as_restored(start, begin, saved, facts);
-  };
-  restored_ = restore_newest_checkpoint(communicator_, beginning.folder, identity_, blocks_, prepare,
-                                        beginning.results);
-  memory.others = std::move(restored_->memory);
+  for (std::int64_t k = 0; k <= saved.index; ++k) {
+    adopt(run, run.clock.stages[static_cast<std::size_t>(k)], start_of_stage(k, saved));
+  }
+  remove_blocks(run, saved.removed);
+  run.clock.state = saved;
+  run.bolts = Bolts::from_numbers(facts.bolt_counts, facts.bolt_numbers);
+  run.saved_statics = to_static_state(facts.static_counts, facts.static_numbers);
+  for (const BoltLink &link : run.bolts.links()) {
+    if (link.bolt < 0 || link.bolt >= std::ssize(run.scene.bolts)) {
+      throw FileError("a bolt of it is not in the scene");
+    }
+  }
+  list_applied(run.blocks, !run.scene.water.empty() || !run.clock.state.unloading.empty());
+  run.blocks.body = {{facts.gravity_x, facts.gravity_y}, {facts.shaking_x, facts.shaking_y}};
 }
 
-void Simulation::identify(std::span<const SceneBlock> slab) {
-  const std::int64_t first = slab_begin(num_blocks(), communicator_.size(), communicator_.rank());
+} // namespace
+
+void take_prints(RunState &run, const Beginning &beginning) {
+  run.prints = prints_by_stage(run.scene, run.clock.stages);
+  if (beginning.computed_with == nullptr) {
+    run.prints_before = run.prints;
+    return;
+  }
+  Scene before = *beginning.computed_with;
+  before.earthquake.record = run.scene.earthquake.record; // another one of this name is another earthquake
+  const std::vector<Stage> stages = std::exchange(before.stages, {});
+  run.prints_before = prints_by_stage(before, stages.empty() ? std::vector<Stage>(1) : stages);
+}
+
+std::vector<std::uint64_t> changed_from(const RunState &run) {
+  std::vector<std::uint64_t> prints;
+  if (run.prints_before != run.prints) {
+    std::transform(run.prints_before.begin(), run.prints_before.end(), std::back_inserter(prints),
+                   [](const ScenePrints &parts) { return fingerprint(parts); });
+  }
+  return prints;
+}
+
+void restore(RunState &run, const Beginning &beginning, ContactMemory &memory) {
+  std::vector<std::uint64_t> past;
+  if (run.communicator.is_root()) {
+    past = past_scenes(beginning.folder);
+  }
+  past = run.communicator.all_gather(past).front();
+  const Scene start = run.scene;
+  const BlockSystem begin = run.blocks;
+  const auto prepare = [&](const RunFacts &facts) {
+    const StageState saved = to_state({facts.stage_counts, facts.stage_numbers});
+    expect_own_state(run, facts.scene.parts, saved.index, past);
+    begin_as_restored(run, start, begin, saved, facts);
+  };
+  run.restored = restore_newest_checkpoint(run.communicator, beginning.folder, run.identity, run.blocks,
+                                           prepare, beginning.results);
+  memory.others = std::move(run.restored->memory);
+}
+
+void identify(RunState &run, std::span<const SceneBlock> slab) {
+  const std::int64_t first =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank());
   std::uint64_t sum = 0;
   for (std::size_t k = 0; k < slab.size(); ++k) {
     sum += fingerprint(first + static_cast<std::int64_t>(k), slab[k]);
@@ -97,82 +122,63 @@ void Simulation::identify(std::span<const SceneBlock> slab) {
   std::array<std::int64_t, 3> parts{
       static_cast<std::int64_t>(sum & 0xffffffffU), static_cast<std::int64_t>(sum >> 32),
       std::count_if(slab.begin(), slab.end(), [](const SceneBlock &block) { return !block.fixed; })};
-  communicator_.sum(parts);
-  identity_ = {num_blocks(),
-               parts[2],
-               static_cast<std::uint64_t>(parts[0]) + (static_cast<std::uint64_t>(parts[1]) << 32),
-               fingerprint(scene_.materials),
-               {}};
+  run.communicator.sum(parts);
+  run.identity = {num_blocks(run.scene),
+                  parts[2],
+                  static_cast<std::uint64_t>(parts[0]) + (static_cast<std::uint64_t>(parts[1]) << 32),
+                  fingerprint(run.scene.materials),
+                  {}};
 }
 
-void Simulation::go_on() {
-  const RunFacts &facts = restored_->facts;
-  step_count_ = stage_.ended ? facts.step : stage_.first_step;
-  if (!stage_.ended) {
-    step_count_ += step_to_go_on_from(plan_, facts.time - stage_.start_time - stage_.iteration.skipped,
-                                      facts.time_step, notes_);
+void go_on(RunState &run) {
+  const RunFacts &facts = run.restored->facts;
+  run.clock.step_count = run.clock.state.ended ? facts.step : run.clock.state.first_step;
+  if (!run.clock.state.ended) {
+    run.clock.step_count += step_to_go_on_from(
+        run.clock.plan, facts.time - run.clock.state.start_time - run.clock.state.iteration.skipped,
+        facts.time_step, run.notes);
   }
-  load_time_ = stage_step() == 0 ? time()
-                                 : stage_.start_time + stage_.iteration.skipped +
-                                       plan_.time(stage_step() - 1) + scheme_.load_time * plan_.time_step;
-  counters_.contact_steps = communicator_.is_root() ? facts.contact_steps : 0;
-  counters_.max_overlap = facts.max_overlap;
-  counters_.max_overlap_share = facts.max_overlap_share;
-  counters_.fastest_turn = facts.fastest_turn;
+  run.loads.time = run.clock.stage_step() == 0
+                       ? run.clock.time()
+                       : run.clock.state.start_time + run.clock.state.iteration.skipped +
+                             run.clock.plan.time(run.clock.stage_step() - 1) +
+                             run.scheme.load_time * run.clock.plan.time_step;
+  run.counters.contact_steps = run.communicator.is_root() ? facts.contact_steps : 0;
+  run.counters.max_overlap = facts.max_overlap;
+  run.counters.max_overlap_share = facts.max_overlap_share;
+  run.counters.fastest_turn = facts.fastest_turn;
 }
 
-RunFacts Simulation::facts() const {
+RunFacts facts_of(const RunState &run) {
   RunFacts facts;
-  facts.scene = identity_;
-  facts.scene.parts = prints_[static_cast<std::size_t>(stage_.index)];
-  facts.more_mobile = stage_.more_mobile;
-  facts.step = step_count_;
-  StageNumbers numbers = to_numbers(stage_);
+  facts.scene = run.identity;
+  facts.scene.parts = run.prints[static_cast<std::size_t>(run.clock.state.index)];
+  facts.more_mobile = run.clock.state.more_mobile;
+  facts.step = run.clock.step_count;
+  StageNumbers numbers = to_numbers(run.clock.state);
   facts.stage_counts = std::move(numbers.counts);
   facts.stage_numbers = std::move(numbers.reals);
-  Bolts::to_numbers(bolts_.shared(communicator_), facts.bolt_counts, facts.bolt_numbers);
-  if (is_static() && statics_) {
-    StaticNumbers state = gcpdda::to_numbers(gathered_state(communicator_, blocks_, statics_->springs()));
+  Bolts::to_numbers(run.bolts.shared(run.communicator), facts.bolt_counts, facts.bolt_numbers);
+  if (is_static(run) && run.statics) {
+    StaticNumbers state = to_numbers(gathered_state(run.communicator, run.blocks, run.statics->springs()));
     facts.static_counts = std::move(state.counts);
     facts.static_numbers = std::move(state.reals);
   }
-  facts.time = time();
-  facts.time_step = plan_.time_step;
-  facts.contact_steps = counters_.contact_steps;
-  communicator_.sum(std::span(&facts.contact_steps, 1));
-  std::array<double, 3> largest{counters_.max_overlap, counters_.max_overlap_share, counters_.fastest_turn};
-  communicator_.max(largest);
+  facts.time = run.clock.time();
+  facts.time_step = run.clock.plan.time_step;
+  facts.contact_steps = run.counters.contact_steps;
+  run.communicator.sum(std::span(&facts.contact_steps, 1));
+  std::array<double, 3> largest{run.counters.max_overlap, run.counters.max_overlap_share,
+                                run.counters.fastest_turn};
+  run.communicator.max(largest);
   facts.max_overlap = largest[0];
   facts.max_overlap_share = largest[1];
   facts.fastest_turn = largest[2];
-  facts.gravity_x = blocks_.body.gravity.x;
-  facts.gravity_y = blocks_.body.gravity.y;
-  facts.shaking_x = blocks_.body.shaking.x;
-  facts.shaking_y = blocks_.body.shaking.y;
+  facts.gravity_x = run.blocks.body.gravity.x;
+  facts.gravity_y = run.blocks.body.gravity.y;
+  facts.shaking_x = run.blocks.body.shaking.x;
+  facts.shaking_y = run.blocks.body.shaking.y;
   return facts;
-}
-
-RegionRecord Simulation::record_of(std::size_t pair, const RegionMemory &region) const {
-  return {blocks_.properties[candidates_.pairs[pair].lower.value].id,
-          blocks_.properties[candidates_.pairs[pair].higher.value].id, region};
-}
-
-ContactMemory Simulation::remembered_contacts() const {
-  ContactMemory memory;
-  memory.plain.reserve(history_.num_plain());
-  for (std::size_t k = 0; k < candidates_.pairs.size(); ++k) {
-    const CandidatePair &pair = candidates_.pairs[k];
-    const bool deforms = blocks_.is_deformable(pair.lower.value) ||
-                         blocks_.is_deformable(pair.higher.value); // has a grip, too
-    if (history_.has_plain(k) && !deforms) {
-      memory.plain.push_back({blocks_.properties[pair.lower.value].id,
-                              blocks_.properties[pair.higher.value].id, history_.plain[k]});
-    } else {
-      history_.for_pair(k,
-                        [&](const RegionMemory &region) { memory.others.push_back(record_of(k, region)); });
-    }
-  }
-  return memory;
 }
 
 } // namespace gcpdda

@@ -77,6 +77,11 @@ struct StageState {
   std::vector<Unloading> unloading;  ///< by block, each once for every excavation
 };
 
+/// An earlier stage has excavated it.
+[[nodiscard]] bool is_removed(const StageState &state, std::int64_t block);
+/// s; the state is in that stage or a later one.
+[[nodiscard]] double start_of_stage(std::int64_t stage, const StageState &state);
+
 /// The state as numbers for a checkpoint, and back.
 struct StageNumbers {
   std::vector<std::int64_t> counts;

@@ -66,7 +66,7 @@ TEST(Balance, MessagesAreCountedByStepsAlone) {
   const Communicator world = Communicator::world();
   Simulation simulation(world, testing::scene_of(bursting_heap_toml(20, 4, 0.01)));
   EXPECT_EQ(simulation.counters().bytes, 0);
-  simulation.look_ahead([](const BlockSystem &) {});
+  { const ComingTrial ahead(simulation.state()); }
   EXPECT_EQ(simulation.counters().messages, 0);
   simulation.step();
   EXPECT_EQ(simulation.counters().bytes, simulation.ghosts().bytes_per_update());

@@ -21,10 +21,9 @@ public:
         system, candidates, history, 0, static_cast<std::uint32_t>(ranges_.size()),
         [this](std::uint32_t pair, std::span<const RegionForce> regions) { take(pair, regions); });
   }
-  explicit Regions(const Simulation &simulation) : ranges_(simulation.candidates().pairs.size()) {
-    simulation.for_regions(
-        0, ranges_.size(),
-        [this](std::uint32_t pair, std::span<const RegionForce> regions) { take(pair, regions); });
+  explicit Regions(Simulation &simulation) : ranges_(simulation.candidates().pairs.size()) {
+    for_regions(simulation.state(), 0, ranges_.size(),
+                [this](std::uint32_t pair, std::span<const RegionForce> regions) { take(pair, regions); });
   }
 
   /// Those of a pair together, by pair.
@@ -65,7 +64,7 @@ private:
   std::vector<RegionRange> ranges_;
 };
 
-inline std::vector<RegionForce> regions_of(const Simulation &simulation) {
+inline std::vector<RegionForce> regions_of(Simulation &simulation) {
   return Regions(simulation).all();
 }
 

@@ -59,13 +59,13 @@ double peak_speed(Simulation &simulation, double time) {
 TEST(BlockSystems, WedgeOnASlopeSettlesWithLittleDamping) {
   Simulation simulation(Communicator::self(),
                         shipped_scene("stacked_wedge", {"run.contact_damping=0.05", "run.duration=16.0"}));
-  const EnergyLedger ledger(simulation);
+  const EnergyLedger ledger(simulation.state());
   run_until(simulation, 5.0);
   const double early_speed = peak_speed(simulation, 8.0);
-  const double early_work = ledger.row(simulation).friction_loss;
+  const double early_work = ledger.row(simulation.state()).friction_loss;
   run_until(simulation, 13.0);
   const double late_speed = peak_speed(simulation, 16.0);
-  const double late_work = ledger.row(simulation).friction_loss;
+  const double late_work = ledger.row(simulation.state()).friction_loss;
   EXPECT_FALSE(simulation.fault().has_value());
   expect_below("B5 wedge of 32 blocks, xi = 0.05: peak speed from 13 to 16 s over that from 5 to 8 s", 0.8,
                late_speed / early_speed);

@@ -40,7 +40,7 @@ std::string hung_toml(double duration, double stiffness, const std::string &stre
 TEST(BoltedBlock, HangsOnASpring) {
   const double stiffness = 1e7;
   Simulation simulation(Communicator::self(), scene_of(hung_toml(0.5, stiffness, "")));
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   const double omega = std::sqrt(stiffness / rock_density);
   double deepest = 0.0;
   double worst_residual = 0.0;
@@ -57,7 +57,7 @@ TEST(BoltedBlock, HangsOnASpring) {
     before = speed;
     deepest = std::min(deepest, displacement_of(simulation, 1).u.y);
     if (simulation.step_count() % 20 == 0) {
-      const EnergyRow row = ledger.row(simulation);
+      const EnergyRow row = ledger.row(simulation.state());
       worst_residual = std::max(worst_residual, std::abs(row.residual));
       EXPECT_EQ(row.support_loss, 0.0);
     }
@@ -83,13 +83,13 @@ TEST(BoltedBlock, FallsIntoAYieldingCable) {
     Simulation simulation(
         Communicator::self(),
         scene_of(hung_toml(0.2, stiffness, fmt::format("axial_yield = {:.17g}\n", 1.5 * weight), fidelity)));
-    EnergyLedger ledger(simulation);
+    EnergyLedger ledger(simulation.state());
     double deepest = 0.0;
     while (!simulation.finished()) {
       step(simulation);
       deepest = std::min(deepest, displacement_of(simulation, 1).u.y);
     }
-    const EnergyRow row = ledger.row(simulation);
+    const EnergyRow row = ledger.row(simulation.state());
     // W/E = 2.6e-5 m of 5e-3 m is the block's own.
     expect_value(fmt::format("bolts: {} square in a yielding cable, deepest point, m", fidelity),
                  -2.25 * unit, deepest, 0.01);

@@ -64,12 +64,12 @@ struct Energies {
 };
 
 Energies energies_of(Simulation &simulation, std::int64_t num_steps, std::int64_t steps_between) {
-  const EnergyLedger ledger(simulation);
+  const EnergyLedger ledger(simulation.state());
   Energies energies;
   while (!simulation.finished() && !simulation.fault() && simulation.step_count() < num_steps) {
     step(simulation);
     if (simulation.step_count() % steps_between == 0) {
-      const EnergyRow row = ledger.row(simulation);
+      const EnergyRow row = ledger.row(simulation.state());
       energies.largest = std::max(energies.largest, row.kinetic + row.strain + row.contact_normal +
                                                         row.contact_stick + row.gravity);
       energies.supplied = std::max(energies.supplied, -row.gravity);

@@ -91,7 +91,8 @@ struct Column {
   [[nodiscard]] double start_depth() const {
     double depth = 1e-5;
     for (int k = 0; k < 4; ++k) {
-      depth *= std::sqrt(normal_at(start, start) * weight / regions_of(at(depth))[0].normal_force);
+      Simulation simulation = at(depth);
+      depth *= std::sqrt(normal_at(start, start) * weight / regions_of(simulation)[0].normal_force);
     }
     return depth;
   }

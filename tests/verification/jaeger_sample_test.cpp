@@ -102,7 +102,7 @@ struct State {
   double slip = 0.0;
 };
 
-State state_of(const Simulation &simulation) {
+State state_of(Simulation &simulation) {
   State state;
   const std::size_t upper = row_of(simulation, 1);
   const auto is = [&](const CandidatePair &pair, int block) {

@@ -203,7 +203,7 @@ Slide slide_down(double psi_deg, const Setting &setting, double sunk = 0.0) {
                            block_toml("slope", rectangle({-2.0, -1.0}, {6.0, 0.0}), "fixed = true") +
                            block_toml("block", rectangle({0.0, -sunk}, {length, slide_height - sunk}));
   Simulation simulation(Communicator::self(), scene_of(toml));
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   Slide seen;
   while (!simulation.finished()) {
     step(simulation);
@@ -217,7 +217,7 @@ Slide slide_down(double psi_deg, const Setting &setting, double sunk = 0.0) {
     }
   }
   EXPECT_FALSE(simulation.fault().has_value());
-  const EnergyRow row = ledger.row(simulation);
+  const EnergyRow row = ledger.row(simulation.state());
   seen.way = displacement_of(simulation, 1).u;
   seen.loss = row.friction_loss;
   seen.residual = row.residual;
@@ -279,7 +279,7 @@ TEST(PullApart, TensionOnceAndThenNothing) {
   Simulation simulation = sheared(fmt::format("cohesion = 1e6\ntension = {}", tension), 40.0, 1.0,
                                   "velocity_table = [[0, 0, 0, 0], [0.1, 0, 2e-3, 0], [0.4, 0, 2e-3, 0], "
                                   "[0.5, 0, -4e-3, 0], [0.7, 0, -4e-3, 0], [0.8, 0, 4e-3, 0]]");
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   double peak = 0.0;
   double later = 0.0;
   double lost = 0.0;
@@ -296,7 +296,7 @@ TEST(PullApart, TensionOnceAndThenNothing) {
     (whole ? peak : later) = std::max(whole ? peak : later, pull);
     whole = bonded;
     if (simulation.step_count() % 500 == 0 || simulation.finished()) {
-      const EnergyRow row = ledger.row(simulation);
+      const EnergyRow row = ledger.row(simulation.state());
       lost = row.friction_loss;
       worst = std::max(worst, std::abs(row.residual));
     }

@@ -128,7 +128,7 @@ struct State {
   double strain = 0.0;
 };
 
-State state_of(const Simulation &simulation, const Column &column) {
+State state_of(Simulation &simulation, const Column &column) {
   State state;
   const std::size_t top = row_of(simulation, num_joints + 2);
   for (const RegionForce &force : regions_of(simulation)) {

@@ -76,7 +76,7 @@ struct Rock {
   }
   /// With which the most loaded joint has T/N = use tan phi.
   [[nodiscard]] double friction_deg() const {
-    const Simulation simulation(Communicator::self(), scene(89.0));
+    Simulation simulation(Communicator::self(), scene(89.0));
     double largest = 0.0;
     for (const RegionForce &region : regions_of(simulation)) {
       largest = std::max(largest, std::abs(region.shear) / region.normal_force);

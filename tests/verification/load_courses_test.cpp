@@ -49,11 +49,11 @@ TEST(LoadCourse, ARampMovesAFreeBlockAsItsIntegralSays) {
     std::vector<double> way_errors;
     for (const double dt : {2e-2, 1e-2}) {
       Simulation simulation = pushed_square(free_setting(fidelity, 1.0, dt), "ramp = 1.0");
-      const EnergyLedger ledger(simulation);
+      const EnergyLedger ledger(simulation.state());
       double residual = 0.0;
       while (!simulation.finished()) {
         step(simulation);
-        residual = std::max(residual, std::abs(ledger.row(simulation).residual));
+        residual = std::max(residual, std::abs(ledger.row(simulation.state()).residual));
       }
       const Vec2 way = (0.15 / mass) * force;
       const Vec2 speed = (0.5 / mass) * force;
@@ -82,7 +82,7 @@ TEST(LoadCourse, AHarmonicTableMovesAFreeBlockAsItsIntegralSays) {
   }
   for (const std::string fidelity : {"rigid", "deformable"}) {
     Simulation simulation = pushed_square(free_setting(fidelity, 2.0, dt), "table = [" + table + "]");
-    EnergyLedger ledger(simulation);
+    EnergyLedger ledger(simulation.state());
     double error = 0.0;
     double residual = 0.0;
     double most = 0.0;
@@ -91,7 +91,7 @@ TEST(LoadCourse, AHarmonicTableMovesAFreeBlockAsItsIntegralSays) {
       const double t = simulation.time();
       const Vec2 expected = ((t - std::sin(w * t) / w) / (mass * w)) * force;
       error = std::max(error, norm(displacement_of(simulation, 0).u - expected));
-      const EnergyRow row = ledger.row(simulation);
+      const EnergyRow row = ledger.row(simulation.state());
       residual = std::max(residual, std::abs(row.residual));
       most = std::max(most, row.boundary_work);
     }
@@ -124,7 +124,7 @@ Pushed push(const std::string &fidelity, const std::string &course) {
                                  block_toml("floor", rectangle({-9.0, -2.0}, {9.0, 0.0}), "fixed = true") +
                                  block_toml("block", rectangle({-1.0, 0.0}, {1.0, 1.0}),
                                             load_toml({1.0, 0.0}, {push, 0.0}, course))));
-  const EnergyLedger ledger(simulation);
+  const EnergyLedger ledger(simulation.state());
   const double stretch = push / (0.5 * 1e9 * 2.0); // k_t = 0.5 k_n a metre
   Pushed pushed;
   while (!simulation.finished()) {
@@ -132,7 +132,7 @@ Pushed push(const std::string &fidelity, const std::string &course) {
     pushed.farthest = std::max(pushed.farthest, displacement_of(simulation, 1).u.x / stretch);
   }
   pushed.left = displacement_of(simulation, 1).u.x / stretch;
-  pushed.friction_loss = ledger.row(simulation).friction_loss / (0.5 * push * stretch);
+  pushed.friction_loss = ledger.row(simulation.state()).friction_loss / (0.5 * push * stretch);
   return pushed;
 }
 

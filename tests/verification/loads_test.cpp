@@ -84,14 +84,14 @@ TEST(DeadLoad, ThroughTheCentroidMovesABlockStraight) {
     const Setting setting = elastic({.duration = 1.0, .time_step = 1e-3, .gravity = {}}, fidelity);
     Simulation simulation(Communicator::self(),
                           scene_of(head(setting) + triangle.toml(load_toml(triangle.centroid, force))));
-    EnergyLedger ledger(simulation);
+    EnergyLedger ledger(simulation.state());
     run(simulation);
     const std::string what = "dead load through the centroid, " + fidelity + ": ";
     const Vec2 expected = (0.5 / triangle.mass) * force;
     expect_below(what + "error of the distance", 1e-12,
                  norm(displacement_of(simulation, 0).u - expected) / norm(expected));
     expect_below(what + "turn, rad", 1e-12, std::abs(displacement_of(simulation, 0).r));
-    const EnergyRow row = ledger.row(simulation);
+    const EnergyRow row = ledger.row(simulation.state());
     const double c1 = simulation.scheme().trial_velocity;
     const double c2 = simulation.scheme().trial_acceleration;
     const double unit = setting.time_step * setting.time_step * dot(force, force) / triangle.mass;
@@ -114,14 +114,14 @@ TEST(DeadLoad, OffTheCentroidKeepsTheEnergyLedger) {
           fidelity, 1e7);
       Simulation simulation(Communicator::self(),
                             scene_of(head(setting) + triangle.toml(load_toml(triangle.corner, force))));
-      EnergyLedger ledger(simulation);
+      EnergyLedger ledger(simulation.state());
       double largest = 0.0;
       while (!simulation.finished()) {
         step(simulation);
-        largest = std::max(largest, std::abs(ledger.row(simulation).residual));
+        largest = std::max(largest, std::abs(ledger.row(simulation.state()).residual));
       }
       EXPECT_GT(std::abs(displacement_of(simulation, 0).r), 1.0) << "it has tumbled";
-      const double done = ledger.row(simulation).boundary_work;
+      const double done = ledger.row(simulation.state()).boundary_work;
       residual.push_back(largest / done);
       const Vec2 way = current_vertices(simulation.blocks(), 0)[0] - triangle.corner;
       expect_value("tumbling under a dead load, " + fidelity + ": work of the force on its point, J/m",
@@ -183,7 +183,7 @@ TEST(DrivenBlock, PushesAFreeOne) {
                                      block_toml("ram", rectangle({-1.0, -0.5}, {0.0, 1.5}),
                                                 fmt::format("prescribed_velocity = [{}, 0.0, 0.0]", speed)) +
                                      block_toml("square", rectangle({0.001, 0.0}, {1.001, 1.0}))));
-      EnergyLedger ledger(simulation);
+      EnergyLedger ledger(simulation.state());
       double off_path = 0.0;
       while (!simulation.finished()) {
         step(simulation);
@@ -196,7 +196,7 @@ TEST(DrivenBlock, PushesAFreeOne) {
       expect_below(what + "distance from v t, m", 1e-14, off_path);
       const double got = velocity_of(simulation, 1).u.x;
       EXPECT_GT(got, 1.5 * speed);
-      const EnergyRow row = ledger.row(simulation);
+      const EnergyRow row = ledger.row(simulation.state());
       expect_value(what + "boundary work, J/m", speed * rock_density * got, row.boundary_work, 1e-12);
       expect_below(what + "residual over work", 0.5 * w * w, std::abs(row.residual / row.boundary_work));
       EXPECT_GE(row.damping_loss, damping > 0.0 ? 0.01 * row.boundary_work : 0.0);
@@ -253,7 +253,7 @@ TEST(FixedPoints, TwoHoldABlock) {
                         scene_of(head(setting) + floor_toml() +
                                  block_toml("hung", placed(slab_corners, 0.0, {0.0, 3.0}),
                                             "fixed_points = [[-0.8, 3.4], [0.8, 3.4]]")));
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   const double settled = 0.5 * slab_weight / (100.0 * setting.normal_stiffness * std::sqrt(2.0));
   double largest = 0.0;
   while (simulation.step_count() < 5000) {
@@ -268,7 +268,7 @@ TEST(FixedPoints, TwoHoldABlock) {
   expect_below("hung block: creep from 5 to 10 s over its size", 1e-15,
                (norm(moved.u) + std::abs(moved.r)) / std::sqrt(2.0));
   expect_below("hung block: residual over m g L", 1e-12,
-               std::abs(ledger.row(simulation).residual) / (slab_weight * std::sqrt(2.0)));
+               std::abs(ledger.row(simulation.state()).residual) / (slab_weight * std::sqrt(2.0)));
 }
 
 /// Released from rest at `start` from its lowest place, hung 0.9 m from its centre.
@@ -289,7 +289,7 @@ Swing swing(const std::string &fidelity, double start, double time_step) {
                         scene_of(head(setting) + floor_toml() +
                                  block_toml("pendulum", placed(slab_corners, angle, centre),
                                             fmt::format("fixed_points = [[{}, {}]]", pivot.x, pivot.y))));
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   Swing result;
   double first = 0.0;
   double last = 0.0;
@@ -304,7 +304,7 @@ Swing swing(const std::string &fidelity, double start, double time_step) {
     }
     before = now;
     if (simulation.step_count() % 50 == 0) {
-      result.residual = std::max(result.residual, std::abs(ledger.row(simulation).residual));
+      result.residual = std::max(result.residual, std::abs(ledger.row(simulation.state()).residual));
     }
   }
   EXPECT_EQ(crossings, num_periods + 1);
@@ -353,9 +353,9 @@ TEST(LocalDamping, SettlesAStackAndTellsWhatItTook) {
   constexpr double push = 0.003; // m/s: within friction
   Simulation simulation(Communicator::self(),
                         scene_of(stack_toml("local_damping = 0.5\nspectral_radius = 0.8", 0.0, push)));
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   run(simulation);
-  const EnergyRow row = ledger.row(simulation);
+  const EnergyRow row = ledger.row(simulation.state());
   expect_below("settled stack: fastest, m/s", 1e-12, row.max_speed);
   expect_below("settled stack: net force over the largest", 1e-9, row.unbalanced_ratio);
   EXPECT_GT(row.damping_loss, 0.0);
@@ -397,12 +397,12 @@ double bounce_residual(const std::string &elasticity, double w) {
                         scene_of(head(setting) + floor_toml() +
                                  block_toml("square", rectangle({0.0, 0.0}, {1.0, 1.0}),
                                             fmt::format("velocity = [0.0, {}, 0.0]", -speed))));
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   double largest = 0.0;
   double strain = 0.0;
   while (!simulation.finished()) {
     step(simulation);
-    const EnergyRow row = ledger.row(simulation);
+    const EnergyRow row = ledger.row(simulation.state());
     largest = std::max(largest, std::abs(row.residual));
     strain = std::max(strain, row.strain);
   }

@@ -16,7 +16,7 @@ constexpr double watch = 5.0; ///< s
 
 /// Mean overlaps N/(k_n l) of the joints from the top block down to the floor, summed along the column of
 /// half joints on the left or right of the axis.
-double joint_overlaps(const Simulation &simulation, int rows, bool right) {
+double joint_overlaps(Simulation &simulation, int rows, bool right) {
   std::vector<std::int64_t> column{0}; // the floor
   for (int row = 0, first = 1; row < rows; first += rows - row, ++row) {
     column.push_back(first + (rows - 1 - row + (right ? 1 : 0)) / 2);

@@ -209,9 +209,9 @@ TEST(ShippedScenes, ARoofWedgeFallsUnderItsPullOutLoad) {
 // took it.
 TEST(ShippedScenes, FallingRocksNeverGainEnergy) {
   Simulation simulation(Communicator::self(), shipped_scene("rockfall", {"run.duration=4.0"}));
-  const EnergyLedger ledger(simulation);
+  const EnergyLedger ledger(simulation.state());
   const auto total = [&] {
-    const EnergyRow row = ledger.row(simulation);
+    const EnergyRow row = ledger.row(simulation.state());
     return row.kinetic + row.strain + row.contact_normal + row.contact_stick + row.gravity;
   };
   const double start = total();
@@ -229,7 +229,7 @@ TEST(ShippedScenes, FallingRocksNeverGainEnergy) {
   expect_above("A6 rockfall: energy lost in 4 s, J/m", 1e6, start - least);
   expect_below("A6 rockfall: largest gain of energy over the energy lost", 1e-6, risen / (start - least));
   expect_below("A6 rockfall: residual over the energy lost", 2e-3,
-               std::abs(ledger.row(simulation).residual) / (start - least));
+               std::abs(ledger.row(simulation.state()).residual) / (start - least));
 }
 
 } // namespace

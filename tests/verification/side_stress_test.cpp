@@ -53,7 +53,7 @@ polygon = {}
   }
 };
 
-std::vector<FrameRow> rows_of(const Simulation &simulation) {
+std::vector<FrameRow> rows_of(Simulation &simulation) {
   const SimulationFrame frame(simulation);
   std::vector<FrameRow> rows;
   std::vector<Vec2> vertices;
@@ -63,7 +63,7 @@ std::vector<FrameRow> rows_of(const Simulation &simulation) {
 }
 
 /// Largest difference of a mean stress from -(xx, yy, 0), Pa.
-double farthest_stress(const Simulation &simulation, double xx, double yy) {
+double farthest_stress(Simulation &simulation, double xx, double yy) {
   double farthest = 0.0;
   for (const FrameRow &row : rows_of(simulation)) {
     farthest = std::max(
@@ -220,16 +220,16 @@ Sheared shear(const std::string &ramp) {
                                 ramp + "set = { \"in_situ.principal_stresses\" = [1e6, 2e6] }\n" +
                                 "[[stage]]\nkind = \"run\"\nduration = 0.6\n"};
   Simulation simulation = region.simulation();
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   Sheared sheared;
   run_stages(simulation, step);
-  sheared.friction_loss = ledger.row(simulation).friction_loss;
+  sheared.friction_loss = ledger.row(simulation.state()).friction_loss;
   for (std::size_t k = 0; k < simulation.candidates().pairs.size(); ++k) {
     const CandidatePair &pair = simulation.candidates().pairs[k];
     if (simulation.blocks().is_fixed(pair.lower.value) || simulation.blocks().is_fixed(pair.higher.value)) {
       continue;
     }
-    simulation.for_regions(k, k + 1, [&](std::uint32_t, std::span<const RegionForce> regions) {
+    for_regions(simulation.state(), k, k + 1, [&](std::uint32_t, std::span<const RegionForce> regions) {
       for (const RegionForce &force : regions) {
         sheared.traction += norm(force.shear_force) / (10.0 / std::cos(30.0 * degree));
       }

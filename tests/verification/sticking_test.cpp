@@ -33,7 +33,7 @@ TEST(Sticking, EnergyOfATangentialOscillationIsBounded) {
                                  block_toml("plane", rectangle({-3.0, -2.0}, {4.0, 0.0}), "fixed = true") +
                                  block_toml("square", rectangle({0.0, -depth}, {1.0, 1.0 - depth}),
                                             "velocity = [1e-3, 0.0, 0.0]")));
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   const double supplied = 0.5 * rock_density * 1e-6;
   double first = 0.0;
   double later = 0.0;
@@ -41,7 +41,7 @@ TEST(Sticking, EnergyOfATangentialOscillationIsBounded) {
   while (!simulation.finished()) {
     step(simulation);
     if (simulation.step_count() % 20 == 0) {
-      const EnergyRow row = ledger.row(simulation);
+      const EnergyRow row = ledger.row(simulation.state());
       (simulation.step_count() <= num_steps / 10 ? first : later) =
           std::max(simulation.step_count() <= num_steps / 10 ? first : later, std::abs(row.residual));
       lost = row.friction_loss;
@@ -87,13 +87,13 @@ Swinging swing_deformable(double youngs_modulus) {
                           fmt::format("velocity = [{}, 0.0, 0.0]\n[[block.load]]\npoint = [0.5, {}]\n"
                                       "force = [0.0, {}]",
                                       speed, -depth, -load))));
-  EnergyLedger ledger(simulation);
+  EnergyLedger ledger(simulation.state());
   const double supplied = 0.5 * rock_density * speed * speed;
   Swinging result;
   while (!simulation.finished()) {
     step(simulation);
     if (simulation.step_count() % 20 == 0) {
-      const EnergyRow row = ledger.row(simulation);
+      const EnergyRow row = ledger.row(simulation.state());
       double &largest =
           simulation.step_count() <= num_steps / 10 ? result.kinetic_first : result.kinetic_later;
       largest = std::max(largest, row.kinetic / supplied);

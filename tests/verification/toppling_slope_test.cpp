@@ -49,7 +49,7 @@ double from_corner(const BlockSystem &blocks, const CandidatePair &pair, Vec2 po
 }
 
 /// What holds the columns of the shipped slope; joints of a column with two base blocks count by the larger.
-std::map<int, Support> supports_of(const Simulation &simulation) {
+std::map<int, Support> supports_of(Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
   const auto column_of = [&](BlockIndex row) {
     const auto id = static_cast<std::size_t>(blocks.properties[row.value].id.value);

@@ -95,7 +95,7 @@ Passage pulse_through(const Column &column, double height, double parted, double
   scene.earthquake.record = pulse_record(column.wave, pulse_length / column.speed());
   scene.region_blocks = std::make_shared<RegionCutter>(scene);
   Simulation simulation(Communicator::self(), std::move(scene));
-  EnergyLedger energies(simulation);
+  EnergyLedger energies(simulation.state());
   const std::size_t slab = slab_at(simulation, height);
   Passage passage;
   while (!simulation.finished()) {
@@ -105,7 +105,7 @@ Passage pulse_through(const Column &column, double height, double parted, double
     largest = std::max(largest, std::abs(column.wave == Wave::shear ? v.x : v.y));
   }
   EXPECT_FALSE(simulation.fault().has_value());
-  const EnergyRow row = energies.row(simulation);
+  const EnergyRow row = energies.row(simulation.state());
   passage.residual = std::abs(row.residual);
   // rho c v^2 over the raised cosine: 3/8 of its peak's.
   passage.carried = 0.375 * rock_density * column.speed() * pulse_speed * pulse_speed * width * pulse_length /

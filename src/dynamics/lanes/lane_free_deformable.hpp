@@ -1,7 +1,7 @@
 #pragma once
 
 // Deformable blocks that nothing but contacts, weight and local damping acts on, one in each lane: the forces
-// on them, the works of the ledger and the step, as the scalar way of simulation/moving.cpp with
+// on them, the works of the ledger and the step, as the scalar way of simulation/step_rows.cpp with
 // step_deformables(), to the same bits.
 
 #include "dynamics/lanes/lane_deformable.hpp"

@@ -44,7 +44,7 @@ void expect_same_regions(std::span<const RegionForce> got, std::span<const Regio
 }
 
 /// Pair by pair, and all of them once more.
-Seen expect_same_details(const Simulation &simulation) {
+Seen expect_same_details(Simulation &simulation) {
   Seen seen;
   const Regions regions(simulation);
   for (std::size_t pair = 0; pair < simulation.candidates().pairs.size(); ++pair) {
@@ -52,7 +52,7 @@ Seen expect_same_details(const Simulation &simulation) {
     const std::vector<RegionMemory> memories = simulation.history().of_pair(pair);
     EXPECT_EQ(memories.size(), wanted.size());
     bool is_told = false;
-    simulation.for_regions(pair, pair + 1, [&](std::uint32_t, std::span<const RegionForce> got) {
+    for_regions(simulation.state(), pair, pair + 1, [&](std::uint32_t, std::span<const RegionForce> got) {
       expect_same_regions(got, wanted);
       is_told = true;
     });

@@ -55,7 +55,7 @@ std::string flat_block(double angle, const std::string &extra = "") {
 }
 
 /// The remark that the sweeps were of no use.
-bool starts_at_zero(const Simulation &run) {
+bool starts_at_zero(Simulation &run) {
   return std::any_of(run.notes().begin(), run.notes().end(),
                      [](const Diagnostic &note) { return note.what == "friction starts at zero"; });
 }
@@ -68,7 +68,7 @@ Simulation started(const std::string &toml, const std::vector<std::string> &sets
 // centroid by h: g sin = F (1/m + h^2/I).
 TEST(InitialFriction, StopsTheContactPointOfAFlatBlock) {
   for (const double angle : {5.0 * degree, slope, 35.0 * degree}) {
-    const Simulation run = started(incline(angle, 45.0 * degree, flat_block(angle)));
+    Simulation run = started(incline(angle, 45.0 * degree, flat_block(angle)));
     const RegionForce force = regions_of(run)[0];
     const BlockProperties &block = run.blocks().properties[0];
     const double arm = block.centroid.y - force.point.y;
@@ -138,7 +138,7 @@ TEST(InitialFriction, CarriesABlockAtRest) {
 }
 
 /// Largest relative tangential acceleration over all sticking regions, m/s2.
-double largest_slip_rate(const Simulation &run) {
+double largest_slip_rate(Simulation &run) {
   const BlockSystem &blocks = run.blocks();
   double largest = 0.0;
   for (const RegionForce &force : regions_of(run)) {
@@ -166,8 +166,8 @@ std::string stack(int count) {
 }
 
 TEST(InitialFriction, StopsAllJointsOfAStack) {
-  const Simulation with = started(incline(slope, 60.0 * degree, stack(4)));
-  const Simulation without = started(incline(slope, 60.0 * degree, stack(4)), {"run.initial_friction=zero"});
+  Simulation with = started(incline(slope, 60.0 * degree, stack(4)));
+  Simulation without = started(incline(slope, 60.0 * degree, stack(4)), {"run.initial_friction=zero"});
   EXPECT_GT(largest_slip_rate(without), 0.3 * g * std::sin(slope));
   // What 50 damped sweeps leave.
   EXPECT_LE(largest_slip_rate(with), 1e-3 * g);
@@ -188,9 +188,8 @@ TEST(InitialFriction, SweepsConvergeOnAPyramid) {
       blocks += block_toml(fmt::format("b{}-{}", row, k), rectangle(low, low + Vec2{0.999, 1.0}));
     }
   }
-  const Simulation with = started(incline(10.0 * degree, 60.0 * degree, blocks));
-  const Simulation without =
-      started(incline(10.0 * degree, 60.0 * degree, blocks), {"run.initial_friction=zero"});
+  Simulation with = started(incline(10.0 * degree, 60.0 * degree, blocks));
+  Simulation without = started(incline(10.0 * degree, 60.0 * degree, blocks), {"run.initial_friction=zero"});
   EXPECT_FALSE(starts_at_zero(with));
   EXPECT_LE(largest_slip_rate(with), 0.05 * largest_slip_rate(without));
   RecordProperty("remaining_share",
@@ -198,7 +197,7 @@ TEST(InitialFriction, SweepsConvergeOnAPyramid) {
 }
 
 TEST(InitialFriction, IsCutAtTheCap) {
-  const Simulation run = started(incline(slope, 5.0 * degree, flat_block(slope)));
+  Simulation run = started(incline(slope, 5.0 * degree, flat_block(slope)));
   const RegionForce force = regions_of(run)[0];
   const double cap = force.normal_force * std::tan(5.0 * degree);
   EXPECT_NEAR(-force.force.x, cap, 1e-11 * cap);
@@ -210,7 +209,7 @@ TEST(InitialFriction, IsCutAtTheCap) {
 TEST(InitialFriction, SlidingBlockStartsOnTheCapAgainstItsMotion) {
   for (const double speed : {-0.5, 1e-6, 3.0}) {
     const std::string extra = fmt::format("velocity = [{}, 0.0, 0.0]", speed);
-    const Simulation run = started(incline(slope, 30.0 * degree, flat_block(slope, extra)));
+    Simulation run = started(incline(slope, 30.0 * degree, flat_block(slope, extra)));
     const RegionForce force = regions_of(run)[0];
     const double cap = force.normal_force * std::tan(30.0 * degree);
     EXPECT_NEAR(force.force.x, -std::copysign(cap, speed), 1e-11 * cap);
@@ -224,7 +223,7 @@ TEST(InitialFriction, CommonMotionIsNoSliding) {
       incline(slope, 30.0 * degree,
               block_toml("lower", rectangle({0.0, 0.0}, {1.0, 1.0}), "velocity = [7.3, -2.1, 0.0]") +
                   block_toml("upper", rectangle({0.0, 0.999}, {1.0, 2.0}), "velocity = [7.3, -2.1, 0.0]"));
-  const Simulation run = started(toml);
+  Simulation run = started(toml);
   ASSERT_TRUE(!regions_of(run).empty());
   EXPECT_EQ(memories(run.history())[0].state, ContactState::stick);
   EXPECT_NEAR(regions_of(run)[0].shear, 0.0, 1e-11 * density * g) << "both fall the same";
@@ -233,8 +232,8 @@ TEST(InitialFriction, CommonMotionIsNoSliding) {
 // Without the tangential dashpot, which would drag on a sliding block.
 TEST(InitialFriction, ZeroLeavesZero) {
   for (const char *velocity : {"", "velocity = [1.0, 0.0, 0.0]"}) {
-    const Simulation run = started(incline(slope, 30.0 * degree, flat_block(slope, velocity)),
-                                   {"run.initial_friction=zero", "run.contact_damping=0"});
+    Simulation run = started(incline(slope, 30.0 * degree, flat_block(slope, velocity)),
+                             {"run.initial_friction=zero", "run.contact_damping=0"});
     EXPECT_EQ(regions_of(run)[0].shear, 0.0);
     EXPECT_EQ(memories(run.history())[0].shear, 0.0);
     EXPECT_NEAR(run.blocks().acceleration[0].u.x, g * std::sin(slope), 1e-11 * g);

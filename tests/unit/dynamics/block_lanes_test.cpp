@@ -411,11 +411,13 @@ TEST(LookAhead, LeavesHowBlocksMoved) {
   }
   const std::vector<BlockMotion> before = simulation.blocks().motion;
   std::size_t ahead = 0; // of rows that deform in another way there
-  simulation.look_ahead([&](const BlockSystem &blocks) {
+  {
+    const ComingTrial coming(simulation.state());
+    const BlockSystem &blocks = simulation.blocks();
     for (std::size_t row = 0; row < blocks.num_owned; ++row) {
       ahead += blocks.is_deformable(row) && blocks.motion[row].turn != before[row].turn ? 1 : 0;
     }
-  });
+  }
   EXPECT_GT(ahead, 0U);
   for (std::size_t row = 0; row < simulation.blocks().num_owned; ++row) {
     SCOPED_TRACE(row);

@@ -195,11 +195,11 @@ TEST(Stages, KineticDampingKeepsTheLedger) {
                  "[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 16\ncolumns = 8\n"
                  "block_size = [1.0, 0.5]\n" +
                  settle_kinetically));
-    const EnergyLedger ledger(simulation);
+    const EnergyLedger ledger(simulation.state());
     while (!simulation.stage_is_over()) {
       simulation.step();
     }
-    const EnergyRow row = ledger.row(simulation);
+    const EnergyRow row = ledger.row(simulation.state());
     EXPECT_LT(std::abs(row.residual), 2e-3 * row.damping_loss) << row.residual;
     EXPECT_GT(row.damping_loss, 0.3 * -row.gravity);
   }

@@ -157,9 +157,9 @@ TEST(StaticStage, BeginsWhenItsLoadsAreComplete) {
 // of the order of what one increment of the load stores.
 TEST(StaticStage, EnergiesAddUp) {
   Simulation simulation(Communicator::self(), scene_of(stack(4) + settle));
-  const EnergyLedger ledger(simulation);
+  const EnergyLedger ledger(simulation.state());
   run_stages(simulation);
-  const EnergyRow row = ledger.row(simulation);
+  const EnergyRow row = ledger.row(simulation.state());
   EXPECT_EQ(row.kinetic, 0.0);
   EXPECT_LT(row.gravity, 0.0);
   EXPECT_GT(row.contact_normal, 0.0);

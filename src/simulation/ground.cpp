@@ -1,0 +1,167 @@
+#include "simulation/ground.hpp"
+
+#include "contact/stiffness_bound.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/viscous_sides.hpp"
+#include "io/scene/record_file.hpp"
+#include "model/stiffness.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace gcpdda {
+
+namespace {
+
+/// Moduli of confined compression and of shear of the rock as the block has it; zero where it is rigid.
+std::array<double, 2> moduli_of(const BlockSystem &blocks, std::size_t row) {
+  if (!blocks.is_deformable(row)) {
+    return {};
+  }
+  const Deformation &d = blocks.deformation_of(row);
+  const double area = blocks.properties[row].area;
+  return {d.stiffness_direct / area, d.stiffness_shear / area};
+}
+
+// The time of the record's first row; never for a stage that has not begun.
+double shaking_since(const RunState &run) {
+  const std::int64_t stage = run.scene.earthquake.stage;
+  if (stage < 0) {
+    return run.scene.earthquake.start;
+  }
+  if (run.clock.state.index == stage) {
+    return run.clock.state.start_time;
+  }
+  return run.clock.state.index < stage ? std::numeric_limits<double>::infinity()
+         : stage == 0                  ? 0.0
+                                       : run.clock.state.results[static_cast<std::size_t>(stage - 1)].time;
+}
+
+// They sleep until the shaking begins: no stage before it lets waves out.
+void wake_dashpots(RunState &run) {
+  for (Dashpot &dashpot : run.blocks.dashpot) {
+    dashpot.is_awake = run.clock.state.index >= run.scene.earthquake.stage ? 1.0 : 0.0;
+  }
+}
+
+} // namespace
+
+void open_earthquake(RunState &run) {
+  const Diagnostics faults = open_record(run.communicator, run.scene);
+  run.notes.insert(run.notes.end(), faults.begin(), faults.end());
+  if (!run.scene.earthquake.shakes() || has_errors(run.notes)) {
+    return;
+  }
+  run.loads.ground = GroundMotion(run.scene.earthquake);
+  const double end = run.loads.ground.duration();
+  run.notes.push_back(
+      {Severity::info, run.scene.earthquake.where,
+       fmt::format("the record has {} rows in {:g} s and a peak acceleration of {:.3g} m/s2",
+                   run.scene.earthquake.record.size(), end, run.loads.ground.peak_acceleration()),
+       fmt::format("at its end the ground moves with {:.2g} m/s and has moved by {:.2g} m",
+                   norm(run.loads.ground.velocity(end)), norm(run.loads.ground.displacement(end))),
+       run.scene.earthquake.quantity == RecordQuantity::acceleration
+           ? "earthquake.baseline can bring both to zero"
+           : ""});
+}
+
+Vec2 ground_acceleration(const RunState &run) {
+  return run.scene.earthquake.shakes() && !run.scene.earthquake.is_compliant
+             ? run.loads.ground.mean_acceleration(run.loads.time - shaking_since(run),
+                                                  run.clock.plan.time_step)
+             : Vec2{};
+}
+
+Vec2 incoming_wave(const RunState &run) {
+  const double since = run.loads.time - shaking_since(run);
+  return run.scene.earthquake.shakes() && run.scene.earthquake.is_compliant && since > 0.0
+             ? run.loads.ground.velocity(since)
+             : Vec2{};
+}
+
+// Of the row that was appended last, as the scene draws it.
+void add_dashpot(RunState &run, const SceneBlock &block, const Material &material) {
+  const Earthquake &earthquake = run.scene.earthquake;
+  const std::size_t row = run.blocks.num_rows() - 1;
+  const JointLaw &law = run.scene.joints.laws.front();
+  std::vector<ViscousEdge> edges;
+  for (std::size_t k = 0; k < block.vertices.size(); ++k) {
+    const Vec2 a = block.vertices[k];
+    const Vec2 b = block.vertices[(k + 1) % block.vertices.size()];
+    for (std::size_t side = 0; side < earthquake.viscous.size(); ++side) {
+      if (!earthquake.viscous[side].holds(a) || !earthquake.viscous[side].holds(b)) {
+        continue;
+      }
+      const double height = run.blocks.properties[row].area / norm(b - a);
+      Impedance impedance =
+          impedance_of(material.density, moduli_of(run.blocks, row),
+                       {law.normal_stiffness, law.tangential_ratio * law.normal_stiffness}, height);
+      if (earthquake.p_wave_speed > 0.0) {
+        impedance.normal = material.density * earthquake.p_wave_speed;
+      }
+      if (earthquake.s_wave_speed > 0.0) {
+        impedance.tangential = material.density * earthquake.s_wave_speed;
+      }
+      const Vec2 centroid = run.blocks.properties[row].centroid;
+      edges.push_back({a - centroid, b - centroid, impedance, earthquake.is_compliant && side == 0});
+    }
+  }
+  if (!edges.empty()) {
+    run.blocks.dashpot.push_back(dashpot_of(edges));
+    run.blocks.dashpot_begin.lengthen(row, 1);
+  }
+}
+
+void prepare_matrices(RunState &run) {
+  wake_dashpots(run);
+  list_applied(run.blocks, !run.scene.water.empty() || !run.clock.state.unloading.empty());
+  make_block_matrices(run.blocks, run.scheme, run.clock.plan.time_step, run.scene.run.elasticity,
+                      stiffest_joint(run.scene.joints), run.scene.run.rayleigh.stiffness_damping);
+}
+
+bool opens_viscous_sides(const RunState &run) {
+  return !run.scene.earthquake.viscous.empty() && run.clock.state.index == run.scene.earthquake.stage;
+}
+
+// Fixed blocks beyond a viscous side held it so far; what they held with stays (Unloading).
+std::vector<std::int64_t> held_beyond_viscous_sides(const RunState &run) {
+  std::vector<std::int64_t> held;
+  for (std::size_t row = run.blocks.first_fixed(); row < run.blocks.num_rows(); ++row) {
+    const std::vector<Vec2> corners = current_vertices(run.blocks, row);
+    const auto is_beyond = [&](const Boundary &side) {
+      return std::all_of(corners.begin(), corners.end(),
+                         [&](Vec2 x) { return dot(side.normal, x) >= side.reach - side.rounding; });
+    };
+    if (std::any_of(run.scene.earthquake.viscous.begin(), run.scene.earthquake.viscous.end(), is_beyond)) {
+      held.push_back(run.blocks.properties[row].id.value);
+    }
+  }
+  return held; // fixed rows ascend by id, and all ranks have them all
+}
+
+std::optional<FarthestBlock> permanent_displacement(const RunState &run) {
+  const std::int64_t stage = std::max<std::int64_t>(run.scene.earthquake.stage, 0);
+  if (!run.scene.earthquake.shakes() || run.clock.state.index != stage) {
+    return std::nullopt;
+  }
+  FarthestBlock mine;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const double distance = norm(run.blocks.displacement[row].u - run.blocks.mark_of(row).stage.u);
+    if (!run.blocks.properties[row].keeps_its_velocity() && distance > mine.distance) {
+      mine = {distance, run.blocks.properties[row].id.value};
+    }
+  }
+  FarthestBlock farthest;
+  for (const auto &theirs : run.communicator.all_gather(std::vector<FarthestBlock>{mine})) {
+    const FarthestBlock &other = theirs.front();
+    if (other.distance > farthest.distance ||
+        (other.distance == farthest.distance && other.block < farthest.block)) {
+      farthest = other;
+    }
+  }
+  return farthest;
+}
+
+} // namespace gcpdda

@@ -1,0 +1,39 @@
+#pragma once
+
+// The ground motion of a run and the sides through which it comes and goes (dynamics/ground_motion.hpp,
+// dynamics/viscous_sides.hpp).
+
+#include "simulation/run_state.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace gcpdda {
+
+/// Reads the record; faults and remarks become notes. Collective.
+void open_earthquake(RunState &run);
+/// At the time of the loads; zero before the shaking.
+[[nodiscard]] Vec2 ground_acceleration(const RunState &run);
+[[nodiscard]] Vec2 incoming_wave(const RunState &run);
+
+/// Of the row that was appended last, as the scene draws it.
+void add_dashpot(RunState &run, const SceneBlock &block, const Material &material);
+/// Matrices of all rows for the stage that begins, in which dashpots are awake or not.
+void prepare_matrices(RunState &run);
+
+/// The stage that begins lets waves out.
+[[nodiscard]] bool opens_viscous_sides(const RunState &run);
+/// Fixed blocks beyond a viscous side held it so far; what they held with stays (Unloading).
+[[nodiscard]] std::vector<std::int64_t> held_beyond_viscous_sides(const RunState &run);
+
+/// How far the block is that has gone farthest; of several the one with the smallest id.
+struct FarthestBlock {
+  double distance = 0.0; ///< of its centroid, m
+  std::int64_t block = 0;
+};
+/// Motion against the ground since the stage began in which it shakes, or since t = 0 in a scene without
+/// stages; nothing in other stages. Collective.
+[[nodiscard]] std::optional<FarthestBlock> permanent_displacement(const RunState &run);
+
+} // namespace gcpdda

@@ -1,0 +1,34 @@
+#pragma once
+
+// What stages do at once: blocks go, parameters change. Every change is made in the same order by a run and
+// by a restart into a later stage, so that both have the same bits.
+
+#include "simulation/run_state.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace gcpdda {
+
+/// The scene of the stage from here on: laws, materials, loads, water, which blocks are fixed or driven.
+/// @param begin  s, of the stage
+void adopt(RunState &run, const Stage &stage, double begin);
+
+/// Bolts that are in place now and were not are put in where the blocks are; those that are no longer, and
+/// all at blocks that are gone, are taken out. Collective.
+/// @param before  Scene::bolts of the stage before
+void change_bolts(RunState &run, const std::vector<Bolt> &before);
+
+/// Ids of the selected blocks, ascending, the same on all ranks. Collective.
+[[nodiscard]] std::vector<std::int64_t> select_blocks(const RunState &run, const BlockSelection &selection);
+
+/// Blocks are to be removed; what they put on others stays and goes. Collective.
+/// @param relax  s, over which their forces fall to zero; infinite where they stay
+void excavate(RunState &run, const std::vector<std::int64_t> &ids, double relax);
+/// Rows of these blocks go. Collective.
+void remove_blocks(RunState &run, const std::vector<std::int64_t> &ids);
+
+/// What excavated blocks still put on this one, at the time of the loads.
+[[nodiscard]] Unloading unloading_of(const RunState &run, BlockId block);
+
+} // namespace gcpdda

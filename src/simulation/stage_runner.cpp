@@ -1,0 +1,343 @@
+#include "simulation/stage_runner.hpp"
+
+#include "base/check.hpp"
+#include "base/exact_sum.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/frequency_bound.hpp"
+#include "simulation/evaluation.hpp"
+#include "simulation/ground.hpp"
+#include "simulation/stage_changes.hpp"
+#include "simulation/static_stage.hpp"
+#include "simulation/step_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace gcpdda {
+
+namespace {
+
+/// A component of a force before local damping took its share: f (1 - share sign(f) sign(v)).
+double undamped(double force, double velocity, double share) {
+  const double sign = force * velocity > 0.0 ? 1.0 : force * velocity < 0.0 ? -1.0 : 0.0;
+  return force / (1.0 - share * sign);
+}
+
+double kinetic_energy_of(const BlockSystem &blocks, std::size_t row, const RigidDof &v, const Mat2 &rate) {
+  const BlockProperties &block = blocks.properties[row];
+  const double turning = blocks.is_deformable(row) ? kinetic_energy(blocks.deformation_of(row), rate)
+                                                   : 0.5 * block.inertia * v.r * v.r;
+  return 0.5 * block.mass * dot(v.u, v.u) + turning;
+}
+double kinetic_energy_of(const BlockSystem &blocks, std::size_t row) {
+  return kinetic_energy_of(blocks, row, blocks.velocity[row],
+                           blocks.is_deformable(row) ? blocks.deformation_of(row).rate : Mat2{});
+}
+
+/// Largest distance a point of the block has moved.
+double motion_between(const BlockProperties &block, const RigidDof &from, const RigidDof &to) {
+  return norm(to.u - from.u) + block.radius * std::abs(to.r - from.r);
+}
+
+void mark_stage(RunState &run) {
+  if (!run.clock.is_staged) {
+    return; // nobody looks
+  }
+  const std::span<BlockMark> marks = mark_rows(run.blocks);
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    marks[row] = {run.blocks.displacement[row], run.blocks.displacement[row]};
+  }
+}
+
+// What local damping of the last evaluation acted against, to a positive factor.
+RigidDof damped_motion(const RunState &run, std::size_t row) {
+  return run.blocks.is_deformable(row)
+             ? next_trial(run.blocks, run.scheme, run.clock.plan.time_step, row).motion -
+                   run.blocks.trial[row] + run.blocks.motion[row].increment()
+             : run.blocks.velocity[row];
+}
+
+} // namespace
+
+// Two reductions, now and then; both are exact.
+void look_at_stage(RunState &run) {
+  ExactSum kinetic;
+  std::array<double, 6> largest{};
+  auto &[unbalanced, acting, motion, moved, moved_beyond_sag, overlap] = largest;
+  const std::span<BlockMark> marks = mark_rows(run.blocks);
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const BlockProperties &block = run.blocks.properties[row];
+    if (block.keeps_its_velocity()) {
+      continue;
+    }
+    const AppliedForces applied = applied_forces(run.blocks, row);
+    const RigidDof v = damped_motion(run, row);
+    const RigidDof force = run.blocks.contact[row].force + applied.anchor;
+    const double along_x = undamped(force.u.x, v.u.x, run.local_damping);
+    const double along_y = undamped(force.u.y, v.u.y, run.local_damping);
+    const double turning = run.blocks.is_deformable(row)
+                               ? norm(unbalanced_on_gradient(run.blocks.deformation_of(row)))
+                               : std::abs(undamped(force.r, v.r, run.local_damping));
+    unbalanced = std::max({unbalanced, norm(Vec2{along_x, along_y}), turning / block.radius});
+    acting = std::max({acting, block.heavy_mass() * norm(run.scene.run.gravity), norm(applied.load.u)});
+    BlockMark &mark = marks[row];
+    const RigidDof &now = run.blocks.displacement[row];
+    motion = std::max(motion, motion_between(block, mark.look, now));
+    const double way = motion_between(block, mark.stage, now);
+    const double share = way / std::sqrt(block.area);
+    moved = std::max(moved, share);
+    moved_beyond_sag = std::max(moved_beyond_sag, way > run.sag ? share : 0.0);
+    mark.look = now;
+    kinetic.add(kinetic_energy_of(run.blocks, row));
+  }
+  acting = std::max(acting, run.contacts.sums().largest_force());
+  overlap = run.force_report.max_overlap;
+  run.communicator.max(largest);
+  run.communicator.sum(kinetic.limbs());
+  const StageLook look{acting > 0.0 ? unbalanced / acting : 0.0,
+                       motion,
+                       overlap,
+                       acting,
+                       kinetic.value(),
+                       moved,
+                       moved_beyond_sag};
+  const Stage &stage = run.clock.stage();
+  run.clock.state.verdict = judge(stage, look, run.clock.state.memory);
+  const bool unloads = std::any_of(
+      run.clock.state.unloading.begin(), run.clock.state.unloading.end(), [&](const Unloading &u) {
+        return std::isfinite(u.duration) && run.clock.time() < u.begin + u.duration;
+      });
+  if (unloads || run.clock.time() < run.scene.run.gravity_ramp ||
+      run.loads.are_changing(run.scene, run.clock.state, run.clock.time())) { // the loads are not there yet
+    run.clock.state.verdict = Verdict::undecided;
+  }
+  run.clock.state.end_time = run.clock.time();
+  run.clock.state.ended = stage.until_verdict && run.clock.state.verdict != Verdict::undecided;
+}
+
+// Stick springs keep their stretch: they go on from the last trial configuration.
+void set_to_rest(RunState &run) {
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    if (run.blocks.properties[row].keeps_its_velocity()) {
+      continue;
+    }
+    run.blocks.velocity[row] = {};
+    run.blocks.acceleration[row] = {};
+    if (run.blocks.is_deformable(row)) {
+      run.blocks.deformation_of(row).rate = {};
+      run.blocks.deformation_of(row).acceleration = {};
+    }
+  }
+}
+
+namespace {
+
+// What stopping takes from the energies of the ledger, which are those of the leapfrog of x*. It would have
+// gone on to x*' = x + c1 dt v + c2 dt^2 a with the kinetic energy of (x*' - x*)/dt; it goes on from x
+// instead, and the trapezoid of this evaluation and about that of the next, which begins from rest, take f
+// along x - x*' and x - x*.
+//
+// A stop takes energy. With am = 0 (r = 0.5) the two ways are x - x* = dt v/3 + dt^2 a/6 and x*' - x = 2 dt
+// v/3, and the net force is M a whatever it is made of, implicit elasticity included, so what is booked is
+//     -(v M v/2 + (7/72) dt^2 a M a) <= 0.
+// Springs k that act at x* alone make this exact but for + (x - x*) k (x - x*)/2, from the trapezoid of the
+// coming evaluation. By Cauchy and Schwarz (x - x*) M (x - x*) <= (32/63) dt^2 (v M v/2 + (7/72) dt^2 a M a),
+// so that the energy falls up to W = dt omega = sqrt(63/16) = 1.98. Elasticity K that acts implicitly
+// remembers two steps, and the energy is a state's own again only at rest, where it is x (k + K) x/2: no
+// stop, after whatever number of steps from rest, raises it. tests/unit/dynamics/kinetic_stop_test.cpp tries
+// that for k and K at random up to 0.9 of the limit, which settle stages keep.
+void book_stop(RunState &run) {
+  const double dt = run.clock.plan.time_step;
+  const double by_velocity = run.scheme.trial_velocity * dt;
+  const double by_acceleration = run.scheme.trial_acceleration * dt * dt;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    if (run.blocks.properties[row].keeps_its_velocity()) {
+      continue;
+    }
+    const RigidDof ahead =
+        by_velocity * run.blocks.velocity[row] + by_acceleration * run.blocks.acceleration[row];
+    const RigidDof behind = run.blocks.displacement[row] - run.blocks.trial[row];
+    RigidDof force = run.blocks.contact[row].force + run.blocks.anchor_force(row);
+    Mat2 stretch;
+    double work_on_gradient = 0.0;
+    if (run.blocks.is_deformable(row)) {
+      const Deformation &d = run.blocks.deformation_of(row);
+      const Mat2 gradient_ahead = by_velocity * d.rate + by_acceleration * d.acceleration;
+      const Mat2 gradient_behind = d.gradient - d.trial;
+      force.r = 0.0;
+      stretch = (1.0 / dt) * (gradient_behind + gradient_ahead);
+      work_on_gradient = contract(unbalanced_on_gradient(d), gradient_ahead - gradient_behind);
+    }
+    run.blocks.ledger[row].damping +=
+        0.5 * (work(force, ahead - behind) + work_on_gradient) -
+        kinetic_energy_of(run.blocks, row, (1.0 / dt) * (behind + ahead), stretch);
+  }
+}
+
+// Where the energy of motion has just been greatest the pile passes through the balance of the slowest mode
+// that moves: from rest there it has less far to go. An exact sum, so that every number of ranks stops alike.
+void stop_at_energy_peak(RunState &run) {
+  ExactSum kinetic;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    if (!run.blocks.properties[row].keeps_its_velocity()) {
+      kinetic.add(kinetic_energy_of(run.blocks, row));
+    }
+  }
+  run.communicator.sum(kinetic.limbs());
+  const double now = kinetic.value();
+  const bool passed = now < run.clock.state.memory.kinetic_before;
+  run.clock.state.memory.kinetic_before = passed ? 0.0 : now;
+  if (passed) {
+    book_stop(run);
+    set_to_rest(run);
+  }
+}
+
+/// Of a stage that is over as soon as it has begun.
+StageResult result_without_steps(const StageState &stage) {
+  StageResult result;
+  result.verdict = stage.verdict;
+  result.time = stage.end_time;
+  result.removed =
+      std::accumulate(stage.results.begin(), stage.results.end(), std::ssize(stage.removed),
+                      [](std::int64_t left, const StageResult &earlier) { return left - earlier.removed; });
+  return result;
+}
+
+} // namespace
+
+// What cannot be run is told before anything is.
+void plan_all_stages(RunState &run) {
+  for (const Stage &stage : run.clock.stages) {
+    if (run.clock.is_staged && stage.takes_steps()) {
+      RunSettings settings = run.scene.run;
+      settings.duration = stage.duration;
+      Diagnostics found;
+      plan_time(settings, run.scene.output, std::numeric_limits<double>::infinity(), found);
+      for (Diagnostic &d : found) {
+        if (d.severity == Severity::error) {
+          d.where = stage.where;
+          run.notes.push_back(std::move(d));
+        }
+      }
+    }
+  }
+}
+
+void plan_stage(RunState &run) {
+  const Stage &stage = run.clock.stage();
+  RunSettings settings = run.scene.run;
+  settings.duration = stage.takes_steps() ? stage.duration : run.scene.output.interval;
+  run.clock.plan = plan_time(settings, run.scene.output, run.bound.time_step, run.notes);
+  if (!stage.takes_steps()) {
+    run.clock.plan.duration = 0.0;
+    run.clock.plan.num_steps = 0;
+  }
+  run.local_damping = stage.local_damping_or(run.scene.run.local_damping);
+}
+
+void judge_stage(RunState &run) {
+  if (run.clock.stage().kinetic_damping) {
+    stop_at_energy_peak(run);
+  }
+  if (run.clock.is_staged && run.clock.stage_step() % steps_between_verdicts(num_blocks(run.scene)) == 0) {
+    look_at_stage(run);
+  }
+}
+
+std::vector<StageResult> stage_results(const RunState &run) {
+  std::vector<StageResult> results = run.clock.state.results;
+  if (std::ssize(results) == run.clock.state.index) {
+    std::int64_t contact_steps = run.counters.contact_steps;
+    run.communicator.sum(std::span(&contact_steps, 1));
+    const StageLook &last = run.clock.state.memory.last;
+    results.push_back({run.clock.state.verdict, run.clock.time(), run.clock.stage_step(),
+                       contact_steps - run.clock.state.contact_steps_before, last.unbalanced_ratio,
+                       last.kinetic, last.moved, 0});
+  }
+  return results;
+}
+
+// A stage that reached its limit undecided stays as it is: with a longer limit a restart goes on with it.
+void end_stage(RunState &run) {
+  const Stage &stage = run.clock.stage();
+  if (!run.clock.is_staged || !run.clock.stage_is_over() || run.fault ||
+      std::ssize(run.clock.state.results) > run.clock.state.index ||
+      (stage.until_verdict && !run.clock.state.ended)) {
+    return;
+  }
+  run.clock.state.results = stage_results(run);
+  run.clock.state.end_time = run.clock.time();
+  run.clock.state.ended = true;
+  if (stage.kind == StageKind::settle) {
+    close_statics(run);
+    unscale_masses(run);
+    if (run.clock.state.verdict == Verdict::settled) {
+      set_to_rest(run);
+    }
+  }
+}
+
+void begin_next_stage(RunState &run) {
+  expect(run.clock.stage_is_over() && !run.fault && !run.clock.is_finished(),
+         "a stage begins when the one before is over");
+  run.clock.state.start_time = run.clock.time();
+  run.clock.state.first_step = run.clock.step_count;
+  ++run.clock.state.index;
+  run.clock.state.ended = false;
+  run.clock.state.verdict = Verdict::undecided;
+  run.clock.state.memory = {};
+  run.clock.state.iteration = {};
+  run.clock.state.contact_steps_before = run.counters.contact_steps;
+  run.communicator.sum(std::span(&run.clock.state.contact_steps_before, 1));
+  std::erase_if(run.clock.state.unloading,
+                [&](const Unloading &u) { return run.clock.time() >= u.begin + u.duration; });
+  run.clock.plan.duration = 0.0; // so that time() is the beginning of the stage
+  run.clock.plan.num_steps = 0;
+
+  const Stage &stage = run.clock.stage();
+  const bool takes_away = stage.kind == StageKind::excavate || opens_viscous_sides(run);
+  if (takes_away) {
+    refresh(run);
+    evaluate_still(run);
+    if (stage.kind == StageKind::excavate) {
+      excavate(run, select_blocks(run, stage.excavated), stage.relax);
+    } else {
+      excavate(run, held_beyond_viscous_sides(run), std::numeric_limits<double>::infinity());
+    }
+  }
+  ContactMemory memory = run.neighbours.remembered(run.blocks);
+  const auto is_gone = [&](const auto &record) {
+    return is_removed(run.clock.state, record.lower.value) ||
+           is_removed(run.clock.state, record.higher.value);
+  };
+  std::erase_if(memory.plain, is_gone);
+  std::erase_if(memory.others, is_gone);
+  if (takes_away) {
+    remove_blocks(run, run.clock.state.removed);
+  }
+  run.bolts.share(run.communicator);
+  const std::vector<Bolt> bolts_before = run.scene.bolts;
+  adopt(run, stage, run.clock.time());
+  change_bolts(run, bolts_before);
+  scale_masses(run);
+  find_bound(run);
+  plan_stage(run);
+  prepare_matrices(run);
+  refresh(run, std::move(memory));
+  evaluate_still(run);
+  run.loads.time = run.clock.time();
+  accelerate_owned(run);
+  mark_stage(run);
+  if (!stage.takes_steps()) {
+    run.clock.state.verdict = Verdict::done;
+    run.clock.state.end_time = run.clock.time();
+    run.clock.state.results.push_back(result_without_steps(run.clock.state));
+    run.clock.state.ended = true;
+  }
+}
+
+} // namespace gcpdda

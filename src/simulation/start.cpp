@@ -1,0 +1,329 @@
+#include "simulation/start.hpp"
+
+#include "base/free_memory.hpp"
+#include "contact/stiffness_bound.hpp"
+#include "dynamics/deformable.hpp"
+#include "dynamics/frequency_bound.hpp"
+#include "gcpdda/io/result_files.hpp"
+#include "geometry/polygon.hpp"
+#include "io/blocks/block_file.hpp"
+#include "model/fidelity.hpp"
+#include "model/stiffness.hpp"
+#include "parallel/migration.hpp"
+#include "parallel/packing.hpp"
+#include "simulation/doubts.hpp"
+#include "simulation/driven_paths.hpp"
+#include "simulation/ground.hpp"
+#include "simulation/in_situ_state.hpp"
+#include "simulation/initial_state.hpp"
+#include "simulation/monitors.hpp"
+#include "simulation/plausibility.hpp"
+#include "simulation/rank_facts.hpp"
+#include "simulation/region_slabs.hpp"
+#include "simulation/scene_size.hpp"
+#include "simulation/stage_changes.hpp"
+#include "simulation/stage_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+namespace gcpdda {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+void stop_on_errors(const Diagnostics &diagnostics) {
+  if (has_errors(diagnostics)) {
+    throw SceneError(diagnostics);
+  }
+}
+
+double agreed_max(const Communicator &communicator, double value) {
+  communicator.max(std::span(&value, 1));
+  return value;
+}
+
+std::int64_t agreed_sum(const Communicator &communicator, std::int64_t value) {
+  communicator.sum(std::span(&value, 1));
+  return value;
+}
+
+Diagnostic on_viscous_sides(const Scene &scene, std::int64_t count) {
+  return {count > 0 ? Severity::info : Severity::error, scene.earthquake.where,
+          fmt::format("{} blocks have edges on viscous sides", count),
+          "edges that lie on a side at the start let waves out", ""};
+}
+
+/// @param cut  what this rank has cut out of the region
+std::vector<SceneBlock> load_slab(RunState &run, std::vector<SceneBlock> cut) {
+  const std::int64_t num_before_region = num_blocks(run.scene) - run.scene.num_region_blocks;
+  const std::int64_t num_listed = num_before_region - run.scene.block_file.num_blocks;
+  const std::int64_t first =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank());
+  const std::int64_t last =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank() + 1);
+  std::vector<SceneBlock> slab;
+  slab.reserve(static_cast<std::size_t>(last - first));
+  for (std::int64_t id = first; id < std::min(last, num_listed); ++id) {
+    slab.push_back(block_of(run.scene, id));
+  }
+  if (!run.scene.block_file.path.empty()) {
+    const auto in_file = [&](std::int64_t id) {
+      return std::clamp(id, num_listed, num_before_region) - num_listed;
+    };
+    stop_on_errors(read_block_file(run.communicator, run.scene, in_file(first), in_file(last), slab));
+  }
+  if (run.scene.region_blocks) {
+    send_to_slabs(run.communicator, num_blocks(run.scene), num_before_region, std::move(cut), slab);
+  }
+  return slab;
+}
+
+// What only the blocks together say: the stiffness of an allowed overlap, and how far a pile may sag.
+void find_model_sizes(RunState &run, std::span<const SceneBlock> slab) {
+  const auto by_overlap = [](const JointLaw &law) { return law.allowed_overlap > 0.0; };
+  const bool any_by_overlap =
+      std::any_of(run.scene.joints.laws.begin(), run.scene.joints.laws.end(), by_overlap);
+  if (!any_by_overlap && !run.clock.is_staged) {
+    return;
+  }
+  const auto is_mobile = [](const SceneBlock &block) { return !block.fixed; };
+  const bool any_mobile =
+      agreed_sum(run.communicator, std::count_if(slab.begin(), slab.end(), is_mobile)) > 0;
+  SizeSurvey survey = survey_sizes(run.scene, slab, !any_mobile);
+  survey.densest = agreed_max(run.communicator, survey.densest);
+  survey.high = agreed_max(run.communicator, survey.high);
+  survey.low = -agreed_max(run.communicator, -survey.low);
+  if (any_by_overlap) {
+    resolve_stiffness(run.scene, survey, agreed_median(run.communicator, survey.sizes));
+    run.contacts = ContactForces(contact_parameters(run.scene));
+  }
+  run.sag = largest_sag(run.scene, survey, agreed_median(run.communicator, survey.widths));
+}
+
+void find_laws_on_edges(RunState &run, std::span<const SceneBlock> slab) {
+  std::vector<JointLaw> &laws = run.scene.joints.laws;
+  std::vector<std::int64_t> named(laws.size(), 0);
+  for (const SceneBlock &block : slab) {
+    for (const std::int32_t law : block.edge_joint) {
+      if (law >= 0) {
+        named[static_cast<std::size_t>(law)] = 1;
+      }
+    }
+  }
+  run.communicator.max(named);
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    laws[i].is_on_edges = named[i] > 0;
+  }
+}
+
+// A block rests by its overlap; where that is no more than the last digits of its coordinates, it is noise.
+void warn_of_rounding(RunState &run, double size, double farthest) {
+  double density = infinite;
+  for (const Material &material : run.scene.materials) {
+    density = std::min(density, material.density);
+  }
+  const double depth = density * norm(run.scene.run.gravity) * size / stiffest_joint(run.scene.joints);
+  const double rounding = std::numeric_limits<double>::epsilon() * farthest;
+  if (depth > 0.0 && depth < 10.0 * rounding) {
+    run.notes.push_back(
+        {Severity::warning,
+         {},
+         fmt::format("the smallest block rests by an overlap of {:.2g} m, and coordinates of {:g} m are "
+                     "rounded by {:.2g} m",
+                     depth, farthest, rounding),
+         "forces at rest will be rounding errors",
+         "lower joint.normal_stiffness or move the model to the origin"});
+  }
+}
+
+// What is thinnest, what is smallest, how far the model reaches.
+void survey_blocks(RunState &run, std::span<const SceneBlock> slab) {
+  Aabb region;
+  double smallest_mobile = infinite;
+  run.thinnest = infinite;
+  std::int64_t num_mobile = 0;
+  for (const SceneBlock &block : slab) {
+    region.include(bounding_box(block.vertices));
+    run.thinnest = std::min(run.thinnest, narrowest_width(block.vertices));
+    if (!block.fixed) {
+      smallest_mobile = std::min(smallest_mobile, signed_area(block.vertices));
+      ++num_mobile;
+    }
+  }
+  std::array<double, 6> largest{-region.low.x, -region.low.y,    region.high.x,
+                                region.high.y, -smallest_mobile, -run.thinnest};
+  run.communicator.max(largest);
+  find_laws_on_edges(run, slab);
+  smallest_mobile = -largest[4];
+  run.thinnest = -largest[5];
+  num_mobile = agreed_sum(run.communicator, num_mobile);
+  constexpr double skin_per_size = 0.1;
+  run.neighbours.base_skin = num_mobile > 0 ? skin_per_size * std::sqrt(smallest_mobile) : 0.0;
+  if (num_mobile > 0) {
+    const double farthest = *std::max_element(largest.begin(), largest.begin() + 4,
+                                              [](double a, double b) { return std::abs(a) < std::abs(b); });
+    warn_of_rounding(run, std::sqrt(smallest_mobile), std::abs(farthest));
+  }
+}
+
+// An impact keeps its energy to about (omega dt)^2; dashpots take more than that, but without them it may
+// grow.
+void warn_of_lively_impacts(RunState &run) {
+  const double per_step = run.clock.plan.time_step * run.bound.omega_max;
+  if (!run.contacts.parameters().has_dashpots() && per_step > 0.5 * (1.0 + 1e-9)) {
+    run.notes.push_back(
+        {Severity::warning,
+         {},
+         fmt::format(
+             "without contact damping a step of {:.2g}/omega_max lets one impact gain or lose up to a "
+             "tenth of its energy",
+             per_step),
+         "the error falls with the square of the step",
+         "use run.safety = 0.25 or less, or run.contact_damping"});
+  }
+}
+
+// Mobile blocks of the slab become owned rows, to be migrated; everybody gets all fixed ones.
+void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
+  const std::int64_t first =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank());
+  reserve_rows(run.blocks, slab.size(),
+               std::transform_reduce(slab.begin(), slab.end(), std::size_t{0}, std::plus<>(),
+                                     [](const SceneBlock &block) { return block.vertices.size(); }));
+  BlockSystem fixed;
+  for (std::size_t k = 0; k < slab.size(); ++k) {
+    const SceneBlock &block = slab[k];
+    const Material &material = run.scene.materials[static_cast<std::size_t>(block.material)];
+    const FidelityChoice choice = choose_fidelity(
+        block, signed_area(block.vertices), material,
+        stiffness_bound(run.scene.joints, block.material, block.edge_joint).normal, run.scene.run);
+    const bool asked = block.fidelity != Fidelity::automatic || run.scene.run.fidelity != Fidelity::automatic;
+    run.fidelity.num_asked += asked && !block.fixed ? 1 : 0;
+    run.fidelity.num_rigid += choice.kind == BlockKind::rigid ? 1 : 0;
+    run.fidelity.num_deformable += choice.kind == BlockKind::deformable ? 1 : 0;
+    double &worst =
+        choice.kind == BlockKind::deformable ? run.fidelity.worst_deformable : run.fidelity.worst_rigid;
+    if (!block.fixed && !block.driven) {
+      worst = std::max(worst, choice.rigid_error);
+    }
+    append_block(block.fixed ? fixed : run.blocks, BlockId{first + static_cast<std::int64_t>(k)}, block,
+                 material, choice.kind, run.scene.run.plane_strain);
+    if (!block.fixed && !run.scene.earthquake.viscous.empty()) {
+      add_dashpot(run, block, material);
+    }
+  }
+  run.fidelity.num_asked = agreed_sum(run.communicator, run.fidelity.num_asked);
+  run.fidelity.num_rigid = agreed_sum(run.communicator, run.fidelity.num_rigid);
+  run.fidelity.num_deformable = agreed_sum(run.communicator, run.fidelity.num_deformable);
+  run.fidelity.worst_rigid = agreed_max(run.communicator, run.fidelity.worst_rigid);
+  run.fidelity.worst_deformable = agreed_max(run.communicator, run.fidelity.worst_deformable);
+  if (!run.scene.earthquake.viscous.empty()) {
+    run.notes.push_back(
+        on_viscous_sides(run.scene, agreed_sum(run.communicator, std::ssize(run.blocks.dashpot))));
+    stop_on_errors(run.notes);
+  }
+  run.blocks.num_owned = run.blocks.num_rows();
+  Bytes mine;
+  for (std::size_t row = 0; row < fixed.num_rows(); ++row) {
+    pack_row(fixed, row, mine);
+  }
+  for (const Bytes &message :
+       run.communicator.all_gather(mine)) { // slabs ascend with the ranks, and so do ids
+    unpack_rows(message, run.blocks);
+  }
+  run.blocks.num_fixed = run.blocks.num_rows() - run.blocks.num_owned;
+}
+
+// By cell, of the initial configuration. Faces that touch count as contacts whatever their rounding.
+std::vector<std::int64_t> count_contact_work(RunState &run) {
+  run.neighbours.ghosts.rebuild(run.blocks, reach_boxes(run.blocks, run.neighbours.base_skin));
+  WorkOfBlocks work(run.blocks.num_owned);
+  for (const auto &[lower, higher] :
+       find_pairs(run.blocks, reach_boxes(run.blocks, 0.1 * run.neighbours.base_skin))) {
+    work.add_pair(lower, higher);
+  }
+  std::vector<Vec2> centroids;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    centroids.push_back(run.blocks.centroid(row));
+  }
+  return weights_by_cell(run.communicator, run.neighbours.map.grid, centroids, work.counted());
+}
+
+// Cells are weighted first by blocks, then, once the neighbourhoods are known, by counted contact work.
+void distribute(RunState &run, const Beginning &beginning) {
+  stop_on_errors(open_block_file(run.communicator, run.scene));
+  stop_on_errors(judge_size(run.communicator, run.scene));
+  take_prints(run, beginning); // of the scene as it was read
+  std::vector<SceneBlock> slab = load_slab(run, cut_region(run));
+  run.loads.load_sides(slab);
+  note_groups(run, slab);
+  find_model_sizes(run, slab);
+  place_monitors(run, slab);
+  survey_blocks(run, slab);
+  doubt_blocks(run, slab);
+  std::vector<Vec2> centroids;
+  for (const SceneBlock &block : slab) {
+    if (!block.fixed) {
+      centroids.push_back(polygon_moments(block.vertices).centroid);
+    }
+  }
+  run.neighbours.map.grid = lay_grid(run.communicator, centroids);
+  const std::vector<std::int64_t> equal(centroids.size(), 1);
+  run.neighbours.map = partition_cells(
+      run.neighbours.map.grid, weights_by_cell(run.communicator, run.neighbours.map.grid, centroids, equal),
+      run.communicator.size(), &run.neighbours.partition);
+  identify(run, slab);
+  take_blocks(run, std::exchange(slab, {}));
+  give_back_free_memory();
+  if (run.scene.in_situ.present) {
+    apply_in_situ_stress(run);
+  }
+  ContactMemory memory;
+  if (!beginning.folder.empty()) { // rows are those of the slab still
+    restore(run, beginning, memory);
+  }
+  migrate(run.communicator, run.neighbours.map, run.blocks, memory);
+  if (run.restored) {
+    run.restored->memory = std::move(memory.others);
+  }
+  run.neighbours.map = partition_cells(run.neighbours.map.grid, count_contact_work(run),
+                                       run.communicator.size(), &run.neighbours.partition);
+}
+
+} // namespace
+
+void start(RunState &run, const Beginning &beginning) {
+  run.notes = implausible_values(run.scene);
+  run.loads.list_courses(run.scene, run.clock.stages);
+  plan_all_stages(run);
+  open_earthquake(run);
+  stop_on_errors(run.notes);
+  distribute(run, beginning);
+  run.restored ? run.bolts.take_laws(run.scene) : change_bolts(run, {});
+  scale_masses(run);
+  find_bound(run);
+  plan_stage(run);
+  warn_of_lively_impacts(run);
+  prepare_matrices(run);
+  refresh(run, run.restored ? ContactMemory{{}, std::move(run.restored->memory)} : ContactMemory{});
+  warn_of_driven_paths(run.scene, run.blocks, run.notes);
+  if (run.restored) {
+    go_on(run);
+  } else {
+    find_initial_state(run);
+    doubt_gaps(run);
+    doubt_monitors(run);
+  }
+  stop_on_errors(run.notes);
+  std::stable_sort(run.notes.begin(), run.notes.end(), // warnings in one block
+                   [](const Diagnostic &a, const Diagnostic &b) { return a.severity < b.severity; });
+  give_back_free_memory();
+}
+
+} // namespace gcpdda

@@ -1,0 +1,131 @@
+#include "simulation/step_bound.hpp"
+
+#include "contact/stiffness_bound.hpp"
+#include "dynamics/frequency_bound.hpp"
+#include "simulation/run_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace gcpdda {
+
+namespace {
+
+double frequency_bound_of(const RunState &run, std::size_t row, std::span<const PointSpring> springs) {
+  const StiffnessBound stiffness =
+      stiffness_bound(run.scene.joints, run.blocks.properties[row].material, run.blocks.edge_joints(row));
+  return contact_frequency_bound(run.blocks, row, stiffness.normal, stiffness.tangential,
+                                 elasticity_of(run.scheme, run.scene.run.elasticity), springs);
+}
+
+} // namespace
+
+void find_bound(RunState &run) {
+  double omega_squared = 0.0;
+  double without_bolts = 0.0;
+  std::int64_t limiting = std::numeric_limits<std::int64_t>::max();
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const std::span<const PointSpring> springs = run.bolts.springs_at(run.blocks.properties[row].id.value);
+    const double own = frequency_bound_of(run, row, springs);
+    without_bolts = std::max(without_bolts, springs.empty() ? own : frequency_bound_of(run, row, {}));
+    if (own > omega_squared) {
+      omega_squared = own;
+      limiting = run.blocks.properties[row].id.value;
+    }
+  }
+  const double mine = omega_squared;
+  run.communicator.max(std::span(&omega_squared, 1));
+  std::int64_t minus_id = mine == omega_squared && omega_squared > 0.0 ? -limiting : -num_blocks(run.scene);
+  run.communicator.max(std::span(&minus_id, 1));
+  run.bound.block = minus_id == -num_blocks(run.scene) ? -1 : -minus_id;
+  // A block that is alone can never touch.
+  run.bound.omega_max = num_blocks(run.scene) > 1 ? std::sqrt(omega_squared) : 0.0;
+  run.bound.without_bolts =
+      run.bolts.empty() ? run.bound.omega_max : std::sqrt(agreed_max(run.communicator, without_bolts));
+
+  // In a system of blocks the fastest mode is damped more than one joint.
+  const double modal_damping_factor = run.fidelity.num_deformable > 0 ? 2.4 : 1.4;
+  const double joint_ratio = modal_damping_factor * run.scene.run.contact_damping;
+  const double undamped_limit = stability_limit(run.scheme, joint_ratio);
+  run.bound.damping_ratio =
+      joint_ratio + 0.5 * run.scene.run.rayleigh.stiffness_damping * run.bound.omega_max;
+  run.bound.limit = stability_limit(run.scheme, run.bound.damping_ratio);
+  if (run.bound.limit <= 0.0) {
+    run.bound.always_unstable = true;
+    run.bound.limit = 2.0;
+    run.notes.push_back(
+        {Severity::warning,
+         {},
+         "contact forces taken where this scene takes them are unstable for every time step",
+         fmt::format("the amplitude of a contact oscillation at W = 0.1 grows by {:.2g} a step",
+                     amplification(run.scheme, 0.1, run.bound.damping_ratio) - 1.0),
+         "use run.contact_time = \"leapfrog\" for results"});
+  }
+  // On the way to rest nothing needs to be accurate, only stable. Under scaled masses every block swings at
+  // the bound, and a step as long keeps the pile awake. A safety below the default asks for a short step.
+  constexpr double safety_to_settle = 0.9;
+  const Stage &stage = run.clock.stage();
+  const bool settles =
+      stage.kind == StageKind::settle && !stage.mass_scaling && run.scene.run.safety >= RunSettings{}.safety;
+  run.bound.safety = settles ? std::max(run.scene.run.safety, safety_to_settle) : run.scene.run.safety;
+  const double locally_damped = stability_limit(run.scheme, run.bound.damping_ratio,
+                                                stage.local_damping_or(run.scene.run.local_damping));
+  const double undamped_share = undamped_limit / run.bound.limit;
+  if (locally_damped > 0.0 && run.bound.safety * run.bound.limit > safety_to_settle * locally_damped) {
+    run.bound.safety = safety_to_settle;
+    run.bound.limit = locally_damped;
+  }
+  run.bound.time_step = run.bound.omega_max > 0.0 ? run.bound.safety * run.bound.limit / run.bound.omega_max
+                                                  : std::numeric_limits<double>::infinity();
+  run.bound.undamped_step = run.bound.time_step * undamped_share;
+}
+
+void scale_masses(RunState &run) {
+  const Stage &stage = run.clock.stage();
+  if (!stage.mass_scaling || run.clock.state.ended) {
+    return;
+  }
+  std::vector<double> squared(run.blocks.num_owned);
+  double minus_slowest = -std::numeric_limits<double>::infinity();
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const StiffnessBound stiffness = stiffness_bound(run.scene.joints, run.blocks.properties[row].material);
+    squared[row] = contact_frequency_bound(run.blocks, row, stiffness.normal, stiffness.tangential,
+                                           elasticity_of(run.scheme, run.scene.run.elasticity),
+                                           run.bolts.springs_at(run.blocks.properties[row].id.value));
+    if (squared[row] > 0.0) {
+      minus_slowest = std::max(minus_slowest, -squared[row]);
+    }
+  }
+  run.communicator.max(std::span(&minus_slowest, 1));
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    BlockProperties &block = run.blocks.properties[row];
+    if (squared[row] > 0.0) {
+      const double scaling = std::exp2(std::ceil(std::log2(squared[row] / -minus_slowest) - 1e-9));
+      block.mass_scaling = scaling;
+      block.mass *= scaling;
+      block.inertia *= scaling;
+      if (run.blocks.is_deformable(row)) {
+        run.blocks.deformation_of(row).second_moment = scaling * run.blocks.deformation_of(row).second_moment;
+      }
+    }
+  }
+}
+
+void unscale_masses(RunState &run) {
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    BlockProperties &block = run.blocks.properties[row];
+    const double back = 1.0 / block.mass_scaling;
+    block.mass *= back;
+    block.inertia *= back;
+    block.mass_scaling = 1.0;
+    if (run.blocks.is_deformable(row)) {
+      run.blocks.deformation_of(row).second_moment = back * run.blocks.deformation_of(row).second_moment;
+    }
+  }
+}
+
+} // namespace gcpdda

@@ -1,0 +1,32 @@
+#pragma once
+
+// What limits the time step.
+
+#include <cstdint>
+
+namespace gcpdda {
+
+struct RunState;
+
+struct StepBound {
+  double omega_max = 0.0; ///< rad/s, 0 where nothing can touch
+  double limit = 2.0;     ///< stable W of scheme and damping; 2 stands in where every W is unstable
+  bool always_unstable = false;
+  double safety = 0.0; ///< run.safety; where a stage settles 0.9, unless run.safety is below its default
+  double undamped_step = 0.0; ///< the step without Rayleigh damping, s
+  double time_step = 0.0;     ///< safety * limit / omega_max, s
+  double damping_ratio = 0.0; ///< modal ratio the limit was computed with
+  std::int64_t block = -1;    ///< the one that sets omega_max; the first of several
+  double without_bolts = 0.0; ///< what omega_max would be then, rad/s
+};
+
+/// Sets run.bound for the stage that begins. Collective.
+void find_bound(RunState &run);
+
+/// In a stage with mass scaling each block is made as heavy as its joints need it to be to swing no faster
+/// than the slowest block: the step is then as long as for that one. By powers of two, which can be taken
+/// back without rounding. Collective.
+void scale_masses(RunState &run);
+void unscale_masses(RunState &run);
+
+} // namespace gcpdda
