@@ -166,6 +166,7 @@ PlainResults ContactForces::open_regions(const Candidates &candidates, const Pla
                                          unsigned touching, PlainOverlap overlap) {
   PlainResults results;
   results.has_dyads = lanes.pair[0]->kind.is_deformable;
+  results.has_details = keeps_details_;
   const auto entry_of = [&](const PlainPair &plain) {
     return static_cast<std::size_t>(&plain - candidates.plain.data());
   };
@@ -185,6 +186,9 @@ PlainResults ContactForces::open_regions(const Candidates &candidates, const Pla
                                    : &sums_.open(plain.pair, is_born);
     results.memory[i] = &plain_memory_[plain.pair];
     next_.overlaps[plain.pair] = overlap;
+    if (keeps_details_) {
+      results.details[i] = &details_[plain.pair];
+    }
     if (results.has_dyads) {
       results.dyads[i] = is_at_border ? &sums_.border_dyads() : &sums_.dyads(plain.pair);
       results.grips[i] = &plain_grips_[plain.pair];
@@ -345,6 +349,9 @@ void ContactForces::evaluate_birth(const BlockSystem &system, const Candidates &
   if (!dyads_.empty()) {
     (is_at_border ? sums_.border_dyads() : sums_.dyads(number)) = dyads_.front();
   }
+  if (keeps_details_) {
+    details_[number] = forces_[first_of_pair_];
+  }
   drop_last_force();
 }
 
@@ -395,7 +402,15 @@ void ContactForces::begin(BlockSystem &system, const Candidates &candidates) {
     ranges_[pair] = {};
   }
   sums_.start(system, candidates);
+  details_.resize(keeps_details_ ? candidates.pairs.size() : 0);
   report_ = {};
+}
+
+void ContactForces::keep_details(bool keeps) {
+  keeps_details_ = keeps;
+  if (!keeps) {
+    details_ = {};
+  }
 }
 
 void ContactForces::evaluate_group(const BlockSystem &system, const Candidates &candidates,

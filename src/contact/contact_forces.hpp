@@ -145,6 +145,25 @@ public:
     }
   }
 
+  /// Evaluations from here on leave the details of all regions behind, 160 bytes a candidate pair: for what
+  /// needs them after each evaluation. Else for_regions() finds them group by group, at the cost of another
+  /// evaluation.
+  void keep_details(bool keeps);
+  [[nodiscard]] bool keeps_details() const { return keeps_details_; }
+  /// visit(pair, number of its region, details) for all regions of the last evaluation, by ascending pair.
+  template <class Visit>
+  void for_kept_details(const Candidates &candidates, const ContactHistory &history, Visit &&visit) const {
+    for (std::uint32_t pair = 0; pair < candidates.pairs.size(); ++pair) {
+      if (!candidates.pairs[pair].is_plain) {
+        for (std::uint32_t k = 0; k < ranges_[pair].count; ++k) {
+          visit(pair, k, static_cast<const RegionDetails &>(forces_[ranges_[pair].begin + k]));
+        }
+      } else if (history.has_plain(pair)) {
+        visit(pair, 0U, details_[pair]);
+      }
+    }
+  }
+
   /// The shear of a region may be replaced by friction alone, also in its memory: for the initial state.
   class ShearToSet {
   public:
@@ -330,8 +349,10 @@ private:
   std::vector<RegionRange> ranges_;   ///< of forces_, by pair that is not plain
   std::vector<std::uint32_t> places_; ///< in forces_, by plain pair of the group at hand
   bool is_again_ = false;             ///< find_details() is at work
-  bool is_changing_ = false;          ///< change_shear() is
-  ForceReport report_;                ///< of what has been evaluated so far
+  bool keeps_details_ = false;
+  std::vector<RegionDetails> details_; ///< by plain pair that touches, if they are kept
+  bool is_changing_ = false;           ///< change_shear() is
+  ForceReport report_;                 ///< of what has been evaluated so far
   /// What the history becomes, but for ContactHistory::plain, whose entries are written where they are read;
   /// afterwards what it was.
   ContactHistory next_;

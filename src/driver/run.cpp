@@ -12,6 +12,7 @@
 #include "simulation/rank_facts.hpp"
 #include "simulation/results.hpp"
 #include "simulation/simulation.hpp"
+#include "simulation/static_stage.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -83,6 +84,7 @@ public:
         simulation_.ask_to_stop();
       }
       simulation_.step();
+      tell_notes(); // of a stage that another solver goes on with
       end_stage_if_over();
       if (!simulation_.is_staged() &&
           simulation_.step_count() ==
@@ -305,7 +307,7 @@ private:
     const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
     const bool stage_ends = simulation_.is_staged() && simulation_.stage_is_over();
     if (simulation_.fault() || is_bare_ || is_once_ ||
-        (!stopping && !stage_ends && !simulation_.plan().checkpoint_due(simulation_.stage_step()))) {
+        (!stopping && !stage_ends && !checkpoint_is_due(simulation_.state()))) {
       return;
     }
     const auto scope = simulation_.phases().measure(Phase::output);

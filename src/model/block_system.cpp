@@ -234,6 +234,19 @@ std::span<BlockMark> mark_rows(BlockSystem &system) {
   return {system.mark.data(), system.num_owned};
 }
 
+std::span<PseudoMotion> pseudo_rows(BlockSystem &system) {
+  if (system.pseudo_begin[system.num_owned] != system.num_owned) {
+    list_rows(
+        system, [](std::size_t) { return true; }, system.pseudo_begin, system.pseudo);
+  }
+  return {system.pseudo.data(), system.num_owned};
+}
+
+void drop_pseudo_rows(BlockSystem &system) {
+  list_rows(
+      system, [](std::size_t) { return false; }, system.pseudo_begin, system.pseudo);
+}
+
 void list_applied(BlockSystem &system, bool all) {
   const auto has_any = [](const RowOffsets &begin, std::size_t row) { return begin[row] < begin[row + 1]; };
   const auto needs = [&](std::size_t row) {

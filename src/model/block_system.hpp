@@ -210,6 +210,16 @@ struct BlockMark {
   RigidDof look;
 };
 
+/// A block on its way to equilibrium in pseudo-time (statics/pseudo_time.hpp), by the freedoms of
+/// statics/field.hpp.
+struct PseudoMotion {
+  std::array<double, 6> velocity{}; ///< motion of the next step
+  std::array<double, 6> momentum{};
+  std::array<double, 6> held{}; ///< force that was out of balance when the stage began
+
+  friend bool operator==(const PseudoMotion &, const PseudoMotion &) = default;
+};
+
 /// The state of all blocks this rank sees, as arrays by field.
 ///
 /// Rows: [0, num_owned) owned, then num_ghosts ghosts (exact copies of other ranks' blocks), then num_fixed
@@ -257,6 +267,8 @@ struct BlockSystem {
   std::vector<AppliedForces> applied;
   RowOffsets mark_begin; ///< one entry for mobile blocks of a scene with stages
   std::vector<BlockMark> mark;
+  RowOffsets pseudo_begin; ///< one entry for owned blocks in a stage with the static solver
+  std::vector<PseudoMotion> pseudo;
 
   // Derived from the trial configuration, see pose(). Outlines of rigid blocks stand nowhere: to turn them
   // takes no longer than to read them (TrialOutline).
@@ -357,7 +369,8 @@ struct BlockSystem {
                            std::make_tuple(&BlockSystem::anchor_begin, &BlockSystem::anchor),
                            std::make_tuple(&BlockSystem::dashpot_begin, &BlockSystem::dashpot),
                            std::make_tuple(&BlockSystem::applied_begin, &BlockSystem::applied),
-                           std::make_tuple(&BlockSystem::mark_begin, &BlockSystem::mark));
+                           std::make_tuple(&BlockSystem::mark_begin, &BlockSystem::mark),
+                           std::make_tuple(&BlockSystem::pseudo_begin, &BlockSystem::pseudo));
   }
 };
 
@@ -396,6 +409,10 @@ void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, st
 
 /// Marks of owned rows, all of which get one.
 std::span<BlockMark> mark_rows(BlockSystem &system);
+/// Motions in pseudo-time of owned rows, all of which get one.
+std::span<PseudoMotion> pseudo_rows(BlockSystem &system);
+/// No row has a motion in pseudo-time any more.
+void drop_pseudo_rows(BlockSystem &system);
 
 /// What weight and shaking do to a block that nothing else acts on but contacts.
 inline AppliedForces applied_by(const BodyForces &body, const BlockProperties &block) {

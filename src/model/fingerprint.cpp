@@ -146,6 +146,7 @@ void add(Chain &chain, const Stage &stage) {
   chain.add({stage.local_damping, stage.relax, stage.ramp});
   chain.add(std::uint64_t{stage.mass_scaling});
   chain.add(std::uint64_t{stage.kinetic_damping});
+  chain.add(stage.solver);
   chain.add(std::uint64_t{stage.changes_stress});
   chain.add(stage.excavated.blocks);
   chain.add(stage.excavated.region);

@@ -83,6 +83,13 @@ public:
     }
   }
 
+  /// visit(rank, owned rows sent to it, ghost rows that it sends) for each rank with such rows.
+  template <class Visit> void for_neighbours(Visit &&visit) const {
+    for (const Neighbour &n : neighbours_) {
+      visit(n.rank, n.send_rows, n.receive_rows);
+    }
+  }
+
   /// What begin() sends from this rank.
   [[nodiscard]] std::int64_t messages_per_update() const { return messages_; }
   [[nodiscard]] std::int64_t bytes_per_update() const { return bytes_; }

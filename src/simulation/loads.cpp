@@ -148,6 +148,16 @@ void adopt_loads(BlockSystem &blocks, std::size_t row, const std::vector<PointLo
   }
 }
 
+double Loads::end_of_changes(double now) const {
+  double end = now;
+  for (const LoadCourse &course : courses_) {
+    if (course.in.begin <= now) { // else the force comes in with a later stage
+      end = std::max(end, course.end());
+    }
+  }
+  return end;
+}
+
 bool Loads::are_changing(const Scene &scene, const StageState &stage, double now) const {
   const auto is_changing = [&](std::size_t course) { return now < courses_[course].end(); };
   for (std::size_t k = 1; side_stresses_.size() > 1 && k <= side_stresses_.size(); ++k) {

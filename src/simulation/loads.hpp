@@ -49,6 +49,9 @@ public:
   /// @param listed  in the scene of the stage
   std::vector<PointLoad> after(std::vector<PointLoad> acting, std::vector<PointLoad> listed,
                                const Rise &change);
+  /// When the forces that act or come in now are what they stay, s; infinite where that is never.
+  /// @param now  s
+  [[nodiscard]] double end_of_changes(double now) const;
   /// Of forces that act on blocks that are still there.
   /// @param now  s
   [[nodiscard]] bool are_changing(const Scene &scene, const StageState &stage, double now) const;

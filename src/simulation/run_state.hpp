@@ -14,7 +14,9 @@
 #include "simulation/loads.hpp"
 #include "simulation/neighbourhood.hpp"
 #include "simulation/stage_clock.hpp"
+#include "simulation/static_state.hpp"
 #include "simulation/step_bound.hpp"
+#include "statics/pseudo_time.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -68,10 +70,12 @@ struct RunState {
   Scheme scheme;
   StepBound bound;
   FidelityReport fidelity;
-  double local_damping = 0.0;   ///< of this stage
-  double thinnest = 0.0;        ///< narrowest width of any block, m
-  double sag = 0.0;             ///< largest_sag() of the scene, m
-  double in_situ_overlap = 0.0; ///< largest overlap of the in-situ stress, m
+  std::optional<statics::PseudoTime> statics; ///< while a stage has the static solver
+  StaticState saved_statics;                  ///< of the checkpoint it began with, until the first step
+  double local_damping = 0.0;                 ///< of this stage
+  double thinnest = 0.0;                      ///< narrowest width of any block, m
+  double sag = 0.0;                           ///< largest_sag() of the scene, m
+  double in_situ_overlap = 0.0;               ///< largest overlap of the in-situ stress, m
   bool stop_asked = false;
   bool stop_agreed = false;
   SceneIdentity identity;

@@ -4,6 +4,7 @@
 #include "gcpdda/io/result_files.hpp"
 #include "model/fingerprint.hpp"
 #include "simulation/stage_changes.hpp"
+#include "simulation/static_stage.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -59,6 +60,7 @@ void begin_as_restored(RunState &run, const Scene &start, const BlockSystem &row
   remove_blocks(run, saved.removed);
   run.clock.state = saved;
   run.bolts = Bolts::from_numbers(facts.bolt_counts, facts.bolt_numbers);
+  run.saved_statics = to_static_state(facts.static_counts, facts.static_numbers);
   for (const BoltLink &link : run.bolts.links()) {
     if (link.bolt < 0 || link.bolt >= std::ssize(run.scene.bolts)) {
       throw FileError("a bolt of it is not in the scene");
@@ -132,12 +134,14 @@ void go_on(RunState &run) {
   const RunFacts &facts = run.restored->facts;
   run.clock.step_count = run.clock.state.ended ? facts.step : run.clock.state.first_step;
   if (!run.clock.state.ended) {
-    run.clock.step_count += step_to_go_on_from(run.clock.plan, facts.time - run.clock.state.start_time,
-                                               facts.time_step, run.notes);
+    run.clock.step_count += step_to_go_on_from(
+        run.clock.plan, facts.time - run.clock.state.start_time - run.clock.state.iteration.skipped,
+        facts.time_step, run.notes);
   }
   run.loads.time = run.clock.stage_step() == 0
                        ? run.clock.time()
-                       : run.clock.state.start_time + run.clock.plan.time(run.clock.stage_step() - 1) +
+                       : run.clock.state.start_time + run.clock.state.iteration.skipped +
+                             run.clock.plan.time(run.clock.stage_step() - 1) +
                              run.scheme.load_time * run.clock.plan.time_step;
   run.counters.contact_steps = run.communicator.is_root() ? facts.contact_steps : 0;
   run.counters.max_overlap = facts.max_overlap;
@@ -155,6 +159,11 @@ RunFacts facts_of(const RunState &run) {
   facts.stage_counts = std::move(numbers.counts);
   facts.stage_numbers = std::move(numbers.reals);
   Bolts::to_numbers(run.bolts.shared(run.communicator), facts.bolt_counts, facts.bolt_numbers);
+  if (is_static(run) && run.statics) {
+    StaticNumbers state = to_numbers(gathered_state(run.communicator, run.blocks, run.statics->springs()));
+    facts.static_counts = std::move(state.counts);
+    facts.static_numbers = std::move(state.reals);
+  }
   facts.time = run.clock.time();
   facts.time_step = run.clock.plan.time_step;
   facts.contact_steps = run.counters.contact_steps;

@@ -2,6 +2,7 @@
 
 #include "simulation/evaluation.hpp"
 #include "simulation/stage_runner.hpp"
+#include "simulation/static_stage.hpp"
 
 #include <utility>
 
@@ -13,6 +14,13 @@ Simulation::Simulation(const Communicator &communicator, Scene scene, const Begi
 }
 
 void Simulation::step() {
+  if (is_static(run_)) {
+    prepare_statics(run_);
+  }
+  if (is_static(run_)) { // it has not been left
+    static_step(run_);
+    return;
+  }
   rebalance_if_uneven(run_);
   if (run_.neighbours.stale) { // some block may use up half the skin in this step; all ranks agree
     refresh(run_);

@@ -22,7 +22,8 @@ struct StageClock {
   /// Steps since the stage began: what the plan counts.
   [[nodiscard]] std::int64_t stage_step() const { return step_count - state.first_step; }
   [[nodiscard]] double time() const {
-    return state.ended ? state.end_time : state.start_time + plan.time(stage_step());
+    return state.ended ? state.end_time
+                       : state.start_time + state.iteration.skipped + plan.time(stage_step());
   }
   [[nodiscard]] bool stage_is_over() const { return state.ended || stage_step() >= plan.num_steps; }
   /// No stage follows, or the next one must not begin.

@@ -7,6 +7,7 @@
 #include "simulation/evaluation.hpp"
 #include "simulation/ground.hpp"
 #include "simulation/stage_changes.hpp"
+#include "simulation/static_stage.hpp"
 #include "simulation/step_rows.hpp"
 
 #include <algorithm>
@@ -58,6 +59,8 @@ RigidDof damped_motion(const RunState &run, std::size_t row) {
                    run.blocks.trial[row] + run.blocks.motion[row].increment()
              : run.blocks.velocity[row];
 }
+
+} // namespace
 
 // Two reductions, now and then; both are exact.
 void look_at_stage(RunState &run) {
@@ -129,6 +132,8 @@ void set_to_rest(RunState &run) {
     }
   }
 }
+
+namespace {
 
 // What stopping takes from the energies of the ledger, which are those of the leapfrog of x*. It would have
 // gone on to x*' = x + c1 dt v + c2 dt^2 a with the kinetic energy of (x*' - x*)/dt; it goes on from x
@@ -268,6 +273,7 @@ void end_stage(RunState &run) {
   run.clock.state.end_time = run.clock.time();
   run.clock.state.ended = true;
   if (stage.kind == StageKind::settle) {
+    close_statics(run);
     unscale_masses(run);
     if (run.clock.state.verdict == Verdict::settled) {
       set_to_rest(run);
@@ -284,6 +290,7 @@ void begin_next_stage(RunState &run) {
   run.clock.state.ended = false;
   run.clock.state.verdict = Verdict::undecided;
   run.clock.state.memory = {};
+  run.clock.state.iteration = {};
   run.clock.state.contact_steps_before = run.counters.contact_steps;
   run.communicator.sum(std::span(&run.clock.state.contact_steps_before, 1));
   std::erase_if(run.clock.state.unloading,

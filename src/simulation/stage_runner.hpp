@@ -16,6 +16,11 @@ void plan_stage(RunState &run);
 /// After a step: kinetic damping, and every so many steps a look at the stage. Collective.
 void judge_stage(RunState &run);
 
+/// What the stage has come to, and its verdict. Collective.
+void look_at_stage(RunState &run);
+/// Mobile blocks lose their velocities.
+void set_to_rest(RunState &run);
+
 /// Of the stages that are over, and of this one as far as it has come. Collective.
 [[nodiscard]] std::vector<StageResult> stage_results(const RunState &run);
 /// A stage that is over gets its result. A settled pile is set to rest, under its own masses. A stage that

@@ -52,6 +52,10 @@ template <class State, class Count, class Real> void visit_state(State &state, C
   auto &last = state.memory.last;
   real(last.unbalanced_ratio), real(last.motion), real(last.overlap), real(last.force), real(last.kinetic);
   real(last.moved);
+  auto &iteration = state.iteration;
+  count(iteration.evaluations), count(iteration.products), count(iteration.is_left);
+  real(iteration.power_before), real(iteration.momentum), real(iteration.longest);
+  real(iteration.least_ratio), real(iteration.last_least), real(iteration.skipped);
 }
 template <class Result, class Count, class Real>
 void visit_result(Result &result, Count &&count, Real &&real) {

@@ -19,6 +19,7 @@
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/model/stage.hpp"
 #include "model/block_system.hpp"
+#include "statics/iteration_state.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -70,6 +71,7 @@ struct StageState {
   std::int64_t more_mobile = 0; ///< mobile blocks now, beyond those of the scene
   Verdict verdict = Verdict::undecided;
   LookMemory memory;
+  statics::IterationState iteration; ///< of a stage with the static solver
   std::vector<StageResult> results;
   std::vector<std::int64_t> removed; ///< ids, ascending
   std::vector<Unloading> unloading;  ///< by block, each once for every excavation

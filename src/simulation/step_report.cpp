@@ -37,6 +37,8 @@ double own_status(RunState &run, const AdvanceReport &advance) {
   return run.local_fault ? failed : run.stop_asked ? asked_to_stop : status;
 }
 
+} // namespace
+
 void count_step(RunState &run, const AdvanceReport &advance) {
   run.counters.evaluations += run.force_report.evaluations;
   run.counters.block_steps += static_cast<std::int64_t>(run.blocks.num_owned);
@@ -64,8 +66,6 @@ void agree_on_fault(RunState &run) {
     }
   }
 }
-
-} // namespace
 
 // One reduction says whether any rank needs a refresh, has failed or was asked to stop. It cannot be a step
 // late: how far a block may go in two steps depends on contacts that are not evaluated yet, so that a flag

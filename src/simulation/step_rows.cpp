@@ -220,10 +220,14 @@ void StepRows::gather_gradient(std::size_t row, const WaterLoad &water) {
   run_.blocks.contact[row].damping.r = 0.0;
 }
 
-void StepRows::accelerate() {
+void StepRows::load_all() {
   prepare_forces();
   run_.blocks.body = {run_.loads.gravity(run_.scene.run), ground_acceleration(run_)};
   gather_forces(0, run_.blocks.num_owned, run_.blocks.body);
+}
+
+void StepRows::accelerate() {
+  load_all();
   gcpdda::accelerate(run_.blocks);
   prescribe_motion();
 }

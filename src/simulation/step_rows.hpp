@@ -39,7 +39,9 @@ public:
   void prescribe_motion();
   [[nodiscard]] const AdvanceReport &report() const { return report_; }
 
-  /// Loads and accelerations of all rows at the present time, outside of a step.
+  /// Loads of all rows at the present time, outside of a step.
+  void load_all();
+  /// The same, and accelerations.
   void accelerate();
   /// Trial configurations of all rows in the next step, ghosts among them, without anything else of it.
   void predict_all();

@@ -8,6 +8,7 @@
 #include "io/hdf5/passing_files.hpp"
 #include "simulation/bolts.hpp"
 #include "simulation/stages.hpp"
+#include "simulation/static_state.hpp"
 
 #include <fuzzer/FuzzedDataProvider.h>
 #include <hdf5.h>
@@ -195,7 +196,8 @@ std::int64_t any_count(Input &input) {
 /// Whole, but no state: whoever uses the numbers refuses them.
 void write_oddly(Input &input, const Runs &runs) {
   RunFacts facts = facts_at(8);
-  for (std::vector<std::int64_t> RunFacts::*counts : {&RunFacts::stage_counts, &RunFacts::bolt_counts}) {
+  for (std::vector<std::int64_t> RunFacts::*counts :
+       {&RunFacts::stage_counts, &RunFacts::bolt_counts, &RunFacts::static_counts}) {
     (facts.*counts).resize(input.ConsumeIntegralInRange<std::size_t>(0, 40));
     for (int k = input.ConsumeIntegralInRange<int>(0, 5); k > 0 && !(facts.*counts).empty(); --k) {
       (facts.*counts)[input.ConsumeIntegralInRange<std::size_t>(0, (facts.*counts).size() - 1)] =
@@ -203,7 +205,8 @@ void write_oddly(Input &input, const Runs &runs) {
     }
   }
   for (std::vector<double> RunFacts::*numbers :
-       {&RunFacts::stage_numbers, &RunFacts::bolt_numbers, &RunFacts::frame_times, &RunFacts::ledger}) {
+       {&RunFacts::stage_numbers, &RunFacts::bolt_numbers, &RunFacts::static_numbers, &RunFacts::frame_times,
+        &RunFacts::ledger}) {
     (facts.*numbers)
         .resize(input.ConsumeIntegralInRange<std::size_t>(0, 40), input.ConsumeFloatingPoint<double>());
   }
@@ -219,6 +222,12 @@ void write_oddly(Input &input, const Runs &runs) {
     try {
       const StageState state = to_state({read.stage_counts, read.stage_numbers});
       require(to_numbers(state).counts.size() == read.stage_counts.size(), "a state is that of its numbers");
+    } catch (const FileError &) {
+    }
+    try {
+      const StaticState state = to_static_state(read.static_counts, read.static_numbers);
+      require(state.blocks.empty() || to_numbers(state).counts == read.static_counts,
+              "a static solver is that of its numbers");
     } catch (const FileError &) {
     }
     try {

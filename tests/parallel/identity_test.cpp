@@ -255,6 +255,83 @@ TEST(Identity, OfAMixedWallInStages) {
   }
 }
 
+/// Ls with a brick in the notch of each, rigid and deformable ones, at rest on a floor and beside a pillar;
+/// weak joints let the wall sag by more than half the skin. Both settle stages have the static solver.
+std::string static_wall_toml(int rows, int columns, const std::string &opening) {
+  std::string toml = "[run]\ngravity_ramp = 0.1\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 2e9\n"
+                     "poissons_ratio = 0.25\n[joint.default]\nnormal_stiffness = 5e7\n"
+                     "friction_angle_deg = 45.0\n[output]\ninterval = 0.02\ncheckpoint_interval = 0.04\n";
+  toml += testing::block_toml("floor", testing::rectangle({-2.0, -1.0}, {2.0 * columns + 3.0, 0.0}),
+                              "fixed = true");
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const double x = 2.0 * column + 0.5 * (row % 2);
+      const double y = row;
+      const auto fidelity = [](bool deforms) {
+        return fmt::format("fidelity = \"{}\"", deforms ? "deformable" : "rigid");
+      };
+      toml += testing::block_toml(
+          fmt::format("l{}_{}", row, column),
+          {{x, y}, {x + 2.0, y}, {x + 2.0, y + 0.5}, {x + 1.0, y + 0.5}, {x + 1.0, y + 1.0}, {x, y + 1.0}},
+          fidelity((row + column) % 2 == 0));
+      toml += testing::block_toml(fmt::format("b{}_{}", row, column),
+                                  testing::rectangle({x + 1.0, y + 0.5}, {x + 2.0, y + 1.0}),
+                                  fidelity((row + column) % 3 == 0));
+    }
+  }
+  return toml +
+         "[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 30.0\nsolver = \"static\"\n"
+         "[[stage]]\nkind = \"excavate\"\nregion = " +
+         opening +
+         "\n"
+         "[[stage]]\nname = \"opening\"\nkind = \"settle\"\nlimit = 30.0\nsolver = \"static\"\n";
+}
+
+// The static solver on rigid, deformable and non-convex blocks, through refreshes, an excavation, and a stop
+// in the middle of each of its stages.
+TEST(Identity, OfStagesWithTheStaticSolver) {
+  const Scene scene = testing::scene_of(static_wall_toml(20, 16, "[[6, 2], [8, 2], [8, 4], [6, 4]]"));
+  const TwoRuns runs(scene);
+  EXPECT_GE(runs.counted("refreshes"), 2);
+  EXPECT_GE(runs.counted("contacts"), 1000);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+  // The last checkpoint but one is of the middle of the last stage.
+  const testing::SharedFolder folder(runs.world());
+  if (runs.world().is_root()) {
+    EXPECT_EQ(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
+    EXPECT_EQ(summary_text(runs.together(), "stages"), summary_text(runs.alone(), "stages"));
+    fs::copy(runs.alone(), folder.path("run"), fs::copy_options::recursive);
+    const std::vector<fs::path> checkpoints = checkpoint_files(folder.path("run"));
+    EXPECT_EQ(checkpoints.size(), 2U);
+    fs::remove(std::max(checkpoints.front(), checkpoints.back()));
+  }
+  runs.world().barrier();
+  const testing::CapturedLog log;
+  EXPECT_EQ(restart_scene(runs.world(), scene, scene, folder.path("run")), 0);
+  runs.world().barrier();
+  if (runs.world().is_root()) {
+    for (const std::string &difference : compare_runs(folder.path("run"), runs.alone())) {
+      ADD_FAILURE() << "restarted: " << difference;
+    }
+  }
+}
+
+// Friction does not hold this opening: the dynamic solver takes over in the middle of a stage and finds that
+// it has failed.
+TEST(Identity, OfAStaticStageThatIsLeft) {
+  const TwoRuns runs(testing::scene_of(static_wall_toml(20, 16, "[[4, 2], [9, 2], [9, 5], [4, 5]]"),
+                                       {"joint.default.friction_angle_deg=30"}));
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 20);
+  }
+  if (runs.world().is_root()) {
+    EXPECT_NE(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
+    EXPECT_EQ(summary_text(runs.together(), "verdict"), "\"failed\"");
+  }
+}
+
 // Sixteen columns: only a few contacts can lie between ranks. Friction is lowered so that they slide, and
 // leave their cells.
 TEST(Identity, OfAToppledSlope) {

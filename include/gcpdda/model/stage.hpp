@@ -23,6 +23,10 @@ inline const char *word_of(StageKind kind) {
   return words.at(static_cast<std::size_t>(kind));
 }
 
+/// How a settle stage looks for equilibrium: by damped motion in time, or by the iteration of
+/// statics/pseudo_time.hpp.
+enum class Solver { dynamic, statics };
+
 /// What became of a stage.
 enum class Verdict : std::int64_t {
   undecided, ///< neither of the next two yet
@@ -53,6 +57,7 @@ struct Stage {
   double local_damping = -1.0; ///< in place of that of the run; negative for none
   bool mass_scaling = false;
   bool kinetic_damping = false; ///< velocities are set to zero whenever the kinetic energy has passed a peak
+  Solver solver = Solver::dynamic;
   BlockSelection excavated;
   double relax = 0.0;          ///< s over which the forces of excavated blocks fall to zero
   double ramp = 0.0;           ///< s over which loads and stress that the stage changes do so

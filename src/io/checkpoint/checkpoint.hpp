@@ -52,6 +52,8 @@ struct RunFacts {
   std::vector<double> stage_numbers;
   std::vector<std::int64_t> bolt_counts; ///< links of the bolts in place (simulation/bolts.hpp)
   std::vector<double> bolt_numbers;
+  std::vector<std::int64_t> static_counts; ///< of a static solver at work (simulation/static_state.hpp)
+  std::vector<double> static_numbers;
   std::vector<double> frame_times; ///< of the frames written, s
   std::vector<ResultFile> results; ///< files written so far; known to the root alone
 };

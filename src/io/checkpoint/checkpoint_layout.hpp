@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 /// Of the lists below and of the seal: it rises with every change of them.
-inline constexpr std::int64_t version = 8;
+inline constexpr std::int64_t version = 9;
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -48,9 +48,11 @@ template <class T> struct ListFact {
 inline constexpr std::array real_lists{ListFact<double>{"/run/frame_times", &RunFacts::frame_times},
                                        ListFact<double>{"/run/ledger", &RunFacts::ledger},
                                        ListFact<double>{"/stage/numbers", &RunFacts::stage_numbers},
-                                       ListFact<double>{"/bolt/numbers", &RunFacts::bolt_numbers}};
+                                       ListFact<double>{"/bolt/numbers", &RunFacts::bolt_numbers},
+                                       ListFact<double>{"/statics/numbers", &RunFacts::static_numbers}};
 inline constexpr std::array whole_lists{ListFact<std::int64_t>{"/stage/counts", &RunFacts::stage_counts},
-                                        ListFact<std::int64_t>{"/bolt/counts", &RunFacts::bolt_counts}};
+                                        ListFact<std::int64_t>{"/bolt/counts", &RunFacts::bolt_counts},
+                                        ListFact<std::int64_t>{"/statics/counts", &RunFacts::static_counts}};
 
 /// RunFacts::results, a row for each file.
 struct ResultLists {
@@ -249,9 +251,11 @@ static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
 static_assert(sizeof(Deformation) == 7 * 64);
 static_assert(sizeof(RegionMemory) == 11 * sizeof(double));
+static_assert(sizeof(PseudoMotion) == 18 * sizeof(double)); // simulation/static_state.cpp
 
-inline constexpr std::array<const char *, 9> groups{"/clock",  "/run",   "/stage",       "/bolt",  "/scene",
-                                                    "/result", "/block", "/deformation", "/region"};
+inline constexpr std::array<const char *, 10> groups{"/clock",       "/run",   "/stage",  "/bolt",
+                                                     "/statics",     "/scene", "/result", "/block",
+                                                     "/deformation", "/region"};
 inline constexpr const char *checksum = "/checksum";
 
 /// A checksum of numbers in named places: summed modulo 2^64, so that it may be summed over ranks in any

@@ -33,6 +33,7 @@ const std::vector<Belongs> &belongings() {
       {"local_damping", {run, settle}},
       {"kinetic_damping", {settle}},
       {"mass_scaling", {settle}},
+      {"solver", {settle}},
       {"blocks", {excavate}},
       {"region", {excavate}},
       {"openings", {excavate}},
@@ -78,6 +79,7 @@ public:
     stage.local_damping = stage.kind != StageKind::settle ? -1.0 : stage.kinetic_damping ? 0.0 : 0.8;
     section.read("local_damping", stage.local_damping);
     section.read("mass_scaling", stage.mass_scaling);
+    section.read_choice("stage[]", "solver", stage.solver);
     section.read("relax", stage.relax);
     section.read("ramp", stage.ramp);
     expect_ramped(section);

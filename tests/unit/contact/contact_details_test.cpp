@@ -8,7 +8,10 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <random>
 #include <string>
+#include <tuple>
+#include <vector>
 
 namespace gcpdda::contact_details_test {
 namespace {
@@ -89,6 +92,46 @@ TEST(ContactDetails, LeaveNoTrace) {
   expect_no_trace(settling_pyramid_toml(12, 10.0), 2e-4, 60);
   expect_no_trace(settling_pyramid_toml(12, 10.0, "deformable"), 2e-5, 60);
   expect_no_trace(falling_pile_toml(60, 10.0), 1e-3, 400);
+}
+
+// Rigid and deformable bricks that are shaken: details that an evaluation has kept have the bits of those
+// that are found when they are asked for.
+TEST(ContactDetails, ThatAreKeptAreThoseThatAreFound) {
+  std::mt19937 engine(5);
+  std::vector<std::vector<Vec2>> bricks;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      const Vec2 low{column + 0.4 * (row % 2), 0.5 * row};
+      bricks.push_back(rectangle(low, low + Vec2{1.001, 0.501}));
+    }
+  }
+  ContactBench bench(system_of(bricks, {rectangle({-2.0, -1.0}, {9.0, 0.001})}, 1000.0,
+                               [](std::size_t row) { return row % 5 == 0; }),
+                     one_law(1e9, 0.3));
+  bench.forces.keep_details(true);
+  std::size_t seen = 0;
+  for (int round = 0; round < 20; ++round) {
+    for (std::size_t row = 0; row < bench.system.num_owned; ++row) {
+      const auto random = [&] { return uniform(engine, -3e-4, 3e-4); };
+      bench.system.trial[row] +=
+          RigidDof{{random(), random()}, bench.system.is_deformable(row) ? 0.0 : random()};
+    }
+    bench.evaluate();
+    std::size_t next = 0;
+    bench.forces.for_kept_details(
+        bench.candidates, bench.history, [&](std::uint32_t pair, std::uint32_t, const RegionDetails &kept) {
+          const RegionForce &found = bench.regions.all()[next++];
+          const auto all = [](const RegionDetails &d) {
+            return std::tie(d.dyad, d.origin, d.point, d.normal, d.normal_force, d.shear, d.cap, d.overlap,
+                            d.extent_begin, d.extent_end, d.grip, d.normal_undefined, d.bonded);
+          };
+          EXPECT_EQ(found.pair, pair);
+          EXPECT_EQ(all(kept), all(found));
+        });
+    EXPECT_EQ(next, bench.regions.all().size());
+    seen += next;
+  }
+  EXPECT_GT(seen, 1000U);
 }
 
 } // namespace

@@ -1,0 +1,312 @@
+#include "simulation/static_stage.hpp"
+
+#include "base/check.hpp"
+#include "contact/block_sums.hpp"
+#include "contact/stiffness_bound.hpp"
+#include "dynamics/static_springs.hpp"
+#include "simulation/evaluation.hpp"
+#include "simulation/stage_runner.hpp"
+#include "simulation/step_report.hpp"
+#include "simulation/step_rows.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <string>
+#include <utility>
+
+namespace gcpdda {
+
+namespace {
+
+/// Share of the skin that blocks may use up before a refresh: pairs that are twice as far apart are still
+/// known, and with them the springs of contacts that have opened.
+constexpr double share_of_skin_kept = 0.25;
+
+/// When the loads of the stage at hand are complete, s; infinite where that is never.
+double end_of_loads(const RunState &run) {
+  const double now = run.clock.time();
+  double end = std::max({now, run.scene.run.gravity_ramp, run.loads.end_of_changes(now)});
+  for (const Unloading &unloading : run.clock.state.unloading) {
+    if (std::isfinite(unloading.duration)) { // else the forces stay
+      end = std::max(end, unloading.begin + unloading.duration);
+    }
+  }
+  return end;
+}
+
+/// Why the stage at hand is not for the static solver; empty if it is.
+std::string not_served(const RunState &run) {
+  const auto has_law = [&](auto &&holds) {
+    return std::any_of(run.scene.joints.laws.begin(), run.scene.joints.laws.end(), holds);
+  };
+  double fastest = 0.0; // of what heeds no force
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    if (run.blocks.properties[row].keeps_its_velocity()) {
+      const RigidDof &v = run.blocks.velocity[row];
+      fastest = std::max({fastest, norm(v.u), std::abs(v.r)});
+    }
+  }
+  if (run.communicator.max(fastest) > 0.0 || !run.loads.prescribed.empty()) {
+    return "blocks move by velocities that are given";
+  }
+  if (!run.scene.earthquake.viscous.empty()) {
+    return "the region has viscous sides";
+  }
+  if (has_law([](const JointLaw &law) { return law.has_bonds; })) {
+    return "bonds break for good, also in a swing of the iteration";
+  }
+  if (has_law([](const JointLaw &law) { return law.dilates(); })) {
+    return "the stiffness of joints that dilate is not known to it";
+  }
+  return std::isfinite(end_of_loads(run)) ? "" : "its loads go on changing";
+}
+
+void leave_statics(RunState &run, const std::string &reason) {
+  run.clock.state.iteration.is_left = 1;
+  close_statics(run);
+  run.notes.push_back({Severity::info, run.clock.stage().where,
+                       fmt::format("stage '{}' goes on with solver = \"dynamic\"", run.clock.stage().name),
+                       reason, "leave 'solver' out of the stage, or give it as \"dynamic\""});
+}
+
+void lay_statics(RunState &run) {
+  std::vector<statics::Surroundings> around;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const StiffnessBound stiffness = stiffness_bound(run.scene.joints, run.blocks.properties[row].material);
+    around.push_back(
+        {stiffness.normal, stiffness.tangential, run.bolts.springs_at(run.blocks.properties[row].id.value)});
+  }
+  const bool any_deformable = run.communicator.max(run.blocks.deformation.empty() ? 0.0 : 1.0) > 0.0;
+  std::vector<statics::BorderRows> border;
+  run.neighbours.ghosts.for_neighbours(
+      [&](int rank, const std::vector<std::uint32_t> &send, const std::vector<std::uint32_t> &receive) {
+        border.push_back({rank, send, receive});
+      });
+  run.statics->lay(run.blocks, around, any_deformable, std::move(border));
+}
+
+void evaluate_statically(RunState &run) {
+  run.loads.time = run.clock.time();
+  {
+    const auto scope = run.phases.measure(Phase::forces);
+    evaluate_all(run);
+  }
+  sum_forces(run);
+  StepRows(run).load_all();
+  take_own_springs(run.blocks);
+}
+
+// The damping of pseudo-time, and what holds the load back, take all that the forces do together. By the
+// trapezoid: half over the step that ends here, and half over the one that begins, which is found already.
+void book_static_work(RunState &run) {
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    if (!run.blocks.properties[row].keeps_its_velocity()) {
+      const std::array<double, 6> force = statics::unbalanced_forces(run.blocks, row);
+      const std::array<double, 6> &step = run.blocks.pseudo[row].velocity;
+      double done = 0.0;
+      for (std::size_t i = 0; i < step.size(); ++i) {
+        done += force[i] * step[i];
+      }
+      run.blocks.ledger[row].damping -= 0.5 * done;
+    }
+  }
+}
+
+void find_static_motion(RunState &run) {
+  const auto scope = run.phases.measure(Phase::update);
+  const double overlap = run.communicator.max(run.force_report.max_overlap);
+  run.statics->find_motion(run.blocks, run.neighbours.candidates, run.neighbours.history, run.contacts,
+                           overlap, run.clock.state.iteration);
+}
+
+/// The iteration of a stage that begins, or goes on after a restart.
+void open_statics(RunState &run) {
+  statics::IterationRules rules;
+  // Boxes of two blocks that are this near meet within what each may move before the next refresh.
+  rules.springs.reach = share_of_skin_kept * run.neighbours.base_skin;
+  run.statics.emplace(run.communicator, rules);
+  run.contacts.keep_details(true);
+  // The limit of the stage comes where the iteration may pause, because a restart may go on from there: after
+  // n steps it has found n + 1 motions.
+  run.clock.plan.num_steps += rules.coarse_every - 1 - run.clock.plan.num_steps % rules.coarse_every;
+  if (run.clock.state.iteration.evaluations > 0) {
+    const StaticState saved = std::exchange(run.saved_statics, {});
+    refresh(run);
+    const std::span<PseudoMotion> motions = pseudo_rows(run.blocks);
+    for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+      const auto found =
+          std::lower_bound(saved.blocks.begin(), saved.blocks.end(), run.blocks.properties[row].id.value);
+      expect(found != saved.blocks.end() && *found == run.blocks.properties[row].id.value,
+             "a checkpoint of the static solver holds all mobile blocks");
+      motions[row] = saved.motions[static_cast<std::size_t>(found - saved.blocks.begin())];
+    }
+    run.statics->springs().take(run.blocks, saved.springs);
+    lay_statics(run);
+    return;
+  }
+  run.clock.state.iteration.skipped = std::max(0.0, end_of_loads(run) - run.clock.time());
+  set_to_rest(run);
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) { // where the contacts of the stage begin
+    run.blocks.displacement[row] = run.blocks.trial[row];
+    if (run.blocks.is_deformable(row)) {
+      run.blocks.deformation_of(row).gradient = run.blocks.deformation_of(row).trial;
+    }
+  }
+  refresh(run);
+  lay_statics(run);
+  forget_increments(run.blocks);
+  evaluate_statically(run);
+  run.statics->hold(run.blocks);
+  find_static_motion(run);
+  book_static_work(run);
+}
+
+// Springs are known to both ranks of a border pair; the one that counts the pair sends them to the owners of
+// its blocks.
+void refresh_statics(RunState &run) {
+  std::vector<std::vector<statics::SpringRecord>> leaving(static_cast<std::size_t>(run.communicator.size()));
+  for (const statics::SpringRecord &record : run.statics->springs().records()) {
+    if (!counts_here(run.blocks, BlockIndex{record.spring.lower})) {
+      continue;
+    }
+    std::array<int, 2> owners{-1, -1};
+    const std::array<std::size_t, 2> rows{record.spring.lower, record.spring.higher};
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (!run.blocks.is_fixed(rows[k])) {
+        owners[k] =
+            run.neighbours.map.rank_of(run.blocks.properties[rows[k]].centroid + run.blocks.trial[rows[k]].u);
+      }
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (owners[k] >= 0 && (k == 0 || owners[1] != owners[0])) {
+        leaving[static_cast<std::size_t>(owners[k])].push_back(record);
+      }
+    }
+  }
+  std::vector<statics::SpringRecord> here;
+  refresh(run);
+  for (const auto &brought : run.communicator.all_to_all(std::move(leaving))) {
+    here.insert(here.end(), brought.begin(), brought.end());
+  }
+  run.statics->springs().take(run.blocks, std::move(here));
+  lay_statics(run);
+}
+
+void judge_statics(RunState &run) {
+  statics::IterationState &iteration = run.clock.state.iteration;
+  const std::int64_t window = run.statics->rules().stall_window;
+  look_at_stage(run);
+  if (run.statics->load_share(iteration.evaluations) < 1.0) {
+    run.clock.state.ended = false;
+    run.clock.state.verdict = Verdict::undecided;
+    run.clock.state.memory.settled_looks = 0;
+    return;
+  }
+  if (run.clock.state.verdict == Verdict::failed) {
+    run.clock.state.ended = false;
+    run.clock.state.verdict = Verdict::undecided;
+    leave_statics(run, "a block has moved so far that the stage may have failed");
+    return;
+  }
+  iteration.least_ratio = std::min(iteration.least_ratio, run.clock.state.memory.last.unbalanced_ratio);
+  if (!run.clock.state.ended && iteration.evaluations % window == 0) {
+    const bool has_stalled = iteration.least_ratio > 0.5 * iteration.last_least;
+    iteration.last_least = std::exchange(iteration.least_ratio, 1e300);
+    if (has_stalled) {
+      leave_statics(run, fmt::format("the unbalanced ratio has not fallen by half in {} evaluations: {:.3g}",
+                                     window, iteration.last_least));
+    }
+  }
+}
+
+void report_statically(RunState &run) {
+  const auto scope = run.phases.measure(Phase::report);
+  count_step(run, {});
+  std::array<double, 3> status{};
+  auto &[is_stale, is_asked, has_failed] = status;
+  const bool may_pause = !is_static(run) || run.statics->may_pause(run.clock.state.iteration);
+  is_asked = run.stop_asked && may_pause ? 1.0 : 0.0;
+  has_failed = run.local_fault ? 1.0 : 0.0;
+  for (std::size_t row = 0; row < run.blocks.num_owned && is_static(run); ++row) {
+    const double ahead = statics::length_of_step(run.blocks, row);
+    if (moved_since_refresh(run.blocks, row) + ahead > share_of_skin_kept * run.neighbours.skin) {
+      is_stale = 1.0;
+    }
+  }
+  run.communicator.max(status);
+  run.neighbours.stale = run.clock.state.iteration.is_left != 0 || is_stale > 0.0;
+  run.stop_agreed = is_asked > 0.0 && has_failed == 0.0;
+  if (has_failed > 0.0) {
+    agree_on_fault(run);
+  }
+  if (run.clock.state.iteration.is_left != 0 && !run.fault) {
+    accelerate(run.blocks); // as at the beginning of a run
+  }
+}
+
+} // namespace
+
+bool is_static(const RunState &run) {
+  return run.clock.stage().solver == Solver::statics && run.clock.state.iteration.is_left == 0 &&
+         !run.clock.state.ended;
+}
+
+void prepare_statics(RunState &run) {
+  if (run.statics) {
+    return;
+  }
+  if (const std::string reason = not_served(run); !reason.empty()) {
+    leave_statics(run, reason);
+  } else {
+    open_statics(run);
+  }
+}
+
+void close_statics(RunState &run) {
+  run.statics.reset();
+  run.contacts.keep_details(false);
+  drop_pseudo_rows(run.blocks);
+}
+
+void static_step(RunState &run) {
+  if (run.neighbours.stale) {
+    refresh_statics(run);
+  }
+  run.statics->move(run.blocks);
+  pose_in_lanes(run.blocks, 0, run.blocks.num_owned);
+  add_half_works(run.blocks, 0, run.blocks.num_owned);
+  run.neighbours.border_trials.clear();
+  for (const std::uint32_t row : run.neighbours.ghosts.sent_rows()) {
+    run.neighbours.border_trials.push_back({run.blocks.trial[row], run.blocks.is_deformable(row)
+                                                                       ? run.blocks.deformation_of(row).trial
+                                                                       : Mat2{}});
+  }
+  run.neighbours.ghosts.begin(run.blocks, run.neighbours.border_trials);
+  receive_ghosts(run);
+  evaluate_statically(run);
+  ++run.clock.step_count;
+  book_static_work(run);
+  judge_statics(run);
+  if (is_static(run)) {
+    find_static_motion(run);
+    book_static_work(run);
+  }
+  report_statically(run);
+}
+
+bool checkpoint_is_due(const RunState &run) {
+  const StageClock &clock = run.clock;
+  if (!is_static(run) || !run.statics) {
+    return clock.plan.checkpoint_due(clock.stage_step());
+  }
+  const std::int64_t since = std::min(clock.stage_step(), run.statics->rules().coarse_every);
+  bool is_due = false;
+  for (std::int64_t k = 0; k < since; ++k) {
+    is_due = is_due || clock.plan.checkpoint_due(clock.stage_step() - k);
+  }
+  return is_due && run.statics->may_pause(clock.state.iteration);
+}
+
+} // namespace gcpdda

@@ -1,0 +1,34 @@
+#pragma once
+
+// Copies of numbers of border rows on the ranks that see them.
+
+#include "gcpdda/parallel/communicator.hpp"
+#include "statics/field.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace gcpdda::statics {
+
+/// Rows whose owners send them to a rank, and ghost rows that it sends.
+struct BorderRows {
+  int rank = 0;
+  std::vector<std::uint32_t> send;
+  std::vector<std::uint32_t> receive;
+};
+
+class BorderExchange {
+public:
+  explicit BorderExchange(const Communicator &communicator) : communicator_(communicator) {}
+  void take(std::vector<BorderRows> rows) { rows_ = std::move(rows); }
+  /// Rows of the owners to their ghosts.
+  void copy(Field &field);
+
+private:
+  Communicator communicator_;
+  std::vector<BorderRows> rows_;
+  std::vector<std::vector<double>> sent_;
+  std::vector<std::vector<double>> received_;
+};
+
+} // namespace gcpdda::statics

@@ -1,0 +1,335 @@
+#include "statics/coarse_grid.hpp"
+
+#include "base/exact_sum.hpp"
+#include "contact/block_sums.hpp"
+
+#include <Eigen/Sparse>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gcpdda::statics {
+
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// The power of two of which the largest contribution is about 2^40.
+double unit_of(double largest) {
+  return largest > 0.0 ? std::exp2(static_cast<double>(std::ilogb(largest) - 40)) : 1.0;
+}
+
+bool moves(const BlockSystem &system, std::size_t row) {
+  return row < system.first_fixed() && !system.properties[row].keeps_its_velocity();
+}
+
+void make_unique(std::vector<std::int64_t> &list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// The list of all ranks, ascending and each number once.
+std::vector<std::int64_t> united(const Communicator &communicator, std::vector<std::int64_t> mine) {
+  make_unique(mine);
+  if (communicator.size() == 1) {
+    return mine;
+  }
+  std::vector<std::int64_t> all;
+  for (const auto &theirs : communicator.all_gather(mine)) {
+    all.insert(all.end(), theirs.begin(), theirs.end());
+  }
+  make_unique(all);
+  return all;
+}
+
+} // namespace
+
+struct CoarseGrid::Factors {
+  Sparse matrix;
+  Eigen::SimplicialLDLT<Sparse, Eigen::Lower> ldlt;
+  std::vector<std::int64_t> pattern; ///< for which the order of elimination has been found
+  Eigen::VectorXd vector;
+  std::vector<Eigen::Triplet<double>> entries;
+};
+
+CoarseGrid::CoarseGrid(const Communicator &communicator)
+    : communicator_(communicator), factors_(std::make_unique<Factors>()) {}
+CoarseGrid::~CoarseGrid() = default;
+CoarseGrid::CoarseGrid(CoarseGrid &&) noexcept = default;
+CoarseGrid &CoarseGrid::operator=(CoarseGrid &&) noexcept = default;
+
+void CoarseGrid::lay(const BlockSystem &system) {
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  std::array<double, 4> largest{none, none, none, none};
+  auto &[minus_left, minus_low, right, high] = largest;
+  ExactSum area;
+  std::int64_t count = 0;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (moves(system, row)) {
+      const Vec2 x = system.properties[row].centroid;
+      minus_left = std::max(minus_left, -x.x);
+      minus_low = std::max(minus_low, -x.y);
+      right = std::max(right, x.x);
+      high = std::max(high, x.y);
+      area.add(system.properties[row].area);
+      ++count;
+    }
+  }
+  communicator_.max(largest);
+  communicator_.sum(area.limbs());
+  communicator_.sum(std::span(&count, 1));
+  if (count == 0) {
+    keys_.clear();
+    cell_of_.assign(system.num_rows(), -1);
+    return;
+  }
+  origin_ = {-minus_left, -minus_low};
+  side_ = blocks_a_side * std::sqrt(area.value() / static_cast<double>(count));
+  columns_ = static_cast<std::int64_t>((right + minus_left) / side_) + 1;
+  const auto place_of = [&](std::size_t row) {
+    const Vec2 x = (1.0 / side_) * (system.properties[row].centroid - origin_);
+    return std::array{static_cast<std::int64_t>(x.x), static_cast<std::int64_t>(x.y)};
+  };
+  std::vector<std::int64_t> mine;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (moves(system, row)) {
+      const auto [column, line] = place_of(row);
+      mine.push_back(line * columns_ + column);
+    }
+  }
+  keys_ = united(communicator_, std::move(mine));
+  cell_of_.assign(system.num_rows(), -1);
+  arms_.assign(system.num_rows(), {});
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    if (moves(system, row)) {
+      const auto [column, line] = place_of(row);
+      const auto found = std::lower_bound(keys_.begin(), keys_.end(), line * columns_ + column);
+      cell_of_[row] = static_cast<std::int32_t>(found - keys_.begin());
+      const Vec2 middle{static_cast<double>(column) + 0.5, static_cast<double>(line) + 0.5};
+      arms_[row] = (1.0 / side_) * (system.properties[row].centroid - origin_) - middle;
+    }
+  }
+}
+
+CoarseGrid::Three CoarseGrid::to_cell(const BlockSystem &system, std::size_t row,
+                                      const double *forces) const {
+  const double moment = system.is_deformable(row) ? forces[4] - forces[3] : forces[2];
+  return {forces[0], forces[1], moment / side_ + cross(arms_[row], Vec2{forces[0], forces[1]})};
+}
+
+std::array<CoarseGrid::Three, 3> CoarseGrid::forces_on_cell(std::size_t row, Vec2 arm, Vec2 normal) const {
+  const Vec2 tangent = perp(normal);
+  const Vec2 from_middle = arms_[row] + (1.0 / side_) * arm;
+  return {{{normal.x, normal.y, cross(from_middle, normal)},
+           {tangent.x, tangent.y, cross(from_middle, tangent)},
+           {0.0, 0.0, -1.0 / side_}}}; // e_r of a rotation is n.(J t)
+}
+
+CoarseGrid::Square CoarseGrid::on_cell(const BlockSystem &system, std::size_t row,
+                                       const BlockMatrices &matrices) const {
+  const bool is_deformable = system.is_deformable(row);
+  const Vec2 arm = arms_[row];
+  std::array<std::array<double, 6>, 3> motions{};
+  motions[0][0] = 1.0;
+  motions[1][1] = 1.0;
+  motions[2][0] = -arm.y;
+  motions[2][1] = arm.x;
+  if (is_deformable) {
+    motions[2][3] = -1.0 / side_;
+    motions[2][4] = 1.0 / side_;
+  } else {
+    motions[2][2] = 1.0 / side_;
+  }
+  Square square{};
+  for (std::size_t j = 0; j < 3; ++j) {
+    std::array<double, 6> forces{};
+    add_block_product(matrices.of(row), num_freedoms(system, row), matrices.width(), motions[j].data(),
+                      forces.data());
+    const Three column = to_cell(system, row, forces.data());
+    for (std::size_t i = 0; i < 3; ++i) {
+      square[i][j] = column[i];
+    }
+  }
+  return square;
+}
+
+template <class Visit> void CoarseGrid::for_parts_of(const ContactSpring &spring, Visit &&visit) const {
+  const std::array<double, 3> stiffness{spring.normal_stiffness, spring.tangential, spring.bending};
+  const auto product = [&](const std::array<Three, 3> &a, const std::array<Three, 3> &b, double sign) {
+    Square square{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          square[i][j] += sign * stiffness[k] * a[k][i] * b[k][j];
+        }
+      }
+    }
+    return square;
+  };
+  const std::int64_t lower = cell_of_[spring.lower];
+  const std::int64_t higher = cell_of_[spring.higher];
+  std::array<Three, 3> on_lower{};
+  std::array<Three, 3> on_higher{};
+  if (lower >= 0) {
+    on_lower = forces_on_cell(spring.lower, spring.lower_arm, spring.normal);
+  }
+  if (higher >= 0) {
+    on_higher = forces_on_cell(spring.higher, spring.higher_arm, spring.normal);
+  }
+  if (lower == higher) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        on_lower[k][i] -= on_higher[k][i];
+      }
+    }
+    visit(lower, lower, product(on_lower, on_lower, 1.0));
+    return;
+  }
+  if (lower >= 0) {
+    visit(lower, lower, product(on_lower, on_lower, 1.0));
+  }
+  if (higher >= 0) {
+    visit(higher, higher, product(on_higher, on_higher, 1.0));
+  }
+  if (lower > higher && higher >= 0) {
+    visit(lower, higher, product(on_lower, on_higher, -1.0));
+  } else if (higher > lower && lower >= 0) {
+    visit(higher, lower, product(on_higher, on_lower, -1.0));
+  }
+}
+
+template <class Visit>
+void CoarseGrid::for_parts(const BlockSystem &system, std::span<const ContactSpring> springs,
+                           const BlockMatrices &matrices, Visit &&visit) const {
+  for (const ContactSpring &spring : springs) {
+    if (counts_here(system, BlockIndex{spring.lower})) {
+      for_parts_of(spring, visit);
+    }
+  }
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (has_cell(row)) {
+      visit(std::int64_t{cell_of_[row]}, std::int64_t{cell_of_[row]}, on_cell(system, row, matrices));
+    }
+  }
+}
+
+void CoarseGrid::find_pattern(std::span<const ContactSpring> springs) {
+  std::vector<std::int64_t> mine;
+  for (const ContactSpring &spring : springs) {
+    const std::int64_t a = cell_of_[spring.lower];
+    const std::int64_t b = cell_of_[spring.higher];
+    if (a >= 0 && b >= 0 && a != b) {
+      mine.push_back(key_of(std::max(a, b), std::min(a, b)));
+    }
+  }
+  for (std::int64_t cell = 0; cell < std::ssize(keys_); ++cell) {
+    mine.push_back(key_of(cell, cell));
+  }
+  pattern_ = united(communicator_, std::move(mine));
+}
+
+void CoarseGrid::factorise(const BlockSystem &system, std::span<const ContactSpring> springs,
+                           const BlockMatrices &matrices) {
+  find_pattern(springs);
+  double largest = 0.0;
+  for_parts(system, springs, matrices, [&](std::int64_t, std::int64_t, const Square &square) {
+    for (const Three &line : square) {
+      for (const double value : line) {
+        largest = std::max(largest, std::abs(value));
+      }
+    }
+  });
+  communicator_.max(std::span(&largest, 1));
+  const double unit = unit_of(largest);
+  const double per_one = 1.0 / unit;
+  sums_.assign(9 * pattern_.size(), 0);
+  for_parts(system, springs, matrices, [&](std::int64_t higher, std::int64_t lower, const Square &square) {
+    const auto place = std::lower_bound(pattern_.begin(), pattern_.end(), key_of(higher, lower));
+    std::int64_t *to = sums_.data() + 9 * (place - pattern_.begin());
+    for (const Three &line : square) {
+      for (const double value : line) {
+        *to++ += std::llrint(value * per_one);
+      }
+    }
+  });
+  if (communicator_.size() > 1) {
+    communicator_.sum(sums_);
+  }
+  fill_matrix(unit);
+}
+
+void CoarseGrid::fill_matrix(double unit) {
+  Factors &f = *factors_;
+  const auto num_cells = std::ssize(keys_);
+  f.entries.clear();
+  const std::int64_t *from = sums_.data();
+  for (const std::int64_t key : pattern_) {
+    const auto higher = static_cast<int>(3 * (key / num_cells));
+    const auto lower = static_cast<int>(3 * (key % num_cells));
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const double value = unit * static_cast<double>(*from++);
+        if (higher + i >= lower + j) {
+          f.entries.emplace_back(higher + i, lower + j, value);
+        }
+      }
+    }
+  }
+  f.matrix.resize(3 * num_cells, 3 * num_cells);
+  f.matrix.setFromTriplets(f.entries.begin(), f.entries.end());
+  f.vector.resize(3 * num_cells);
+  if (f.pattern != pattern_) {
+    f.ldlt.analyzePattern(f.matrix);
+    f.pattern = pattern_;
+  }
+  f.ldlt.factorize(f.matrix);
+}
+
+void CoarseGrid::add_correction(const BlockSystem &system, const Field &r, Field &z) {
+  double largest = 0.0;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (has_cell(row)) {
+      for (const double value : to_cell(system, row, r.of(row))) {
+        largest = std::max(largest, std::abs(value));
+      }
+    }
+  }
+  communicator_.max(std::span(&largest, 1));
+  const double unit = unit_of(largest);
+  const double per_one = 1.0 / unit;
+  sums_.assign(3 * keys_.size(), 0);
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (has_cell(row)) {
+      std::int64_t *to = sums_.data() + 3 * cell_of_[row];
+      for (const double value : to_cell(system, row, r.of(row))) {
+        *to++ += std::llrint(value * per_one);
+      }
+    }
+  }
+  if (communicator_.size() > 1) {
+    communicator_.sum(sums_);
+  }
+  Eigen::VectorXd &vector = factors_->vector;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    vector[static_cast<Eigen::Index>(i)] = unit * static_cast<double>(sums_[i]);
+  }
+  vector = factors_->ldlt.solve(vector).eval();
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (has_cell(row)) {
+      const double *const motion = vector.data() + 3 * cell_of_[row];
+      double *const to = z.of(row);
+      to[0] += motion[0] - motion[2] * arms_[row].y;
+      to[1] += motion[1] + motion[2] * arms_[row].x;
+      const double turn = motion[2] / side_;
+      if (system.is_deformable(row)) {
+        to[3] -= turn;
+        to[4] += turn;
+      } else {
+        to[2] += turn;
+      }
+    }
+  }
+}
+
+} // namespace gcpdda::statics

@@ -1,0 +1,78 @@
+#pragma once
+
+// Numbers by row and degree of freedom, as the solver of the statics module works on them.
+//
+// A rigid block has the freedoms (u_x, u_y, r). A deformable block has (u_x, u_y, H_xx, H_xy, H_yx, H_yy),
+// where a small motion takes its point at the arm a from the centroid by u + H a: H = dF F^-1 with dF the
+// change of its deformation gradient. A rigid motion is H = r J with J = [0 -1; 1 0]. The forces that work on
+// these freedoms are the force f, the moment (rigid) and the dyad W = sum of f a^T (deformable): the moment
+// of a dyad is W_yx - W_xy.
+//
+// All rows of a field have the same number of places, `width`: 3 where no block of the scene deforms, else
+// 6. A rigid row leaves the last three of six at zero.
+
+#include "model/block_system.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace gcpdda::statics {
+
+/// A small motion of one block, or the forces that work on it: u + H a at the arm a, or f and W.
+struct PointMap {
+  Vec2 u;
+  Mat2 gradient;
+
+  [[nodiscard]] Vec2 at(Vec2 arm) const { return u + gradient(arm); }
+};
+
+/// H of a rotation.
+constexpr Mat2 turning(double r) {
+  return {0.0, -r, r, 0.0};
+}
+/// The moment of a dyad of forces.
+constexpr double moment_of(const Mat2 &dyad) {
+  return dyad.yx - dyad.xy;
+}
+
+class Field {
+public:
+  Field() = default;
+  Field(std::size_t num_rows, std::size_t width) : width_(width), values_(num_rows * width, 0.0) {}
+
+  [[nodiscard]] std::size_t width() const { return width_; }
+  [[nodiscard]] std::size_t num_rows() const { return width_ == 0 ? 0 : values_.size() / width_; }
+  [[nodiscard]] double *of(std::size_t row) { return values_.data() + row * width_; }
+  [[nodiscard]] const double *of(std::size_t row) const { return values_.data() + row * width_; }
+  [[nodiscard]] std::span<double> values() { return values_; }
+  [[nodiscard]] std::span<const double> values() const { return values_; }
+
+private:
+  std::size_t width_ = 0;
+  std::vector<double> values_;
+};
+
+/// Number of freedoms of a row.
+inline std::size_t num_freedoms(const BlockSystem &system, std::size_t row) {
+  return system.is_deformable(row) ? 6 : 3;
+}
+
+inline PointMap motion_at(const double *freedoms, bool is_deformable) {
+  return {{freedoms[0], freedoms[1]},
+          is_deformable ? Mat2{freedoms[2], freedoms[3], freedoms[4], freedoms[5]} : turning(freedoms[2])};
+}
+inline void add_force(double *freedoms, bool is_deformable, Vec2 force, const Mat2 &dyad) {
+  freedoms[0] += force.x;
+  freedoms[1] += force.y;
+  if (is_deformable) {
+    freedoms[2] += dyad.xx;
+    freedoms[3] += dyad.xy;
+    freedoms[4] += dyad.yx;
+    freedoms[5] += dyad.yy;
+  } else {
+    freedoms[2] += moment_of(dyad);
+  }
+}
+
+} // namespace gcpdda::statics

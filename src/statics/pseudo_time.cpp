@@ -1,0 +1,181 @@
+#include "statics/pseudo_time.hpp"
+
+#include "base/exact_sum.hpp"
+#include "dynamics/deformable.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gcpdda::statics {
+
+std::array<double, 6> unbalanced_forces(const BlockSystem &system, std::size_t row) {
+  std::array<double, 6> force{};
+  const RigidDof sum = system.contact[row].force + system.anchor_force(row);
+  force[0] = sum.u.x;
+  force[1] = sum.u.y;
+  if (system.is_deformable(row)) {
+    const Deformation &d = system.deformation_of(row);
+    const Mat2 dyad = unbalanced_on_gradient(d) * transposed(d.trial);
+    force[2] = dyad.xx, force[3] = dyad.xy, force[4] = dyad.yx, force[5] = dyad.yy;
+  } else {
+    force[2] = sum.r;
+  }
+  return force;
+}
+
+void PseudoTime::lay(const BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
+                     std::vector<BorderRows> border) {
+  width_ = any_deformable ? 6 : 3;
+  BlockMatrices mass(system.num_owned, width_);
+  BlockMatrices bolts(system.num_owned, width_);
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (!system.properties[row].keeps_its_velocity()) {
+      add_boundary(system, row, around[row], mass.of(row), width_);
+      add_bolts(system, row, around[row].bolts, bolts.of(row), width_);
+    }
+  }
+  solver_.lay(system, std::move(mass), std::move(bolts), std::move(border));
+  force_ = Field(system.num_rows(), width_);
+  direction_ = Field(system.num_rows(), width_);
+}
+
+void PseudoTime::hold(BlockSystem &system) {
+  const std::span<PseudoMotion> pseudo = pseudo_rows(system);
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    pseudo[row] = {};
+    if (!system.properties[row].keeps_its_velocity()) {
+      pseudo[row].held = unbalanced_forces(system, row);
+    }
+  }
+}
+
+void PseudoTime::gather(const BlockSystem &system, double share) {
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    double *const to = force_.of(row);
+    if (system.properties[row].keeps_its_velocity()) {
+      std::fill_n(to, width_, 0.0);
+      continue;
+    }
+    const std::array<double, 6> sum = unbalanced_forces(system, row);
+    const std::array<double, 6> &held = system.pseudo[row].held;
+    for (std::size_t i = 0; i < width_; ++i) {
+      to[i] = sum[i] - (1.0 - share) * held[i];
+    }
+  }
+}
+
+namespace {
+
+double row_product(const std::array<double, 6> &v, const double *f, std::size_t width) {
+  double product = v[0] * f[0];
+  for (std::size_t i = 1; i < width; ++i) {
+    product += v[i] * f[i];
+  }
+  return product;
+}
+
+} // namespace
+
+double length_of_step(const BlockSystem &system, std::size_t row) {
+  const std::array<double, 6> &v = system.pseudo[row].velocity;
+  const double turning = system.is_deformable(row) ? norm(Mat2{v[2], v[3], v[4], v[5]}) : std::abs(v[2]);
+  return norm(Vec2{v[0], v[1]}) + system.properties[row].radius * turning;
+}
+
+double PseudoTime::power(const BlockSystem &system) const {
+  ExactSum sum;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    sum.add(row_product(system.pseudo[row].velocity, force_.of(row), width_));
+  }
+  communicator_.sum(sum.limbs());
+  return sum.value();
+}
+
+void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
+                             const ContactForces &contacts, double overlap, IterationState &state) {
+  springs_.update(system, candidates, history, contacts, rules_.springs);
+  gather(system, load_share(state.evaluations));
+  const double power_behind = power(system);
+  const double square =
+      state.momentum > 0.0 ? std::clamp((state.power_before - power_behind) / state.momentum, 0.0, 3.9) : 0.0;
+  const bool is_coarse_due = may_pause(state);
+  ++state.evaluations;
+  gather(system, load_share(state.evaluations));
+  const bool begins = !(state.momentum > 0.0) || power(system) < 0.0;
+  solver_.set(system, springs_, rules_.mass_share, is_coarse_due);
+  state.products += solver_.solve(system, springs_, force_, direction_);
+  const double c = 2.0 * rules_.damping_share * std::sqrt(square);
+  const double limit = longest_step(overlap, state);
+  if (begins) {
+    advance(system, 0.0, 0.5, limit, state);
+  } else {
+    advance(system, (2.0 - c) / (2.0 + c), 2.0 / (2.0 + c), limit, state);
+  }
+}
+
+// Before there is an overlap the block's own boundary says what it would be.
+double PseudoTime::longest_step(double overlap, IterationState &state) const {
+  double most = 0.0;
+  for (std::size_t row = 0; row < solver_.mass().num_rows(); ++row) {
+    const double *const f = force_.of(row);
+    const double stiffness = solver_.mass().of(row)[0];
+    most = stiffness > 0.0 ? std::max(most, norm(Vec2{f[0], f[1]}) / stiffness) : most;
+  }
+  communicator_.max(std::span(&most, 1));
+  state.longest = std::max({state.longest, overlap, most});
+  return rules_.steps_of_overlap * state.longest;
+}
+
+void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, IterationState &state) {
+  ExactSum ahead;
+  ExactSum momentum;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    PseudoMotion &motion = system.pseudo[row];
+    const double *const g = direction_.of(row);
+    const double *const f = force_.of(row);
+    for (std::size_t i = 0; i < width_; ++i) {
+      motion.velocity[i] = a * motion.velocity[i] + b * g[i];
+      motion.momentum[i] = a * motion.momentum[i] + b * f[i];
+    }
+    const double length = length_of_step(system, row);
+    const double share = length > limit ? limit / length : 1.0;
+    for (std::size_t i = 0; i < width_; ++i) {
+      motion.velocity[i] *= share;
+      motion.momentum[i] *= share;
+    }
+    ahead.add(row_product(motion.velocity, f, width_));
+    momentum.add(row_product(motion.velocity, motion.momentum.data(), width_));
+  }
+  communicator_.sum(ahead.limbs());
+  communicator_.sum(momentum.limbs());
+  state.power_before = ahead.value();
+  state.momentum = momentum.value();
+}
+
+void PseudoTime::move(BlockSystem &system) const {
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (system.properties[row].keeps_its_velocity()) {
+      continue;
+    }
+    const std::array<double, 6> &v = system.pseudo[row].velocity;
+    TrialConfiguration trial{system.trial[row], {}};
+    trial.motion.u += Vec2{v[0], v[1]};
+    if (system.is_deformable(row)) {
+      Deformation &d = system.deformation_of(row);
+      trial.gradient = d.trial + Mat2{v[2], v[3], v[4], v[5]} * d.trial;
+      trial.motion.r += angle_between(d.trial, trial.gradient);
+      set_trial(system, row, trial);
+      d.gradient = trial.gradient;
+      d.rate = {};
+      d.acceleration = {};
+    } else {
+      trial.motion.r += v[2];
+      set_trial(system, row, trial);
+    }
+    system.displacement[row] = trial.motion;
+    system.velocity[row] = {};
+    system.acceleration[row] = {};
+  }
+}
+
+} // namespace gcpdda::statics

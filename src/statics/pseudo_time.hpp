@@ -1,0 +1,104 @@
+#pragma once
+
+// Equilibrium of blocks as the rest of a damped motion in pseudo-time.
+//
+// Blocks with the forces f(x) move without friction of their own in a pseudo-time whose step is 1, with the
+// stiffness of their contacts as mass,
+//     (K + rho D) x'' + c (K + rho D) x' = f(x).
+// K is near the true stiffness, so that all motions have frequencies near 1, however large the pile: the wave
+// that carries a load through the layers of a pile under its true mass, and takes a step for each of them,
+// is gone. rho D is a share of the stiffness that a block could have; it moves what nothing touches. In
+// central differences, with v the motion of a step and q = (K + rho D) v its momentum,
+//     v = a v + b (K + rho D)^-1 f,   q = a q + b f,   x = x + v,   a = (2 - c)/(2 + c),   b = 2/(2 + c).
+// Damping follows the frequency of the motion that goes on, c = c_share 2 w (1 is critical damping of that
+// motion), with Rayleigh's quotient of the step behind,
+//     w^2 = v.(f_before - f)/(v.q),   cut to [0, 3.9], where central differences are stable.
+// f_before is f at the beginning of the step under the loads that it ended with. q is summed along, so that
+// no product is needed for it. Where f.v < 0 the motion has passed its rest: it begins anew, v = q = 0. The
+// first step from rest takes b = 1/2: a whole one would be Newton's, which runs away where the true stiffness
+// is more than twice K.
+//
+// Loads come in increments. What is out of balance when a stage begins, f_0, is held by an opposite force and
+// let go in `increments` equal parts, one an evaluation: f = f(x) - (1 - s) f_0 with s from 0 to 1. It
+// is all that the stage has changed (weight, excavated rock, strength, water, stress), whatever that was.
+// Blocks follow the load near equilibrium, and friction takes the path of slow loading.
+//
+// The step of a block is at most `steps_of_overlap` of the largest overlap, the length by which contacts
+// carry what they carry: a block that has lost its contacts does not fly through its neighbours.
+
+#include "statics/iteration_state.hpp"
+#include "statics/stiffness_solver.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace gcpdda::statics {
+
+struct IterationRules {
+  double mass_share = 1e-3;        ///< rho
+  double damping_share = 0.7;      ///< c_share
+  std::int64_t increments = 50;    ///< of the load
+  std::int64_t coarse_every = 5;   ///< evaluations between two coarse matrices
+  double steps_of_overlap = 10.0;  ///< largest step of a block
+  std::int64_t stall_window = 100; ///< evaluations in which the least ratio has to fall by half
+  SpringRules springs;
+};
+
+class PseudoTime {
+public:
+  PseudoTime(const Communicator &communicator, const IterationRules &rules)
+      : rules_(rules), communicator_(communicator), solver_(communicator) {}
+
+  [[nodiscard]] const IterationRules &rules() const { return rules_; }
+  [[nodiscard]] ContactSprings &springs() { return springs_; }
+  [[nodiscard]] const ContactSprings &springs() const { return springs_; }
+  /// Share of the load that acts after so many evaluations.
+  [[nodiscard]] double load_share(std::int64_t evaluations) const {
+    return evaluations >= rules_.increments
+               ? 1.0
+               : static_cast<double>(evaluations) / static_cast<double>(rules_.increments);
+  }
+  /// The next evaluation needs nothing of those before but what a checkpoint holds.
+  [[nodiscard]] bool may_pause(const IterationState &state) const {
+    return state.evaluations % rules_.coarse_every == 0;
+  }
+
+  /// Rows have been found anew. Collective.
+  /// @param around  of each owned row
+  /// @param any_deformable  on any rank
+  void lay(const BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
+           std::vector<BorderRows> border);
+  /// What is out of balance is held from here on. The forces are those of the last evaluation.
+  void hold(BlockSystem &system);
+  /// From the forces of an evaluation to the motion of the next step, in PseudoMotion::velocity. Collective.
+  /// @param overlap  largest one of all ranks, m
+  void find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
+                   const ContactForces &contacts, double overlap, IterationState &state);
+  /// Owned rows move by it. Their trial configurations and states are the same afterwards, and at rest.
+  void move(BlockSystem &system) const;
+
+private:
+  /// Unbalanced forces when this share of the load acts.
+  void gather(const BlockSystem &system, double share);
+  /// v.f. Collective.
+  [[nodiscard]] double power(const BlockSystem &system) const;
+  [[nodiscard]] double longest_step(double overlap, IterationState &state) const;
+  /// v = a v + b g, q = a q + b f, within the largest step. Collective.
+  void advance(BlockSystem &system, double a, double b, double limit, IterationState &state);
+
+  IterationRules rules_;
+  Communicator communicator_;
+  StiffnessSolver solver_;
+  ContactSprings springs_;
+  std::size_t width_ = 3;
+  Field force_;
+  Field direction_;
+};
+
+/// Largest distance that a point of an owned row moves by the motion of its next step, m.
+double length_of_step(const BlockSystem &system, std::size_t row);
+
+/// Forces on the freedoms of an owned row that nothing balances (field.hpp).
+std::array<double, 6> unbalanced_forces(const BlockSystem &system, std::size_t row);
+
+} // namespace gcpdda::statics

@@ -1,0 +1,216 @@
+#include "statics/springs.hpp"
+
+#include "base/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace gcpdda::statics {
+
+namespace {
+
+/// True while the boxes of two rows are within `reach` of each other.
+bool are_near(const BlockSystem &system, const ContactSpring &spring, double reach) {
+  return system.motion[spring.lower].box.inflated(reach).meets(system.motion[spring.higher].box);
+}
+
+/// The springs of a region for which all of k_t counts.
+ContactSpring spring_of(const BlockSystem &system, const CandidatePair &pair, const RegionDetails &force,
+                        const RegionState &memory, const LawConstants &law) {
+  ContactSpring spring;
+  const Vec2 tangent = perp(force.normal);
+  const double length = force.extent_end - force.extent_begin;
+  const Vec2 middle = force.point + 0.5 * (force.extent_begin + force.extent_end) * tangent;
+  spring.lower = pair.lower.value;
+  spring.higher = pair.higher.value;
+  spring.normal = force.normal;
+  spring.lower_arm = middle - system.motion[spring.lower].centroid;
+  spring.higher_arm = middle - system.motion[spring.higher].centroid;
+  const bool pulls_or_pushes = !force.bonded || force.normal_force != 0.0;
+  spring.normal_stiffness = pulls_or_pushes ? 2.0 * law.half_stiffness * length : 0.0;
+  spring.bending = spring.normal_stiffness * length * length / 12.0;
+  spring.tangential = law.tangential_stiffness * memory.longest;
+  return spring;
+}
+
+/// Side and turns of a region that has been evaluated.
+SpringMemory moved_on(SpringMemory memory, const RegionState &state, double cap, const SpringRules &rules) {
+  memory.open_for = 0;
+  memory.turned = static_cast<std::uint8_t>(memory.turned > 0 ? memory.turned - 1 : 0);
+  if (state.state == ContactState::slip && cap > 0.0) {
+    const std::int8_t side = state.shear < 0.0 ? -1 : 1;
+    if (memory.side != 0 && memory.side != side) {
+      memory.turned = rules.turn_memory;
+    }
+    memory.side = side;
+  }
+  return memory;
+}
+
+bool is_before(const SpringMemory &a, const SpringMemory &b) {
+  return std::tie(a.lower, a.higher) < std::tie(b.lower, b.higher);
+}
+
+} // namespace
+
+void ContactSprings::clear() {
+  springs_.clear();
+  memories_.clear();
+  num_closed_ = 0;
+}
+
+void ContactSprings::keep_open(const BlockSystem &system, std::size_t number, const SpringRules &rules) {
+  SpringMemory memory = memories_[number];
+  if (memory.open_for >= rules.open_memory || !are_near(system, springs_[number], rules.reach)) {
+    return;
+  }
+  ++memory.open_for;
+  ContactSpring spring = springs_[number];
+  spring.normal_stiffness *= rules.fade;
+  spring.bending *= rules.fade;
+  spring.tangential *= rules.fade;
+  next_springs_.push_back(spring);
+  next_memories_.push_back(memory);
+}
+
+void ContactSprings::update(const BlockSystem &system, const Candidates &candidates,
+                            const ContactHistory &history, const ContactForces &contacts,
+                            const SpringRules &rules) {
+  expect(contacts.keeps_details(), "the last evaluation has left its details behind");
+  next_springs_.clear();
+  next_memories_.clear();
+  num_closed_ = 0;
+  std::size_t old = 0;
+  const auto add = [&](std::uint32_t number, std::uint32_t k, const RegionDetails &force) {
+    const CandidatePair &pair = candidates.pairs[number];
+    SpringMemory key;
+    key.lower = system.properties[pair.lower.value].id;
+    key.higher = system.properties[pair.higher.value].id;
+    for (; old < memories_.size() && is_before(memories_[old], key); ++old) {
+      keep_open(system, old, rules);
+    }
+    const bool is_known = old < memories_.size() && !is_before(key, memories_[old]);
+    const SpringMemory &before = is_known ? memories_[old] : key;
+    old += is_known ? 1 : 0;
+    if (force.normal_undefined) {
+      return;
+    }
+    const RegionState &state = history.state(number, k);
+    const SpringMemory memory = moved_on(before, state, force.cap, rules);
+    const std::int32_t law = state.law >= 0 ? state.law : pair.law;
+    ContactSpring spring = spring_of(system, pair, force, state, contacts.parameters().constants(law));
+    if (state.state == ContactState::slip && memory.turned == 0) {
+      spring.tangential *= rules.slip_share;
+    }
+    next_springs_.push_back(spring);
+    next_memories_.push_back(memory);
+    ++num_closed_;
+  };
+  contacts.for_kept_details(candidates, history, add);
+  for (; old < memories_.size(); ++old) {
+    keep_open(system, old, rules);
+  }
+  std::swap(springs_, next_springs_);
+  std::swap(memories_, next_memories_);
+}
+
+namespace {
+
+void add_rigid(std::span<const ContactSpring> springs, const Field &p, Field &y) {
+  for (const ContactSpring &s : springs) {
+    const double *const a = p.of(s.lower);
+    const double *const b = p.of(s.higher);
+    const Vec2 n = s.normal;
+    const Vec2 t = perp(n);
+    const double lower_n = cross(s.lower_arm, n);
+    const double higher_n = cross(s.higher_arm, n);
+    const double lower_t = cross(s.lower_arm, t);
+    const double higher_t = cross(s.higher_arm, t);
+    const Vec2 apart{a[0] - b[0], a[1] - b[1]};
+    const double along_n = s.normal_stiffness * (dot(n, apart) + lower_n * a[2] - higher_n * b[2]);
+    const double along_t = s.tangential * (dot(t, apart) + lower_t * a[2] - higher_t * b[2]);
+    const double bent = s.bending * (a[2] - b[2]);
+    const Vec2 force = along_n * n + along_t * t;
+    double *const to_a = y.of(s.lower);
+    double *const to_b = y.of(s.higher);
+    to_a[0] += force.x;
+    to_a[1] += force.y;
+    to_a[2] += lower_n * along_n + lower_t * along_t + bent;
+    to_b[0] -= force.x;
+    to_b[1] -= force.y;
+    to_b[2] -= higher_n * along_n + higher_t * along_t + bent;
+  }
+}
+
+void add_any(const BlockSystem &system, std::span<const ContactSpring> springs, const Field &p, Field &y) {
+  for (const ContactSpring &s : springs) {
+    const bool lower_deforms = system.is_deformable(s.lower);
+    const bool higher_deforms = system.is_deformable(s.higher);
+    const PointMap a = motion_at(p.of(s.lower), lower_deforms);
+    const PointMap b = motion_at(p.of(s.higher), higher_deforms);
+    const Vec2 n = s.normal;
+    const Vec2 t = perp(n);
+    const Vec2 apart = a.at(s.lower_arm) - b.at(s.higher_arm);
+    const double bent = s.bending * dot(n, (a.gradient - b.gradient)(t));
+    const Vec2 force = (s.normal_stiffness * dot(n, apart)) * n + (s.tangential * dot(t, apart)) * t;
+    const Mat2 moment = bent * outer(n, t);
+    add_force(y.of(s.lower), lower_deforms, force, outer(force, s.lower_arm) + moment);
+    add_force(y.of(s.higher), higher_deforms, -force, -1.0 * (outer(force, s.higher_arm) + moment));
+  }
+}
+
+} // namespace
+
+void ContactSprings::add_product(const BlockSystem &system, const Field &p, Field &y) const {
+  if (p.width() == 3) {
+    add_rigid(springs_, p, y);
+  } else {
+    add_any(system, springs_, p, y);
+  }
+}
+
+std::vector<SpringRecord> ContactSprings::records() const {
+  std::vector<SpringRecord> all;
+  all.reserve(springs_.size());
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    all.push_back({springs_[k], memories_[k]});
+  }
+  return all;
+}
+
+void ContactSprings::take(const BlockSystem &system, std::vector<SpringRecord> records) {
+  const auto row_in = [&](std::size_t first, std::size_t last, BlockId id) {
+    const auto begin = system.properties.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = system.properties.begin() + static_cast<std::ptrdiff_t>(last);
+    const auto found = std::lower_bound(
+        begin, end, id, [](const BlockProperties &p, BlockId wanted) { return p.id < wanted; });
+    return found != end && found->id == id ? static_cast<std::size_t>(found - system.properties.begin())
+                                           : system.num_rows();
+  };
+  const auto row_of = [&](BlockId id) {
+    std::size_t row = row_in(0, system.num_owned, id);
+    if (row == system.num_rows()) {
+      row = row_in(system.num_owned, system.first_fixed(), id);
+    }
+    return row == system.num_rows() ? row_in(system.first_fixed(), system.num_rows(), id) : row;
+  };
+  std::stable_sort(records.begin(), records.end(), [](const SpringRecord &a, const SpringRecord &b) {
+    return is_before(a.memory, b.memory);
+  });
+  clear();
+  for (SpringRecord &record : records) {
+    const std::size_t lower = row_of(record.memory.lower);
+    const std::size_t higher = row_of(record.memory.higher);
+    if (lower == system.num_rows() || higher == system.num_rows() ||
+        (lower >= system.num_owned && higher >= system.num_owned)) {
+      continue;
+    }
+    record.spring.lower = static_cast<std::uint32_t>(lower);
+    record.spring.higher = static_cast<std::uint32_t>(higher);
+    springs_.push_back(record.spring);
+    memories_.push_back(record.memory);
+  }
+}
+
+} // namespace gcpdda::statics

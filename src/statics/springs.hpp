@@ -1,0 +1,106 @@
+#pragma once
+
+// The stiffness of contacts, as springs between blocks.
+//
+// A region of length l along t_r with the normal n = n_r carries a pressure k_n d over its length. Where its
+// blocks move by small u + H a (field.hpp), the pressure changes by k_n n.[...] along the region, [...] being
+// the difference of both motions, and its stick spring by k_t t.[...]. With x_m the middle of the region, a =
+// x_m - x_c the arms of the two blocks A and B, and s the place along t from x_m,
+//     e_n = n.(u_A + H_A a_A - u_B - H_B a_B),   e_r = n.(H_A - H_B) t,   e_t = t.(the same difference),
+//     int k_n (e_n + s e_r)^2 ds + k_t e_t^2 = k_n l e_n^2 + (k_n l^3/12) e_r^2 + k_t e_t^2:
+// three springs with one set of constants, 80 bytes for a region (`ContactSpring`). Two rigid blocks see
+// e_r = -(r_A - r_B) and the levers a x n and a x t. Left out is what the turning of n adds, of the order of
+// the force over the length, against k_n times the length: the share by which the joint is closed.
+//
+// K need not be the tangent of the force. It is the mass of a motion in pseudo-time (pseudo_time.hpp), which
+// is stable as long as the true stiffness is below four times K along each motion and quick where it is near
+// K. Three rules keep it so.
+// - A region whose shear is at its cap has no tangential stiffness. It keeps `slip_share` of k_t here: with
+//   none its blocks would run as far as their mass lets them.
+// - Where slip has turned from one cap to the other the region sticks on the way with all of k_t, ten times
+//   what the first rule gives it, and would swing between its caps for ever. It keeps all of k_t for the next
+//   `turn_memory` evaluations.
+// - A region that opens keeps its springs, weaker by `fade` at each evaluation, for `open_memory` of them: a
+//   block that has lost its contact is braked by them, and speeds up only as fast as they fade.
+// A kept spring also ends when its blocks are farther apart than `reach`, which both ranks of a border pair
+// know from exact copies.
+//
+// The list ascends by pair as Candidates::pairs do, so that a block adds its springs in the order of its
+// partners' ids and gets the same bits on any number of ranks.
+
+#include "base/ids.hpp"
+#include "contact/contact_forces.hpp"
+#include "statics/field.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gcpdda::statics {
+
+/// Springs of one region.
+struct ContactSpring {
+  std::uint32_t lower = 0; ///< rows
+  std::uint32_t higher = 0;
+  Vec2 normal;
+  Vec2 lower_arm; ///< of the middle of the region from the centroids
+  Vec2 higher_arm;
+  double normal_stiffness = 0.0; ///< k_n l, Pa
+  double bending = 0.0;          ///< k_n l^3/12, N
+  double tangential = 0.0;       ///< Pa
+};
+
+/// What is remembered of a region from one evaluation to the next.
+struct SpringMemory {
+  BlockId lower;
+  BlockId higher;
+  std::int8_t side = 0;      ///< sign of the shear when the region slipped last; 0: never
+  std::uint8_t turned = 0;   ///< evaluations for which it keeps all of k_t
+  std::uint8_t open_for = 0; ///< evaluations since it has opened; 0: it is closed
+};
+
+/// A spring that travels: its rows are found where it arrives.
+struct SpringRecord {
+  ContactSpring spring;
+  SpringMemory memory;
+};
+
+struct SpringRules {
+  double slip_share = 0.1;
+  std::uint8_t turn_memory = 20;
+  double fade = 0.8;
+  std::uint8_t open_memory = 40;
+  double reach = 0.0; ///< m
+};
+
+class ContactSprings {
+public:
+  /// Springs of all regions of the last evaluation and those that are kept. The arguments are those of the
+  /// evaluation, which has kept its details.
+  void update(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
+              const ContactForces &contacts, const SpringRules &rules);
+
+  [[nodiscard]] std::span<const ContactSpring> springs() const { return springs_; }
+  [[nodiscard]] std::span<const SpringMemory> memories() const { return memories_; }
+  [[nodiscard]] std::size_t num_closed() const { return num_closed_; }
+
+  /// y += K p. Rows of y that are not owned get sums that mean nothing.
+  void add_product(const BlockSystem &system, const Field &p, Field &y) const;
+
+  /// All springs, for a neighbourhood that is made anew.
+  [[nodiscard]] std::vector<SpringRecord> records() const;
+  /// Springs of these records between rows of the system; others are dropped, and doubles.
+  void take(const BlockSystem &system, std::vector<SpringRecord> records);
+  void clear();
+
+private:
+  void keep_open(const BlockSystem &system, std::size_t number, const SpringRules &rules);
+
+  std::vector<ContactSpring> springs_;
+  std::vector<SpringMemory> memories_;
+  std::vector<ContactSpring> next_springs_;
+  std::vector<SpringMemory> next_memories_;
+  std::size_t num_closed_ = 0;
+};
+
+} // namespace gcpdda::statics

@@ -1,0 +1,192 @@
+// Settle stages with the static solver, on scenes whose equilibrium is known.
+
+#include "dynamics/deformable.hpp"
+#include "simulation/energy_ledger.hpp"
+#include "support/contact_regions.hpp"
+#include "support/incline.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace gcpdda::testing::static_stage_test {
+namespace {
+
+const std::string settle = "[[stage]]\nkind = \"settle\"\nlimit = 40.0\nsolver = \"static\"\n";
+
+std::string head(const std::string &run_keys = "", double friction_deg = 30.0) {
+  return fmt::format("[run]\nfidelity = \"rigid\"\n{}[material.rock]\ndensity = 2600.0\n[joint.default]\n"
+                     "normal_stiffness = 1e9\nfriction_angle_deg = {}\n[output]\ninterval = 0.1\n",
+                     run_keys, friction_deg);
+}
+
+std::string stack(int height, const std::string &run_keys = "") {
+  std::string toml =
+      head(run_keys) + block_toml("floor", rectangle({-2.0, -1.0}, {3.0, 0.0}), "fixed = true");
+  for (int k = 0; k < height; ++k) {
+    toml += block_toml(fmt::format("s{}", k), rectangle({0.0, 1.0 * k}, {1.0, k + 1.0}));
+  }
+  return toml;
+}
+
+bool has_note(const Simulation &simulation, const std::string &part) {
+  const Diagnostics &notes = simulation.notes();
+  return std::any_of(notes.begin(), notes.end(), [&](const Diagnostic &note) {
+    return (note.what + note.why).find(part) != std::string::npos;
+  });
+}
+
+/// True where the dynamic solver has taken over.
+bool has_fallen_back(const Simulation &simulation) {
+  return has_note(simulation, "goes on with solver = \"dynamic\"");
+}
+
+// The weight above each joint: k_n d (1 - d) = w between equal faces, without 1/2 d on the wide floor.
+TEST(StaticStage, AStackSettlesAtItsOverlaps) {
+  Simulation simulation(Communicator::self(), scene_of(stack(4) + settle));
+  run_stages(simulation);
+  const StageResult result = simulation.stage_results().back();
+  EXPECT_EQ(result.verdict, Verdict::settled);
+  EXPECT_LT(result.steps, 150); // 50 of them let the load in; damped motion takes thousands
+  EXPECT_FALSE(has_fallen_back(simulation));
+  double down = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const double weight = (4 - k) * rock_density * earth_gravity / 1e9;
+    down += weight * (1.0 + (k == 0 ? 0.5 : 1.0) * weight);
+    // The tolerance lets 1e-5 of the weight be out of balance, on each of four joints.
+    EXPECT_NEAR(-displacement_of(simulation, k + 1).u.y, down, 1e-4 * down) << k;
+    EXPECT_EQ(velocity_of(simulation, k + 1), RigidDof{}) << "set to rest";
+  }
+}
+
+// A square on a slope of 30 degrees carries its weight by N = w cos a and F_t = w sin a, as long as friction
+// allows it; the nearest case misses the slope by 0.1 degrees.
+TEST(StaticStage, ASquareSticksOnASlopeWithKnownForces) {
+  for (const double friction_deg : {45.0, 35.0, 30.1}) {
+    const Incline incline{.slope_deg = 30.0, .friction_deg = friction_deg};
+    const std::string toml =
+        without_duration(incline.toml(incline.flat_square(0.0), {.run_keys = "", .interval = 0.5}));
+    Simulation simulation(Communicator::self(), scene_of(toml + settle));
+    run_stages(simulation);
+    const StageResult result = simulation.stage_results().back();
+    EXPECT_EQ(result.verdict, Verdict::settled)
+        << friction_deg << " after " << result.steps << " steps, r = " << result.unbalanced_ratio
+        << ", moved " << result.moved;
+    EXPECT_FALSE(has_fallen_back(simulation)) << friction_deg;
+    const auto regions = regions_of(simulation);
+    ASSERT_EQ(regions.size(), 1U);
+    const double normal = regions[0].normal_force;
+    const double shear = std::abs(regions[0].shear);
+    // Up to the tolerance, 1e-5 of the largest force; the block tilts by the moment of its friction alone.
+    EXPECT_NEAR(shear / normal, std::tan(std::numbers::pi / 6.0), 1e-4) << friction_deg;
+  }
+}
+
+// What slides is no equilibrium: the iteration hands over, and the dynamic solver says that it has failed.
+TEST(StaticStage, WhatSlidesIsLeftToTheDynamicSolver) {
+  const Incline incline{.slope_deg = 30.0, .friction_deg = 15.0};
+  const std::string toml =
+      without_duration(incline.toml(incline.flat_square(0.0), {.run_keys = "", .interval = 0.5}));
+  Simulation simulation(Communicator::self(), scene_of(toml + settle));
+  run_stages(simulation);
+  EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::failed);
+  EXPECT_TRUE(has_fallen_back(simulation));
+}
+
+// No joint slips on either way: the equilibrium is the only one.
+TEST(StaticStage, AWallSettlesWhereDampedMotionLeavesIt) {
+  const std::string wall =
+      head() + block_toml("floor", rectangle({-1.0, -1.0}, {9.0, 0.0}), "fixed = true") +
+      "[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 6\ncolumns = 8\n"
+      "block_size = [1.0, 0.5]\n[[stage]]\nkind = \"settle\"\nlimit = 40.0\ntolerance = 1e-7\n";
+  Simulation damped(Communicator::self(), scene_of(wall));
+  Simulation iterated(Communicator::self(), scene_of(wall + "solver = \"static\"\n"));
+  run_stages(damped);
+  run_stages(iterated);
+  EXPECT_EQ(iterated.stage_results().back().verdict, Verdict::settled);
+  EXPECT_LT(iterated.step_count(), damped.step_count() / 4);
+  double sag = 0.0;
+  double apart = 0.0;
+  for (std::size_t row = 0; row < damped.blocks().num_owned; ++row) {
+    sag = std::max(sag, norm(damped.blocks().displacement[row].u));
+    apart =
+        std::max(apart, norm(damped.blocks().displacement[row].u - iterated.blocks().displacement[row].u));
+  }
+  EXPECT_LT(apart, 0.04 * sag);
+}
+
+// A column of a deformable block on a rigid one: u = w/2 (1 - nu^2)/E of its own weight (plane strain, sides
+// free) and the joints. The block of constant strain feels half its weight.
+TEST(StaticStage, ADeformableBlockShortensUnderItsWeight) {
+  const double modulus = 1e8;
+  std::string toml = "[run]\nfidelity = \"deformable\"\n[material.rock]\ndensity = 2600.0\n"
+                     "youngs_modulus = 1e8\npoissons_ratio = 0.0\n[joint.default]\nnormal_stiffness = 1e9\n"
+                     "friction_angle_deg = 0.0\n[output]\ninterval = 0.1\n";
+  toml += block_toml("floor", rectangle({-2.0, -1.0}, {3.0, 0.0}), "fixed = true");
+  toml += block_toml("block", rectangle({0.0, 0.0}, {1.0, 1.0}));
+  Simulation simulation(Communicator::self(), scene_of(toml + settle));
+  run_stages(simulation);
+  EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled);
+  EXPECT_FALSE(has_fallen_back(simulation));
+  const Deformation &d = simulation.blocks().deformation_of(0);
+  const double weight = rock_density * earth_gravity;
+  EXPECT_NEAR(d.gradient.yy - 1.0, -0.5 * weight / modulus, 1e-3 * weight / modulus);
+}
+
+// Loads that take their time are complete when a static stage begins, and a later stage finds them so.
+TEST(StaticStage, BeginsWhenItsLoadsAreComplete) {
+  const std::string toml =
+      stack(3, "gravity_ramp = 2.0\n") + settle + "[[stage]]\nkind = \"run\"\nduration = 0.01\n";
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  run_stages(simulation);
+  EXPECT_GT(simulation.stage_results()[0].time, 2.0);
+  const double weight = 3.0 * rock_density * earth_gravity;
+  const auto regions = regions_of(simulation);
+  const double largest = std::max_element(regions.begin(), regions.end(), [](const auto &a, const auto &b) {
+                           return a.normal_force < b.normal_force;
+                         })->normal_force;
+  EXPECT_NEAR(largest, weight, 1e-4 * weight);
+}
+
+// What the energies of a stage come from: nothing moves at its end, and what the weight has done is stored,
+// lost in friction or taken by the iteration. Contact forces are curved over a step, so that the residual is
+// of the order of what one increment of the load stores.
+TEST(StaticStage, EnergiesAddUp) {
+  Simulation simulation(Communicator::self(), scene_of(stack(4) + settle));
+  const EnergyLedger ledger(simulation.state());
+  run_stages(simulation);
+  const EnergyRow row = ledger.row(simulation.state());
+  EXPECT_EQ(row.kinetic, 0.0);
+  EXPECT_LT(row.gravity, 0.0);
+  EXPECT_GT(row.contact_normal, 0.0);
+  EXPECT_GT(row.damping_loss, 0.0);
+  EXPECT_LT(std::abs(row.residual), 0.02 * -row.gravity);
+}
+
+// Each with the reason.
+TEST(StaticStage, SaysWhatItDoesNotServe) {
+  const std::string moved = stack(2) + "[[block]]\nname = \"ram\"\nmaterial = \"rock\"\n"
+                                       "vertices = [[5, 0], [6, 0], [6, 1], [5, 1]]\n"
+                                       "velocity_table = [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]\n";
+  const std::string bonded = [] {
+    std::string toml = stack(2);
+    const std::string key = "friction_angle_deg = 30\n";
+    toml.insert(toml.find(key) + key.size(), "cohesion = 1e6\ntension = 1e5\n");
+    return toml;
+  }();
+  for (const auto &[toml, reason] : {std::pair(moved, std::string("velocities that are given")),
+                                     std::pair(bonded, std::string("bonds"))}) {
+    Simulation simulation(Communicator::self(), scene_of(toml + settle));
+    run_stages(simulation);
+    EXPECT_TRUE(has_fallen_back(simulation)) << reason;
+    EXPECT_TRUE(has_note(simulation, reason)) << reason;
+    EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled) << reason;
+  }
+}
+
+} // namespace
+} // namespace gcpdda::testing::static_stage_test

@@ -1,0 +1,223 @@
+// Contact springs against the forces that they linearise.
+
+#include "statics/springs.hpp"
+#include "support/blocks.hpp"
+#include "support/touching_pairs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace gcpdda::testing::springs_test {
+namespace {
+
+constexpr double k_n = 1e9;
+
+/// Forces of the contacts on the freedoms of all rows (statics/field.hpp), the state of the bench moved by v.
+/// The memory of friction stays what it is.
+std::vector<double> forces_at(const ContactBench &base, ContactForces &forces, const statics::Field &v) {
+  BlockSystem system = base.system;
+  ContactHistory history = base.history;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    const double *const by = v.of(row);
+    TrialConfiguration trial{system.trial[row], {}};
+    trial.motion.u += Vec2{by[0], by[1]};
+    if (system.is_deformable(row)) {
+      const Mat2 &gradient = system.deformation_of(row).trial;
+      trial.gradient = gradient + Mat2{by[2], by[3], by[4], by[5]} * gradient;
+    } else {
+      trial.motion.r += by[2];
+    }
+    set_trial(system, row, trial);
+  }
+  pose(system, 0, system.num_rows());
+  forces.evaluate(system, base.candidates, history);
+  forces.finish_sums(system, base.candidates);
+  std::vector<double> sums;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    const RigidDof &force = system.contact[row].force;
+    sums.insert(sums.end(), {force.u.x, force.u.y});
+    if (system.is_deformable(row)) { // the sums of contacts are still int (x - x_c) df^T
+      const Mat2 dyad = transposed(system.deformation_of(row).contact.force);
+      sums.insert(sums.end(), {dyad.xx, dyad.xy, dyad.yx, dyad.yy});
+    } else {
+      sums.insert(sums.end(), {force.r, 0.0, 0.0, 0.0});
+    }
+  }
+  return sums;
+}
+
+// A flush joint: what K leaves out is of the order of the depth over the length, 1e-5, and differences of
+// forces leave as much.
+TEST(ContactSprings, OfAFlushJointAreTheDerivativeOfItsForces) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    std::mt19937 engine(seed);
+    const double depth = 1e-5;
+    const TouchingPair shapes = touching_pair(engine, Touch::face_on_face, depth, 0.3);
+    const bool lower_deforms = seed % 2 == 1;
+    const bool higher_deforms = seed % 3 == 1;
+    ContactBench bench(
+        strained_blocks(engine, {shapes.lower, shapes.higher}, {lower_deforms, higher_deforms}, 1e10, 1e-4),
+        one_law(k_n, 1.0));
+    bench.forces.keep_details(true);
+    bench.evaluate();
+    bench.evaluate(); // the spring is there now
+    statics::ContactSprings springs;
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+    ASSERT_EQ(springs.springs().size(), 1U);
+
+    ContactForces forces({one_law(k_n, 1.0), 0.0, PotentialKind::exact});
+    const double step = 1e-2 * depth;
+    double largest = 0.0;
+    double error = 0.0;
+    for (std::size_t row = 0; row < 2; ++row) {
+      for (std::size_t i = 0; i < statics::num_freedoms(bench.system, row); ++i) {
+        statics::Field motion(2, 6);
+        motion.of(row)[i] = step;
+        const std::vector<double> ahead = forces_at(bench, forces, motion);
+        motion.of(row)[i] = -step;
+        const std::vector<double> behind = forces_at(bench, forces, motion);
+        motion.of(row)[i] = 1.0;
+        statics::Field product(2, 6);
+        springs.add_product(bench.system, motion, product);
+        for (std::size_t k = 0; k < ahead.size(); ++k) {
+          const double stiffness = -(ahead[k] - behind[k]) / (2.0 * step);
+          largest = std::max(largest, std::abs(stiffness));
+          error = std::max(error, std::abs(stiffness - product.values()[k]));
+        }
+      }
+    }
+    EXPECT_LT(error, 1e-3 * largest) << "seed " << seed;
+  }
+}
+
+// Rigid motions stretch no spring, and both forms of the product agree.
+TEST(ContactSprings, LeaveRigidMotionsAlone) {
+  std::mt19937 engine(7);
+  const TouchingPair shapes = touching_pair(engine, Touch::face_on_face, 1e-3);
+  ContactBench bench(strained_blocks(engine, {shapes.lower, shapes.higher}, {false, false}, 1e10),
+                     one_law(k_n, 1.0));
+  bench.forces.keep_details(true);
+  bench.evaluate();
+  statics::ContactSprings springs;
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+  statics::Field three(2, 3);
+  statics::Field six(2, 6);
+  const Vec2 shift{0.3, -0.7};
+  const double turn = 0.4;
+  for (std::size_t row = 0; row < 2; ++row) {
+    const Vec2 u = shift + turn * perp(bench.system.motion[row].centroid);
+    for (double *to : {three.of(row), six.of(row)}) {
+      to[0] = u.x, to[1] = u.y, to[2] = turn;
+    }
+  }
+  statics::Field product(2, 3);
+  springs.add_product(bench.system, three, product);
+  for (const double force : product.values()) {
+    EXPECT_NEAR(force, 0.0, 1e-12 * k_n);
+  }
+  three.of(0)[0] = six.of(0)[0] = 0.9;
+  three.of(1)[2] = six.of(1)[2] = -0.2;
+  statics::Field narrow(2, 3);
+  statics::Field wide(2, 6);
+  springs.add_product(bench.system, three, narrow);
+  springs.add_product(bench.system, six, wide);
+  for (std::size_t row = 0; row < 2; ++row) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(narrow.of(row)[i], wide.of(row)[i], 1e-12 * k_n);
+    }
+  }
+}
+
+/// Two unit squares, the higher one sunk into the lower one, which is fixed.
+ContactBench stacked_squares(double tan_friction) {
+  ContactBench bench(system_of({{{0.0, 0.999}, {1.0, 0.999}, {1.0, 1.999}, {0.0, 1.999}}},
+                               {{{-1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {-1.0, 1.0}}}),
+                     one_law(k_n, tan_friction));
+  bench.forces.keep_details(true);
+  return bench;
+}
+
+TEST(ContactSprings, SlipTakesMostOfTheTangentialStiffness) {
+  ContactBench bench = stacked_squares(0.1);
+  statics::ContactSprings springs;
+  const statics::SpringRules rules;
+  bench.evaluate();
+  bench.evaluate();
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  const double whole = springs.springs()[0].tangential;
+  EXPECT_NEAR(whole, 0.5 * k_n, 1e-9 * k_n); // ratio k_n l
+  bench.move(0, {{1e-3, 0.0}, 0.0});
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  EXPECT_NEAR(springs.springs()[0].tangential, 0.1 * whole, 1e-9 * whole);
+  bench.move(0, {{-3e-3, 0.0}, 0.0}); // the other way: slip has turned
+  for (int k = 0; k < 20; ++k) {
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+    EXPECT_NEAR(springs.springs()[0].tangential, whole, 1e-9 * whole) << k;
+    bench.move(0, {{-1e-3, 0.0}, 0.0});
+  }
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  EXPECT_NEAR(springs.springs()[0].tangential, 0.1 * whole, 1e-9 * whole);
+}
+
+TEST(ContactSprings, OfAnOpenContactFadeAndEnd) {
+  ContactBench bench = stacked_squares(0.1);
+  statics::ContactSprings springs;
+  statics::SpringRules rules;
+  rules.reach = 0.1;
+  bench.evaluate();
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  const double whole = springs.springs()[0].normal_stiffness;
+  bench.move(0, {{0.0, 0.01}, 0.0});
+  for (int k = 1; k <= 40; ++k) {
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+    ASSERT_EQ(springs.springs().size(), 1U) << k;
+    EXPECT_EQ(springs.num_closed(), 0U);
+    EXPECT_NEAR(springs.springs()[0].normal_stiffness, std::pow(0.8, k) * whole, 1e-9 * whole);
+  }
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  EXPECT_TRUE(springs.springs().empty());
+}
+
+TEST(ContactSprings, OfBlocksThatAreFarApartEndAtOnce) {
+  ContactBench bench = stacked_squares(0.1);
+  statics::ContactSprings springs;
+  statics::SpringRules rules;
+  rules.reach = 0.1;
+  bench.evaluate();
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  bench.move(0, {{0.0, 0.2}, 0.0});
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  EXPECT_TRUE(springs.springs().empty());
+}
+
+// Travelling records find their rows again, in order, whatever the order in which they arrive.
+TEST(ContactSprings, AreTakenFromRecordsInAnyOrder) {
+  std::vector<std::vector<Vec2>> squares;
+  for (int k = 0; k < 4; ++k) {
+    const double low = 0.999 * k;
+    squares.push_back({{0.0, low}, {1.0, low}, {1.0, low + 1.0}, {0.0, low + 1.0}});
+  }
+  ContactBench bench(system_of(squares, {{{-1.0, -1.0}, {2.0, -1.0}, {2.0, 0.001}, {-1.0, 0.001}}}),
+                     one_law(k_n, 0.5));
+  bench.forces.keep_details(true);
+  bench.evaluate();
+  statics::ContactSprings springs;
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+  ASSERT_EQ(springs.springs().size(), 4U);
+  std::vector<statics::SpringRecord> records = springs.records();
+  std::reverse(records.begin(), records.end());
+  statics::ContactSprings again;
+  again.take(bench.system, records);
+  ASSERT_EQ(again.springs().size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(again.springs()[k].lower, springs.springs()[k].lower);
+    EXPECT_EQ(again.springs()[k].higher, springs.springs()[k].higher);
+    EXPECT_EQ(again.springs()[k].normal_stiffness, springs.springs()[k].normal_stiffness);
+  }
+}
+
+} // namespace
+} // namespace gcpdda::testing::springs_test

@@ -1,0 +1,123 @@
+// The preconditioned solver against a dense factorisation of the same matrix.
+
+#include "statics/stiffness_solver.hpp"
+#include "support/blocks.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace gcpdda::testing::stiffness_solver_test {
+namespace {
+
+constexpr double k_n = 1e9;
+
+/// A wall in running bond on a fixed floor, its joints closed by 1e-4 m.
+BlockSystem wall(int rows, int columns, bool (*deforms)(std::size_t)) {
+  constexpr double closed = 1e-4;
+  std::vector<std::vector<Vec2>> bricks;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const Vec2 low{column + 0.5 * (row % 2), 0.5 * row};
+      const Vec2 high{low.x + 1.0 + closed, low.y + 0.5 + closed};
+      bricks.push_back({low, {high.x, low.y}, high, {low.x, high.y}});
+    }
+  }
+  return system_of(bricks, {{{-2.0, -1.0}, {columns + 3.0, -1.0}, {columns + 3.0, closed}, {-2.0, closed}}},
+                   2600.0, deforms);
+}
+
+struct Problem {
+  ContactBench bench;
+  statics::ContactSprings springs;
+  statics::StiffnessSolver solver{Communicator::self()};
+  std::size_t width;
+
+  Problem(BlockSystem system, double rho)
+      : bench(std::move(system), one_law(k_n, 0.6)), width(bench.system.deformation.empty() ? 3 : 6) {
+    bench.forces.keep_details(true);
+    bench.evaluate();
+    bench.evaluate();
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+    statics::BlockMatrices mass(bench.system.num_owned, width);
+    for (std::size_t row = 0; row < bench.system.num_owned; ++row) {
+      statics::add_boundary(bench.system, row, {k_n, 0.5 * k_n, {}}, mass.of(row), width);
+    }
+    solver.lay(bench.system, std::move(mass), statics::BlockMatrices(bench.system.num_owned, width), {});
+    solver.set(bench.system, springs, rho, true);
+  }
+
+  /// K + rho D, freedom by freedom of the field: places that a rigid row leaves out get a one.
+  Eigen::MatrixXd dense() {
+    const std::size_t size = bench.system.num_owned * width;
+    Eigen::MatrixXd matrix(size, size);
+    for (std::size_t j = 0; j < size; ++j) {
+      statics::Field p(bench.system.num_rows(), width);
+      statics::Field y(bench.system.num_rows(), width);
+      p.values()[j] = 1.0;
+      solver.multiply(bench.system, springs, p, y);
+      const bool is_place = j % width < statics::num_freedoms(bench.system, j / width);
+      for (std::size_t i = 0; i < size; ++i) {
+        matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = is_place ? y.values()[i] : 0.0;
+      }
+      if (!is_place) {
+        matrix(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(j)) = 1.0;
+      }
+    }
+    return matrix;
+  }
+};
+
+void expect_solution_of_dense(Problem &problem) {
+  const BlockSystem &system = problem.bench.system;
+  const Eigen::MatrixXd matrix = problem.dense();
+  EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
+  EXPECT_EQ(matrix.llt().info(), Eigen::Success);
+  std::mt19937 engine(3);
+  statics::Field force(system.num_rows(), problem.width);
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    for (std::size_t i = 0; i < statics::num_freedoms(system, row); ++i) {
+      force.of(row)[i] = uniform(engine, -1.0, 1.0);
+    }
+  }
+  const Eigen::Map<const Eigen::VectorXd> right(force.values().data(), matrix.rows());
+  const Eigen::VectorXd exact = matrix.ldlt().solve(right);
+  problem.solver.accuracy = 1e-10;
+  statics::Field found(system.num_rows(), problem.width);
+  const std::int64_t products = problem.solver.solve(system, problem.springs, force, found);
+  EXPECT_LT(products, 120);
+  const Eigen::Map<const Eigen::VectorXd> solution(found.values().data(), matrix.rows());
+  EXPECT_LT((solution - exact).norm(), 1e-7 * exact.norm()); // the condition is about 1e4
+}
+
+TEST(StiffnessSolver, AgreesWithADenseFactorisation) {
+  Problem problem(wall(6, 8, [](std::size_t) { return false; }), 1e-3);
+  expect_solution_of_dense(problem);
+}
+
+TEST(StiffnessSolver, AgreesWithADenseFactorisationOfDeformableBlocks) {
+  Problem problem(wall(4, 5, [](std::size_t row) { return row % 3 != 0; }), 1e-3);
+  expect_solution_of_dense(problem);
+}
+
+// The coarse level carries what spans the pile: without its cells the number of products grows with the
+// height of a column, and with them hardly.
+TEST(StiffnessSolver, ProductsHardlyGrowWithTheHeight) {
+  const auto products_of = [](int height) {
+    Problem problem(wall(height, 4, [](std::size_t) { return false; }), 1e-3);
+    const BlockSystem &system = problem.bench.system;
+    statics::Field force(system.num_rows(), 3);
+    for (std::size_t row = 0; row < system.num_owned; ++row) {
+      force.of(row)[1] = -1.0;
+    }
+    statics::Field found(system.num_rows(), 3);
+    return problem.solver.solve(system, problem.springs, force, found);
+  };
+  EXPECT_LE(products_of(80), 3 * products_of(10));
+}
+
+} // namespace
+} // namespace gcpdda::testing::stiffness_solver_test
