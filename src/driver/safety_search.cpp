@@ -210,6 +210,7 @@ Scene weakened_scene(const Scene &scene, double factor) {
   trial.until_verdict = true;
   trial.failure_motion = scene.reduction.failure_motion;
   trial.local_damping = scene.reduction.local_damping;
+  trial.solver = std::prev(last_settle)->solver;
   trial.where = std::prev(last_settle)->where;
   trial.after = std::move(after);
   weakened.output = {trial.duration, trial.duration, 0.0, scene.output.contacts};

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <map>
 
@@ -143,6 +145,15 @@ TEST(WeakenedScene, DividesTheStrengthThatIsInForce) {
   for (const double stress : {1e4, 5e5, 1e7, 1e8}) {
     EXPECT_DOUBLE_EQ(laws[2].tan_friction_at(stress), 0.5 * whole.tan_friction_at(stress));
   }
+}
+
+TEST(WeakenedScene, IsSolvedAsTheLastSettleStageIs) {
+  Scene scene = staged_scene();
+  EXPECT_EQ(weakened_scene(scene, 2.0).stages.back().solver, Solver::dynamic);
+  const auto last_settle = std::find_if(scene.stages.rbegin(), scene.stages.rend(),
+                                        [](const Stage &stage) { return stage.kind == StageKind::settle; });
+  last_settle->solver = Solver::statics;
+  EXPECT_EQ(weakened_scene(scene, 2.0).stages.back().solver, Solver::statics);
 }
 
 TEST(WeakenedScene, DilatesNoMoreThanItsFrictionAllows) {
