@@ -58,13 +58,19 @@ class Runner:
     def __init__(self, build, folder):
         self.program = build / "gcpdda"
         self.folder = folder
+        self.num_started = 0
 
     def start(self, problem, steps, ranks, name="run"):
         out = self.folder / name
         shutil.rmtree(out, ignore_errors=True)
         command = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", self.program, "run",
                    problem.scene(steps), "--out", out]
-        return out, subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        # Starts of Open MPI that share a scratch folder, at once or one behind the other, disturb each other.
+        self.num_started += 1
+        scratch = self.folder / f"mpi_{self.num_started}"
+        scratch.mkdir(exist_ok=True)
+        environment = os.environ | {"OMPI_MCA_orte_tmpdir_base": str(scratch)}
+        return out, subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
     def finish(self, started):
         out, process = started

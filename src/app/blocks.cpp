@@ -289,7 +289,7 @@ void prepare_region(const Communicator &world, Scene &scene) {
   cut_region(scene);
 }
 
-int cut_blocks(const Communicator &world, const Scene &scene, const BlocksOptions &options) {
+void cut_blocks(const Communicator &world, const Scene &scene, const BlocksOptions &options) {
   if (!scene.region.present()) {
     throw SceneError({{Severity::error,
                        {},
@@ -323,7 +323,6 @@ int cut_blocks(const Communicator &world, const Scene &scene, const BlocksOption
     throw InternalError(
         fmt::format("the blocks have {:.3g} of the region's area too much", report.difference()));
   }
-  return 0;
 }
 
 } // namespace gcpdda

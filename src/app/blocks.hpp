@@ -23,8 +23,8 @@ void prepare_region(const Communicator &world, Scene &scene);
 
 /// Cuts the region of a prepared scene, checks and draws its blocks and prints a report on the root.
 /// Collective.
-/// @return exit code: 0, or 1 where the areas of the blocks do not add up to that of the region
-/// @throws SceneError, FileError
-int cut_blocks(const Communicator &world, const Scene &scene, const BlocksOptions &options);
+/// @throws SceneError, FileError, InternalError where the areas of the blocks do not add up to that of the
+/// region
+void cut_blocks(const Communicator &world, const Scene &scene, const BlocksOptions &options);
 
 } // namespace gcpdda

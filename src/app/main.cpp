@@ -9,6 +9,7 @@
 #include "driver/restart.hpp"
 #include "driver/safety_factor.hpp"
 #include "driver/stop_signal.hpp"
+#include "gcpdda/base/exit_code.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "gcpdda/io/scene_reader.hpp"
 #include "gcpdda/parallel/communicator.hpp"
@@ -28,8 +29,6 @@
 namespace {
 
 using namespace gcpdda;
-
-enum ExitCode { done = 0, internal = 1, usage = 2, bad_scene = 3, file_trouble = 4 };
 
 struct Arguments {
   std::string scene;
@@ -76,13 +75,15 @@ int announced_ranks() {
   return 1;
 }
 
-/// The scene of a text and the arguments goes to `work`; every fault of it becomes text and exit code 3.
+/// The scene of a text and the arguments goes to `work`; every fault of it becomes text and
+/// exit_code::bad_scene.
 template <class Work>
-int with_scene(const Communicator &world, const Arguments &arguments, const std::string &text, Work &&work) {
+ExitCode with_scene(const Communicator &world, const Arguments &arguments, const std::string &text,
+                    Work &&work) {
   SceneReading reading = read_scene(text, arguments.scene, arguments.sets);
   print(world, reading.diagnostics);
   if (has_errors(reading.diagnostics)) {
-    return bad_scene;
+    return exit_code::bad_scene;
   }
   try {
     prepare_region(world, reading.scene);
@@ -93,7 +94,7 @@ int with_scene(const Communicator &world, const Arguments &arguments, const std:
       d.where.file = d.where.file.empty() ? arguments.scene : d.where.file;
     }
     print(world, diagnostics);
-    return bad_scene;
+    return exit_code::bad_scene;
   }
 }
 
@@ -111,7 +112,8 @@ void judge_before_work(const Communicator &world, const Arguments &arguments, co
   print(world, found);
 }
 
-template <class Work> int with_scene(const Communicator &world, const Arguments &arguments, Work &&work) {
+template <class Work>
+ExitCode with_scene(const Communicator &world, const Arguments &arguments, Work &&work) {
   return with_scene(world, arguments, read_scene_on_root(world, arguments.scene), work);
 }
 
@@ -120,7 +122,7 @@ std::filesystem::path result_folder(const Arguments &arguments, const std::strin
                                      : std::filesystem::path(arguments.directory);
 }
 
-int run(const Communicator &world, const Arguments &arguments) {
+ExitCode run(const Communicator &world, const Arguments &arguments) {
   catch_stop_signal();
   return with_scene(world, arguments, [&](const Scene &scene) {
     judge_before_work(world, arguments, scene);
@@ -131,7 +133,7 @@ int run(const Communicator &world, const Arguments &arguments) {
   });
 }
 
-int restart(const Communicator &world, Arguments arguments) {
+ExitCode restart(const Communicator &world, Arguments arguments) {
   catch_stop_signal();
   const std::filesystem::path scene = std::filesystem::path(arguments.directory) / "scene.toml";
   arguments.scene = scene.string();
@@ -169,7 +171,7 @@ double factor_of_settled(const Communicator &world, const std::string &folder, c
 }
 
 /// What the command line says of the search goes the way of --set.
-int fos(const Communicator &world, Arguments arguments) {
+ExitCode fos(const Communicator &world, Arguments arguments) {
   catch_stop_signal();
   std::string families;
   for (const std::string &name : arguments.families) {
@@ -211,7 +213,7 @@ double copies_in(const Ensemble &ensemble, int ranks) {
   return static_cast<double>(std::max<std::int64_t>(1, groups));
 }
 
-int ensemble(const Communicator &world, Arguments arguments) {
+ExitCode ensemble(const Communicator &world, Arguments arguments) {
   catch_stop_signal();
   if (!arguments.count.empty()) {
     arguments.sets.push_back("ensemble.count=" + arguments.count);
@@ -238,24 +240,25 @@ int ensemble(const Communicator &world, Arguments arguments) {
   });
 }
 
-int inspect(const Communicator &world, const Arguments &arguments) {
+ExitCode inspect(const Communicator &world, const Arguments &arguments) {
   return with_scene(world, arguments, [&](const Scene &scene) {
     judge_before_work(world, arguments, scene);
     const std::string report = inspect_scene(world, scene, {arguments.ranks, arguments.svg});
     if (world.is_root()) {
       std::cout << report << std::flush;
     }
-    return static_cast<int>(done);
+    return exit_code::done;
   });
 }
 
-int blocks(const Communicator &world, const Arguments &arguments) {
+ExitCode blocks(const Communicator &world, const Arguments &arguments) {
   return with_scene(world, arguments, [&](const Scene &scene) {
     Scene region = scene; // nothing else is made
     region.blocks.clear();
     region.generators.clear();
     judge_before_work(world, arguments, region);
-    return cut_blocks(world, scene, {arguments.svg, arguments.json, arguments.directory});
+    cut_blocks(world, scene, {arguments.svg, arguments.json, arguments.directory});
+    return exit_code::done;
   });
 }
 
@@ -299,9 +302,18 @@ const CLI::App *add_ensemble(CLI::App &app, Arguments &arguments) {
   return command;
 }
 
-int dispatch(const Communicator &world, int argc, char **argv) {
+std::string list_of_exit_codes() {
+  std::string text = "Exit codes:";
+  for (const auto &[code, meaning] : exit_codes) {
+    text += "\n  " + std::to_string(code) + "  " + meaning;
+  }
+  return text;
+}
+
+ExitCode dispatch(const Communicator &world, int argc, char **argv) {
   CLI::App app("gcpdda: block-by-block simulation of jointed rock slopes and tunnels");
   app.require_subcommand(1);
+  app.footer(list_of_exit_codes());
   Arguments arguments;
   CLI::App *run_command = app.add_subcommand("run", "run a scene");
   take_scene(run_command, arguments);
@@ -336,13 +348,13 @@ int dispatch(const Communicator &world, int argc, char **argv) {
   } catch (const CLI::ParseError &error) {
     // One voice; --help is no fault.
     const int code = world.is_root() ? app.exit(error) : error.get_exit_code();
-    return code == 0 ? done : usage;
+    return code == 0 ? exit_code::done : exit_code::wrong_usage;
   }
   if (reference_command->parsed()) {
     if (world.is_root()) {
       std::cout << (values ? plausible_values_page() : scene_reference()) << std::flush;
     }
-    return done;
+    return exit_code::done;
   }
   if (restart_command->parsed()) {
     return restart(world, arguments);
@@ -369,7 +381,7 @@ int main(int argc, char **argv) {
               << " processes but MPI connects only one, they would run as separate copies of the same scene, "
                  "start gcpdda "
                  "with the mpirun of the Open MPI it was built with\n";
-    return usage;
+    return exit_code::wrong_usage;
   }
   try {
     return dispatch(world, argc, argv);
@@ -380,22 +392,22 @@ int main(int argc, char **argv) {
     std::int64_t unclosed = has_unclosed_files() ? 1 : 0;
     world.max(std::span(&unclosed, 1));
     if (unclosed > 0) {
-      MpiScope::abort(file_trouble);
+      MpiScope::abort(exit_code::file_trouble);
     }
-    return file_trouble;
+    return exit_code::file_trouble;
   } catch (const std::bad_alloc &) {
     std::cerr << "error: rank " << world.rank()
               << " has run out of memory, see 'memory' of gcpdda inspect, use more machines, fewer ranks on "
                  "each or fewer blocks\n";
     if (world.size() > 1) {
-      MpiScope::abort(internal);
+      MpiScope::abort(exit_code::internal_error);
     }
-    return internal;
+    return exit_code::internal_error;
   } catch (const std::exception &error) { // seen by this rank alone, perhaps: take the others along
     std::cerr << "internal error on rank " << world.rank() << ": " << error.what() << '\n';
     if (world.size() > 1) {
-      MpiScope::abort(internal);
+      MpiScope::abort(exit_code::internal_error);
     }
-    return internal;
+    return exit_code::internal_error;
   }
 }

@@ -6,13 +6,13 @@
 
 namespace gcpdda {
 
-/// A broken promise inside the program (exit code 1): never thrown for people's input.
+/// A broken promise inside the program (exit_code::internal_error): never thrown for people's input.
 class InternalError : public std::logic_error {
 public:
   using std::logic_error::logic_error;
 };
 
-/// Trouble with a file or folder (exit code 4).
+/// Trouble with a file or folder (exit_code::file_trouble).
 class FileError : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;

@@ -30,15 +30,15 @@ struct MemberFacts {
 
 MemberFacts facts_of(const SafetyOutcome &outcome) {
   MemberFacts facts;
-  facts.stopped = outcome.exit_code == 6;
+  facts.stopped = outcome.exit_code == exit_code::stopped;
   const SafetyReport &report = outcome.report;
   facts.member.holds = report.holds;
   facts.member.fails = report.fails;
   facts.member.message = outcome.message;
-  facts.member.outcome = outcome.exit_code == 5                 ? MemberOutcome::cannot_run
-                         : report.fails && *report.fails <= 1.0 ? MemberOutcome::fails
-                         : report.holds && *report.holds >= 1.0 ? MemberOutcome::holds
-                                                                : MemberOutcome::undecided;
+  facts.member.outcome = outcome.exit_code == exit_code::numerical_failure ? MemberOutcome::cannot_run
+                         : report.fails && *report.fails <= 1.0            ? MemberOutcome::fails
+                         : report.holds && *report.holds >= 1.0            ? MemberOutcome::holds
+                                                                           : MemberOutcome::undecided;
   facts.member.steps = report.settled.steps;
   facts.member.cpu_s = report.settled.cpu_s;
   for (const StrengthTrial &trial : report.trials) {
@@ -50,13 +50,13 @@ MemberFacts facts_of(const SafetyOutcome &outcome) {
 
 MemberFacts facts_of(const RunOutcome &outcome) {
   MemberFacts facts;
-  facts.stopped = outcome.exit_code == 6;
+  facts.stopped = outcome.exit_code == exit_code::stopped;
   const Verdict verdict =
       outcome.summary.stages.empty() ? Verdict::undecided : outcome.summary.stages.back().result.verdict;
-  facts.member.outcome = outcome.exit_code == 5        ? MemberOutcome::cannot_run
-                         : verdict == Verdict::failed  ? MemberOutcome::fails
-                         : verdict == Verdict::settled ? MemberOutcome::holds
-                                                       : MemberOutcome::undecided;
+  facts.member.outcome = outcome.exit_code == exit_code::numerical_failure ? MemberOutcome::cannot_run
+                         : verdict == Verdict::failed                      ? MemberOutcome::fails
+                         : verdict == Verdict::settled                     ? MemberOutcome::holds
+                                                                           : MemberOutcome::undecided;
   const bool is_plain =
       facts.member.outcome == MemberOutcome::holds || facts.member.outcome == MemberOutcome::fails;
   facts.member.message = is_plain ? std::string() : outcome.summary.message;
@@ -97,7 +97,7 @@ public:
     }
   }
 
-  int run() {
+  ExitCode run() {
     take_what_is_there();
     const std::vector<std::int64_t> missing = missing_members();
     const std::int64_t groups = split(static_cast<std::int64_t>(missing.size()));
@@ -234,7 +234,7 @@ private:
     stopped_ = stopped > 0;
   }
 
-  int tell() {
+  ExitCode tell() {
     const bool is_whole = static_cast<std::int64_t>(report_.members.size()) == ensemble_.count;
     const EnsembleStatistics found = statistics_of(report_);
     on_root(world_, [&] {
@@ -246,7 +246,9 @@ private:
       }
     });
     forget_stop_signal();
-    return !is_whole ? 6 : found.holds + found.fails == 0 ? 7 : 0;
+    return !is_whole                        ? exit_code::stopped
+           : found.holds + found.fails == 0 ? exit_code::undecided
+                                            : exit_code::done;
   }
 
   Communicator world_;
@@ -262,8 +264,8 @@ private:
 
 } // namespace
 
-int run_ensemble(const Communicator &communicator, const Scene &scene, const MemberScene &member_scene,
-                 const EnsembleOptions &options) {
+ExitCode run_ensemble(const Communicator &communicator, const Scene &scene, const MemberScene &member_scene,
+                      const EnsembleOptions &options) {
   if (scene.ensemble.count == 0) {
     throw SceneError({{Severity::error,
                        {},

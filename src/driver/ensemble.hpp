@@ -5,6 +5,7 @@
 // same bits whatever group takes it; its row is on the disk as soon as it is done, so that a call that was
 // stopped or killed is gone on with by the same call.
 
+#include "gcpdda/base/exit_code.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
@@ -26,10 +27,10 @@ struct EnsembleOptions {
 };
 
 /// Run what is missing of an ensemble and write `members` and the report. Collective.
-/// @return exit code: 0 all members are done; 6 stopped by the signal; 7 done, and none has an outcome
+/// @return done, stopped (by the signal), or undecided where all members are done and none has an outcome
 /// @throws SceneError where the scene says nothing of members, or has no state of rest to search from;
 /// FileError
-int run_ensemble(const Communicator &communicator, const Scene &scene, const MemberScene &member_scene,
-                 const EnsembleOptions &options);
+ExitCode run_ensemble(const Communicator &communicator, const Scene &scene, const MemberScene &member_scene,
+                      const EnsembleOptions &options);
 
 } // namespace gcpdda

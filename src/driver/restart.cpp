@@ -165,8 +165,8 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
   return faults;
 }
 
-int restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
-                  const std::filesystem::path &directory, EarlierResults earlier) {
+ExitCode restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
+                       const std::filesystem::path &directory, EarlierResults earlier) {
   if (const Diagnostics faults = unfit_changes(before, after); !faults.empty()) {
     throw SceneError(faults);
   }
@@ -174,7 +174,7 @@ int restart_scene(const Communicator &communicator, const Scene &before, const S
     if (communicator.is_root()) {
       std::cerr << "the run in " << directory.string() << " is finished, there is nothing to do\n";
     }
-    return 0;
+    return exit_code::done;
   }
   RunOptions run;
   run.directory = directory;

@@ -2,6 +2,7 @@
 
 // The program `gcpdda restart`: a run goes on from its newest checkpoint.
 
+#include "gcpdda/base/exit_code.hpp"
 #include "gcpdda/io/result_manifest.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
@@ -19,10 +20,10 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after);
 /// @param before  the scene of the folder
 /// @param after   the scene to go on with
 /// @param earlier  what holds for histories and frames from before the checkpoint
-/// @return exit code: 0 done, now or before; 5 numerical failure; 6 stopped by a signal
+/// @return done (by this call or before), numerical_failure, or stopped (by the signal)
 /// @throws SceneError, FileError
-int restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
-                  const std::filesystem::path &directory,
-                  EarlierResults earlier = EarlierResults::must_be_whole);
+ExitCode restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
+                       const std::filesystem::path &directory,
+                       EarlierResults earlier = EarlierResults::must_be_whole);
 
 } // namespace gcpdda

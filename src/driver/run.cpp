@@ -134,11 +134,11 @@ private:
                               result));
   }
 
-  /// 7 where a limit was reached without a verdict.
-  [[nodiscard]] int exit_code_of_stages() const {
+  /// undecided where a limit was reached without a verdict.
+  [[nodiscard]] ExitCode exit_code_of_stages() const {
     const StageState &stage = simulation_.stage();
     const bool waited = simulation_.stages()[static_cast<std::size_t>(stage.index)].until_verdict;
-    return waited && stage.verdict == Verdict::undecided ? 7 : 0;
+    return waited && stage.verdict == Verdict::undecided ? exit_code::undecided : exit_code::done;
   }
 
   void begin_results(const Scene &scene, const RunOptions &options) {
@@ -402,7 +402,10 @@ private:
     if (stopped) {
       forget_stop_signal(); // one that came too late is for what follows
     }
-    return {failed ? 5 : stopped ? 6 : exit_code_of_stages(), summary};
+    return {failed    ? exit_code::numerical_failure
+            : stopped ? exit_code::stopped
+                      : exit_code_of_stages(),
+            summary};
   }
 
   void fill(RunSummary &summary) {
@@ -498,7 +501,7 @@ RunOutcome run_and_tell(const Communicator &communicator, const Scene &scene, co
   return SceneRun(communicator, scene, options, lock).run();
 }
 
-int run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
+ExitCode run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options) {
   return run_and_tell(communicator, scene, options).exit_code;
 }
 

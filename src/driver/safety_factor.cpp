@@ -37,7 +37,7 @@ struct TrialFacts {
   std::int64_t evaluations = 0;
   double cpu_s = 0.0;
   std::int64_t ranks = 0;
-  std::int64_t exit_code = 0;
+  std::int64_t exit_code = exit_code::done;
 };
 
 std::int64_t sum_of(const std::vector<std::int64_t> &counts) {
@@ -54,7 +54,8 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time)
   facts.time = outcome.summary.time - start_time;
   if (!outcome.summary.stages.empty()) {
     const StageResult &stage = outcome.summary.stages.back().result;
-    facts.verdict = static_cast<std::int64_t>(outcome.exit_code == 0 ? stage.verdict : Verdict::undecided);
+    facts.verdict =
+        static_cast<std::int64_t>(outcome.exit_code == exit_code::done ? stage.verdict : Verdict::undecided);
     facts.moved = stage.moved;
     facts.unbalanced_ratio = stage.unbalanced_ratio;
     facts.steps = stage.steps;
@@ -80,18 +81,18 @@ public:
       : world_(world), scene_(scene), options_(options) {}
 
   SafetyOutcome find() {
-    const int code = begin();
-    return {code == 0 ? search() : code, std::move(report_), std::move(message_)};
+    const ExitCode code = begin();
+    return {code == exit_code::done ? search() : code, std::move(report_), std::move(message_)};
   }
 
 private:
   // A scene that is refused, or a state that cannot be taken, leaves no folder behind and removes nothing.
-  int begin() {
+  ExitCode begin() {
     if (options_.settled.empty()) {
       return settle_as_it_can();
     }
-    const int code = take_settled();
-    if (code == 0) {
+    const ExitCode code = take_settled();
+    if (code == exit_code::done) {
       on_root(world_, [&] { prepare_directory(); });
     }
     return code;
@@ -99,7 +100,7 @@ private:
 
   void prepare_directory() const { prepare_safety_directory(options_.directory, options_.overwrite); }
 
-  int search() {
+  ExitCode search() {
     const std::size_t at_once = choose_groups();
     while (true) {
       const std::vector<double> factors = next_factors(
@@ -111,11 +112,11 @@ private:
         say(fmt::format("stopped by a signal in trial {}; a search does not go on from there\n",
                         trials_.size()));
         conclude(); // with what is known so far
-        return 6;
+        return exit_code::stopped;
       }
     }
     conclude();
-    return report_.is_found() ? 0 : 7;
+    return report_.is_found() ? exit_code::done : exit_code::undecided;
   }
 
   void say(const std::string &text) const {
@@ -125,19 +126,19 @@ private:
   }
 
   /// With full strength, or where the blocks do not come to rest so, with the most that is tried.
-  int settle_as_it_can() {
-    int code = settle(1.0, options_.overwrite, [this] { prepare_directory(); });
+  ExitCode settle_as_it_can() {
+    ExitCode code = settle(1.0, options_.overwrite, [this] { prepare_directory(); });
     const double from = scene_.reduction.from;
-    if ((code == 0 || code == 7) && !has_settled() && from < 1.0) {
+    if ((code == exit_code::done || code == exit_code::undecided) && !has_settled() && from < 1.0) {
       say(fmt::format("the blocks do not settle with their full strength, now with their strengths divided "
                       "by fos.from = {:g}\n",
                       from));
       code = settle(from, true, {});
     }
-    if (code == 0 && !has_settled()) {
-      code = 7;
+    if (code == exit_code::done && !has_settled()) {
+      code = exit_code::undecided;
     }
-    if (code == 7) {
+    if (code == exit_code::undecided) {
       message_ =
           "the blocks do not settle, not even with the largest strength tried: let them settle with "
           "more (stage[].set) and bring it back in a stage of kind change, or give them a longer limit";
@@ -147,7 +148,7 @@ private:
   }
 
   /// The state an earlier search has settled; of no cost to this one.
-  int take_settled() {
+  ExitCode take_settled() {
     const Simulation found(world_, settling_scene(scene_, options_.settled_factor), {options_.settled});
     num_blocks_ = found.num_blocks();
     start_time_ = found.time();
@@ -156,19 +157,19 @@ private:
     report_.settled.time = found.time();
     report_.settled.steps = found.step_count();
     if (has_settled()) {
-      return 0;
+      return exit_code::done;
     }
     message_ = fmt::format("the run in {} has not settled, let it go on (gcpdda restart) or leave --settled "
                            "out",
                            options_.settled.string());
     say(message_ + "\n");
-    return 7;
+    return exit_code::undecided;
   }
 
   [[nodiscard]] bool has_settled() const { return report_.settled.verdict == Verdict::settled; }
 
   /// The settled state, on all ranks.
-  int settle(double factor, bool overwrite, const std::function<void()> &prepare) {
+  ExitCode settle(double factor, bool overwrite, const std::function<void()> &prepare) {
     RunOptions options{settled_directory(), overwrite, false, {}, options_.quiet};
     options.prepare = prepare;
     const RunOutcome outcome = run_and_tell(world_, settling_scene(scene_, factor), options);
@@ -176,7 +177,7 @@ private:
     report_.settled.steps = outcome.summary.steps;
     start_time_ = outcome.summary.time;
     num_blocks_ = outcome.summary.blocks;
-    message_ = outcome.exit_code == 5 ? outcome.summary.message : std::string();
+    message_ = outcome.exit_code == exit_code::numerical_failure ? outcome.summary.message : std::string();
     return outcome.exit_code;
   }
 
@@ -199,7 +200,9 @@ private:
       const double factor = factors[static_cast<std::size_t>(group_number_)];
       try {
         const RunOutcome outcome = run_trial(factor);
-        message = outcome.exit_code == 0 || outcome.exit_code == 7 ? "" : outcome.summary.message;
+        message = outcome.exit_code == exit_code::done || outcome.exit_code == exit_code::undecided
+                      ? ""
+                      : outcome.summary.message;
         if (group_->is_root()) {
           mine.push_back(facts_of(factor, outcome, start_time_));
         }
@@ -242,7 +245,7 @@ private:
         trial.message.assign(messages[rank].begin(), messages[rank].end());
         trial.directory = trial_directory(facts.factor);
         trials_[facts.factor] = trial;
-        if (facts.exit_code == 6) {
+        if (facts.exit_code == exit_code::stopped) {
           stopped = true;
           stopped_.insert(facts.factor);
         }
@@ -367,7 +370,8 @@ SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene
   return SafetyFactor(communicator, staged, options).find();
 }
 
-int find_safety_factor(const Communicator &communicator, const Scene &scene, const SafetyOptions &options) {
+ExitCode find_safety_factor(const Communicator &communicator, const Scene &scene,
+                            const SafetyOptions &options) {
   return search_safety_factor(communicator, scene, options).exit_code;
 }
 

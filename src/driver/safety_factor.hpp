@@ -13,6 +13,7 @@
 // Barton and Bandis' tan(phi) is divided at every pressure. A dilation angle above the friction that is left
 // is lowered to it: otherwise slip would do more work than friction takes.
 
+#include "gcpdda/base/exit_code.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "io/results/safety_report.hpp"
@@ -71,9 +72,9 @@ struct SafetyOptions {
 };
 
 struct SafetyOutcome {
-  /// 0 found within the tolerance; 5 numerical failure before the settled state; 6 stopped by the signal; 7
-  /// the scene does not settle, or the bracket is wider than asked for
-  int exit_code = 0;
+  /// done: found within the tolerance; numerical_failure before the settled state; stopped by the signal;
+  /// undecided: the scene does not settle, or the bracket is wider than asked for
+  ExitCode exit_code = exit_code::done;
   SafetyReport report;
   std::string message; ///< why the search has not begun; empty where it has
 };
@@ -86,7 +87,8 @@ struct SafetyOutcome {
 SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene &scene,
                                    const SafetyOptions &options);
 
-/// The same; @return exit code
-int find_safety_factor(const Communicator &communicator, const Scene &scene, const SafetyOptions &options);
+/// Searches and returns SafetyOutcome::exit_code alone.
+ExitCode find_safety_factor(const Communicator &communicator, const Scene &scene,
+                            const SafetyOptions &options);
 
 } // namespace gcpdda

@@ -14,7 +14,8 @@ cmake -S "$here" -B "$folder/build" -DCMAKE_PREFIX_PATH="$folder/installed" -DCM
 cmake --build "$folder/build" >/dev/null
 answers=()
 for ranks in 1 2; do
-  answers+=("$(mpirun -n "$ranks" --oversubscribe --bind-to none "$folder/build/consumer")")
+  mkdir -p "$folder/mpi_$ranks" # a scratch folder of Open MPI each
+  answers+=("$(OMPI_MCA_orte_tmpdir_base="$folder/mpi_$ranks" mpirun -n "$ranks" --oversubscribe --bind-to none "$folder/build/consumer")")
 done
 printf '%s\n' "${answers[@]}"
 [[ ${answers[0]} == "${answers[1]}" ]]

@@ -9,7 +9,7 @@
 
 namespace gcpdda {
 
-/// A scene that cannot be run (exit code 3); what it says goes to people.
+/// A scene that cannot be run (exit_code::bad_scene); what it says goes to people.
 class SceneError : public std::runtime_error {
 public:
   explicit SceneError(Diagnostics diagnostics)

@@ -2,6 +2,7 @@
 
 // A run from its scene to its result folder.
 
+#include "gcpdda/base/exit_code.hpp"
 #include "gcpdda/io/result_files.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
@@ -32,9 +33,9 @@ struct RunOptions {
 
 /// How a run ended.
 struct RunOutcome {
-  /// 0 done, 5 numerical failure, 6 stopped by the signal (with a checkpoint unless RunOptions::once), 7
+  /// done, numerical_failure, stopped (by the signal, with a checkpoint unless RunOptions::once), or
   /// undecided
-  int exit_code = 0;
+  ExitCode exit_code = exit_code::done;
   RunSummary summary;
 };
 
@@ -43,8 +44,8 @@ RunOutcome run_and_tell(const Communicator &communicator, const Scene &scene, co
 
 /// Run a valid scene to its end and write everything, with checkpoints by output.checkpoint_interval and when
 /// SIGUSR1 comes (stop_signal.hpp). Collective.
-/// @return exit code: 0 done, 5 numerical failure, 6 stopped by the signal with a checkpoint
+/// @return done, numerical_failure, stopped (by the signal, with a checkpoint), or undecided
 /// @throws SceneError, FileError
-int run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options);
+ExitCode run_scene(const Communicator &communicator, const Scene &scene, const RunOptions &options);
 
 } // namespace gcpdda
