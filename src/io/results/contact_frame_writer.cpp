@@ -2,13 +2,13 @@
 
 #include "gcpdda/io/result_files.hpp"
 
+#include "io/results/frame_fields.hpp"
 #include "io/results/frame_strips.hpp"
 #include "io/results/hdf5_vtk_layout.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -108,72 +108,34 @@ class ContactTables {
 public:
   ContactTables(CollectiveFile &file, std::int64_t num_regions)
       : file_(file), cells_(file, num_regions, 2 * num_regions, vtk::CellType::line),
-        points_{file.table<double>(vtk::at("Points"), 2 * num_regions, 3), {}},
-        blocks_{file.table<std::int64_t>(vtk::cell_data("blocks"), num_regions, 2), {}},
-        joint_{file.table<std::int32_t>(vtk::cell_data("joint"), num_regions), {}},
-        state_{file.table<std::uint8_t>(vtk::cell_data("state"), num_regions), {}},
-        normal_force_{file.table<double>(vtk::cell_data("normal_force"), num_regions), {}},
-        shear_force_{file.table<double>(vtk::cell_data("shear_force"), num_regions), {}},
-        overlap_{file.table<double>(vtk::cell_data("overlap"), num_regions), {}},
-        slip_{file.table<double>(vtk::cell_data("slip"), num_regions), {}} {}
+        points_table_(file.table<double>(vtk::at("Points"), 2 * num_regions, 3)),
+        fields_(file, contact_fields, num_regions) {}
 
   /// Collective.
   void write(std::int64_t first, const std::vector<const ContactRow *> &rows) {
     cells_.write(first, 2 * first, std::vector<std::int32_t>(rows.size(), 2));
     fill(rows);
-    write(points_, 2 * first);
-    write(blocks_, first);
-    write(joint_, first);
-    write(state_, first);
-    for (const Column<double> *column : {&normal_force_, &shear_force_, &overlap_, &slip_}) {
-      write(*column, first);
-    }
+    file_.write(points_table_, 2 * first, std::span<const double>(points_));
+    fields_.write(file_, first);
   }
 
 private:
-  template <class T> struct Column {
-    CollectiveFile::Table table;
-    std::vector<T> values;
-  };
-  template <class T> void write(const Column<T> &column, std::int64_t first) {
-    file_.write(column.table, first, std::span<const T>(column.values));
-  }
-
-  // All columns in one pass, as for blocks.
   void fill(const std::vector<const ContactRow *> &rows) {
-    const std::size_t count = rows.size();
-    points_.values.resize(6 * count);
-    blocks_.values.resize(2 * count);
-    joint_.values.resize(count);
-    state_.values.resize(count);
-    for (Column<double> *column : {&normal_force_, &shear_force_, &overlap_, &slip_}) {
-      column->values.resize(count);
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      const ContactRow &row = *rows[k];
-      const std::array ends{row.begin.x, row.begin.y, 0.0, row.end.x, row.end.y, 0.0};
-      std::copy(ends.begin(), ends.end(), &points_.values[6 * k]);
-      blocks_.values[2 * k] = row.lower;
-      blocks_.values[2 * k + 1] = row.higher;
-      joint_.values[k] = row.joint;
-      state_.values[k] = row.state;
-      normal_force_.values[k] = row.normal_force;
-      shear_force_.values[k] = row.shear_force;
-      overlap_.values[k] = row.overlap;
-      slip_.values[k] = row.slip;
+    points_.resize(6 * rows.size());
+    double *point = points_.data();
+    fields_.start(rows.size());
+    for (const ContactRow *row : rows) {
+      point = FieldValue<Triple>::put(point, {row->begin.x, row->begin.y, 0.0});
+      point = FieldValue<Triple>::put(point, {row->end.x, row->end.y, 0.0});
+      fields_.add(*row);
     }
   }
 
   CollectiveFile &file_;
   vtk::CellTables cells_;
-  Column<double> points_;
-  Column<std::int64_t> blocks_;
-  Column<std::int32_t> joint_;
-  Column<std::uint8_t> state_;
-  Column<double> normal_force_;
-  Column<double> shear_force_;
-  Column<double> overlap_;
-  Column<double> slip_;
+  CollectiveFile::Table points_table_;
+  std::vector<double> points_;
+  FieldDatasets<decltype(contact_fields)> fields_;
 };
 
 /// False on a rank whose regions are not as many as were counted; it writes none of them. Collective.

@@ -8,13 +8,13 @@
 #include "io/hdf5/hdf5_input.hpp"
 #include "io/hdf5/numbered_name.hpp"
 #include "io/hdf5/write_behind.hpp"
+#include "io/results/frame_fields.hpp"
 #include "io/results/frame_strips.hpp"
 #include "io/results/hdf5_vtk_layout.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <numeric>
 
@@ -22,7 +22,6 @@ namespace gcpdda {
 
 namespace {
 
-constexpr std::array<const char *, 2> constant_cell_data{"block", "material"};
 constexpr const char *xdmf_cells = "/XdmfTopology";
 
 std::string frame_name(int index) {
@@ -33,52 +32,34 @@ std::string topology_name(int index) {
   return fmt::format("topology_{:06}.h5", index);
 }
 
-/// A dataset, and the buffer that its pieces are made in.
-template <class T> struct Column {
-  CollectiveFile::Table table;
-  std::vector<T> values;
-
-  /// Where the values of this many rows go.
-  T *make_room(std::size_t num_rows) {
-    values.resize(table.columns * num_rows);
-    return values.data();
-  }
-};
-template <class T> void write_column(CollectiveFile &file, const Column<T> &column, std::int64_t first) {
-  file.write(column.table, first, std::span<const T>(column.values));
-}
-
 /// Datasets of a topology.
 class TopologyTables {
 public:
   TopologyTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points)
       : file_(file), cells_(file, num_cells, num_points, vtk::CellType::polygon),
-        block_{file.table<std::int64_t>(vtk::cell_data("block"), num_cells), {}},
-        material_{file.table<std::int32_t>(vtk::cell_data("material"), num_cells), {}},
-        xdmf_cells_{file.table<std::int64_t>(xdmf_cells, num_points + 2 * num_cells), {}} {}
+        fields_(file, constant_block_fields, num_cells),
+        xdmf_table_(file.table<std::int64_t>(xdmf_cells, num_points + 2 * num_cells)) {}
 
   /// Collective.
   void write(std::int64_t first_cell, std::int64_t first_point,
              const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t num_points) {
     fill(rows, first_point, static_cast<std::size_t>(num_points));
     cells_.write(first_cell, first_point, sizes_);
-    write_column(file_, block_, first_cell);
-    write_column(file_, material_, first_cell);
-    write_column(file_, xdmf_cells_, first_point + 2 * first_cell);
+    fields_.write(file_, first_cell);
+    file_.write(xdmf_table_, first_point + 2 * first_cell, std::span<const std::int64_t>(mixed_));
   }
 
 private:
   void fill(const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t first_point,
             std::size_t num_points) {
     sizes_.clear();
-    std::int64_t *block = block_.make_room(rows.size());
-    std::int32_t *material = material_.make_room(rows.size());
-    std::int64_t *mixed = xdmf_cells_.make_room(num_points + 2 * rows.size());
+    fields_.start(rows.size());
+    mixed_.resize(num_points + 2 * rows.size());
+    std::int64_t *mixed = mixed_.data();
     std::int64_t vertex = first_point;
     for (const auto &[row, first] : rows) {
       sizes_.push_back(row->num_vertices);
-      *block++ = row->block;
-      *material++ = row->material;
+      fields_.add(*row);
       // XDMF wants its own mixture: for each cell 3 (a polygon), the number of its vertices, their numbers.
       *mixed++ = 3;
       *mixed++ = row->num_vertices;
@@ -90,9 +71,9 @@ private:
 
   CollectiveFile &file_;
   vtk::CellTables cells_;
-  Column<std::int64_t> block_;
-  Column<std::int32_t> material_;
-  Column<std::int64_t> xdmf_cells_;
+  FieldDatasets<decltype(constant_block_fields)> fields_;
+  CollectiveFile::Table xdmf_table_;
+  std::vector<std::int64_t> mixed_;
   std::vector<std::int32_t> sizes_; ///< vertices of each cell
 };
 
@@ -100,60 +81,34 @@ private:
 class FrameTables {
 public:
   FrameTables(CollectiveFile &file, std::int64_t num_cells, std::int64_t num_points)
-      : file_(file), points_{file.table<double>(vtk::at("Points"), num_points, 3), {}},
-        kind_{file.table<std::uint8_t>(vtk::cell_data("kind"), num_cells), {}},
-        rotation_{file.table<double>(vtk::cell_data("rotation"), num_cells), {}},
-        displacement_{file.table<double>(vtk::cell_data("displacement"), num_cells, 3), {}},
-        velocity_{file.table<double>(vtk::cell_data("velocity"), num_cells, 3), {}},
-        stress_{file.table<double>(vtk::cell_data("stress"), num_cells, 3), {}},
-        contact_force_{file.table<double>(vtk::cell_data("contact_force"), num_cells, 3), {}} {}
+      : file_(file), points_table_(file.table<double>(vtk::at("Points"), num_points, 3)),
+        fields_(file, changing_block_fields, num_cells) {}
 
   /// Collective.
   void write(std::int64_t first_cell, std::int64_t first_point,
              const std::vector<FrameStrips::PlacedRow> &rows, std::int64_t num_points) {
     fill(rows, static_cast<std::size_t>(num_points));
-    write_column(file_, points_, first_point);
-    write_column(file_, kind_, first_cell);
-    for (const Column<double> *column : {&rotation_, &displacement_, &velocity_, &stress_, &contact_force_}) {
-      write_column(file_, *column, first_cell);
-    }
+    file_.write(points_table_, first_point, std::span<const double>(points_));
+    fields_.write(file_, first_cell);
   }
 
 private:
-  static double *put(double *place, const std::array<double, 3> &triple) {
-    return std::copy(triple.begin(), triple.end(), place);
-  }
-
-  // All columns in one pass: rows are longer than what a column takes of them.
   void fill(const std::vector<FrameStrips::PlacedRow> &rows, std::size_t num_points) {
-    double *point = points_.make_room(num_points);
-    std::uint8_t *kind = kind_.make_room(rows.size());
-    double *rotation = rotation_.make_room(rows.size());
-    double *displacement = displacement_.make_room(rows.size());
-    double *velocity = velocity_.make_room(rows.size());
-    double *stress = stress_.make_room(rows.size());
-    double *contact_force = contact_force_.make_room(rows.size());
+    points_.resize(3 * num_points);
+    double *point = points_.data();
+    fields_.start(rows.size());
     for (const auto &[row, first] : rows) {
       for (const Vec2 *vertex = first; vertex != first + row->num_vertices; ++vertex) {
-        point = put(point, {vertex->x, vertex->y, 0.0});
+        point = FieldValue<Triple>::put(point, {vertex->x, vertex->y, 0.0});
       }
-      *kind++ = row->kind;
-      *rotation++ = row->rotation;
-      displacement = put(displacement, {row->displacement.x, row->displacement.y, 0.0});
-      velocity = put(velocity, row->velocity);
-      stress = put(stress, row->stress);
-      contact_force = put(contact_force, row->contact_force);
+      fields_.add(*row);
     }
   }
 
   CollectiveFile &file_;
-  Column<double> points_;
-  Column<std::uint8_t> kind_;
-  Column<double> rotation_;
-  Column<double> displacement_;
-  Column<double> velocity_;
-  Column<double> stress_;
-  Column<double> contact_force_;
+  CollectiveFile::Table points_table_;
+  std::vector<double> points_;
+  FieldDatasets<decltype(changing_block_fields)> fields_;
 };
 
 /// @param kind  of the files, "frame" or "bolts"
@@ -168,25 +123,11 @@ std::string series_index(const std::vector<std::pair<int, double>> &frames, cons
   return text + "\n  ]\n}\n";
 }
 
-struct XdmfField {
-  const char *name;
-  const char *number; ///< NumberType and Precision
-  int columns;
-};
-constexpr std::array<XdmfField, 8> xdmf_fields{
-    {{"block", "NumberType=\"Int\" Precision=\"8\"", 1},
-     {"material", "NumberType=\"Int\" Precision=\"4\"", 1},
-     {"kind", "NumberType=\"UChar\" Precision=\"1\"", 1},
-     {"displacement", "NumberType=\"Float\" Precision=\"8\"", 3},
-     {"rotation", "NumberType=\"Float\" Precision=\"8\"", 1},
-     {"velocity", "NumberType=\"Float\" Precision=\"8\"", 3},
-     {"stress", "NumberType=\"Float\" Precision=\"8\"", 3},
-     {"contact_force", "NumberType=\"Float\" Precision=\"8\"", 3}}};
-
-bool is_constant(const char *name) {
-  return std::any_of(constant_cell_data.begin(), constant_cell_data.end(),
-                     [name](const char *constant) { return std::strcmp(name, constant) == 0; });
-}
+template <class Number> constexpr const char *xdmf_number = nullptr; ///< NumberType and Precision
+template <> constexpr const char *xdmf_number<std::int64_t> = "NumberType=\"Int\" Precision=\"8\"";
+template <> constexpr const char *xdmf_number<std::int32_t> = "NumberType=\"Int\" Precision=\"4\"";
+template <> constexpr const char *xdmf_number<std::uint8_t> = "NumberType=\"UChar\" Precision=\"1\"";
+template <> constexpr const char *xdmf_number<double> = "NumberType=\"Float\" Precision=\"8\"";
 
 std::string xdmf_item(const std::string &dimensions, const char *number, const std::string &file,
                       const std::string &dataset) {
@@ -202,10 +143,22 @@ struct IndexedFrame {
   std::string topology; ///< file
 };
 
+template <class Value>
+std::string xdmf_attribute(const BlockField<Value> &field, std::int64_t num_blocks, const std::string &file) {
+  constexpr bool is_vector = FieldValue<Value>::size > 1;
+  const std::string dimensions =
+      is_vector ? fmt::format("{} {}", num_blocks, FieldValue<Value>::size) : fmt::format("{}", num_blocks);
+  return fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n",
+                     field.name, is_vector ? "Vector" : "Scalar",
+                     xdmf_item(dimensions, xdmf_number<typename FieldValue<Value>::Number>, file,
+                               vtk::cell_data(field.name)));
+}
+
 std::string xdmf_index(const std::vector<IndexedFrame> &frames) {
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
                      "    <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-  for (const auto &[index, time, num_blocks, num_points, topology] : frames) {
+  for (const IndexedFrame &indexed : frames) {
+    const auto &[index, time, num_blocks, num_points, topology] = indexed;
     const std::string frame = frame_name(index);
     text += fmt::format("      <Grid Name=\"{}\" GridType=\"Uniform\">\n        <Time Value=\"{:.17g}\"/>\n",
                         frame, time);
@@ -216,14 +169,11 @@ std::string xdmf_index(const std::vector<IndexedFrame> &frames) {
     text += fmt::format("        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
                         xdmf_item(fmt::format("{} 3", num_points), "NumberType=\"Float\" Precision=\"8\"",
                                   frame, vtk::at("Points")));
-    for (const XdmfField &field : xdmf_fields) {
-      const std::string dimensions = fmt::format("{}{}", num_blocks, field.columns == 3 ? " 3" : "");
-      text +=
-          fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n",
-                      field.name, field.columns == 3 ? "Vector" : "Scalar",
-                      xdmf_item(dimensions, field.number, is_constant(field.name) ? topology : frame,
-                                vtk::cell_data(field.name)));
-    }
+    for_each_field(constant_block_fields, [&](const auto &field) {
+      text += xdmf_attribute(field, indexed.num_blocks, indexed.topology);
+    });
+    for_each_field(changing_block_fields,
+                   [&](const auto &field) { text += xdmf_attribute(field, indexed.num_blocks, frame); });
     text += "      </Grid>\n";
   }
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";
@@ -293,9 +243,8 @@ void FrameWriter::write(int index, double time, const FrameSource &source) {
   for (const char *name : vtk::cell_datasets) {
     file.link(vtk::at(name), topology);
   }
-  for (const char *name : constant_cell_data) {
-    file.link(vtk::cell_data(name), topology);
-  }
+  for_each_field(constant_block_fields,
+                 [&](const auto &field) { file.link(vtk::cell_data(field.name), topology); });
   write_strips<FrameTables>(file, topologies_.back(), source);
   publish_behind(file, path);
   frames_.emplace_back(index, time);

@@ -3,6 +3,7 @@
 #include "io/results/run_comparison.hpp"
 
 #include "io/hdf5/hdf5_input.hpp"
+#include "io/results/frame_fields.hpp"
 
 namespace gcpdda {
 
@@ -39,14 +40,9 @@ FrameContent read_frame(const std::filesystem::path &path) {
   content.time = file.time();
   file.read("Points", content.points);
   file.read("Offsets", content.offsets);
-  file.read("CellData/block", content.block);
-  file.read("CellData/material", content.material);
-  file.read("CellData/kind", content.kind);
-  file.read("CellData/displacement", content.displacement);
-  file.read("CellData/rotation", content.rotation);
-  file.read("CellData/velocity", content.velocity);
-  file.read("CellData/stress", content.stress);
-  file.read("CellData/contact_force", content.contact_force);
+  for_each_field(block_fields, [&](const auto &field) {
+    file.read(std::string("CellData/") + field.name, content.*field.column);
+  });
   return content;
 }
 
@@ -55,13 +51,9 @@ ContactFrameContent read_contact_frame(const std::filesystem::path &path) {
   ContactFrameContent content;
   content.time = file.time();
   file.read("Points", content.points);
-  file.read("CellData/blocks", content.blocks);
-  file.read("CellData/joint", content.joint);
-  file.read("CellData/state", content.state);
-  file.read("CellData/normal_force", content.normal_force);
-  file.read("CellData/shear_force", content.shear_force);
-  file.read("CellData/overlap", content.overlap);
-  file.read("CellData/slip", content.slip);
+  for_each_field(contact_fields, [&](const auto &field) {
+    file.read(std::string("CellData/") + field.name, content.*field.column);
+  });
   return content;
 }
 
