@@ -43,13 +43,8 @@ struct PlainPair {
     bool is_deformable = false; ///< at least one block is
     bool has_few_edges = false; ///< neither block has more than most_corner_edges
 
-    /// A corner of each block may be inside the other one ...
+    /// One corner of each block may be inside the other one.
     [[nodiscard]] bool may_be_corners() const { return has_few_edges && lower_edges > 1 && higher_edges > 1; }
-    /// ... or one or two of one block alone.
-    [[nodiscard]] bool may_be_face() const { return has_few_edges && (lower_edges > 1 || higher_edges > 1); }
-    /// ... or edges lie on each other whole, with those beside them in one line.
-    [[nodiscard]] bool may_be_edges() const { return has_few_edges && lower_edges > 2 && higher_edges > 2; }
-    [[nodiscard]] bool has_three_edges_each() const { return lower_edges == 3 && higher_edges == 3; }
   };
   Kind kind;
   // The ends of the lower and of the higher block's edges, one more than edges: numbers of vertices in their
@@ -136,9 +131,9 @@ struct Candidates {
   }
 };
 
-/// Most edges of blocks whose overlap of two corners, or of corners and a face, has a way of its own
-/// (src/contact/lanes/lane_corners.hpp, lane_faces.hpp): of all edges, not of those in a chain, or the way
-/// would depend on the refreshes.
+/// Most edges of blocks whose overlap of two corners has a kernel of its own
+/// (contact/lanes/lane_corners.hpp): of all edges, not of those in a chain, or the kernel would depend on the
+/// refreshes.
 constexpr std::size_t most_corner_edges = 4;
 
 /// What a pair's constants follow from.

@@ -25,8 +25,6 @@ constexpr auto no_place = static_cast<std::uint32_t>(-1);
 void ContactForces::find_details(const BlockSystem &system, const Candidates &candidates,
                                  const ContactHistory &history, std::uint32_t first, std::uint32_t last) {
   corners_.clear();
-  faces_.clear();
-  edges_.clear();
   polygons_.clear();
   places_.assign(PlainPair::pairs_in_group, no_place);
   std::size_t num_forces = num_forces_;
@@ -35,11 +33,7 @@ void ContactForces::find_details(const BlockSystem &system, const Candidates &ca
     const PlainOverlap overlap = history.overlaps[pair];
     if (overlap != PlainOverlap::none && first <= pair && pair < last) {
       places_[pair % PlainPair::pairs_in_group] = static_cast<std::uint32_t>(num_forces++);
-      (overlap == PlainOverlap::corners ? corners_
-       : overlap == PlainOverlap::face  ? faces_
-       : overlap == PlainOverlap::edges ? edges_
-                                        : polygons_)
-          .push_back(static_cast<std::uint32_t>(entry));
+      (overlap == PlainOverlap::corners ? corners_ : polygons_).push_back(static_cast<std::uint32_t>(entry));
     }
   });
   grow(forces_, num_forces);

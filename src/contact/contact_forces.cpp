@@ -116,41 +116,14 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   const auto leave = [&](unsigned which, std::vector<std::uint32_t> &to) {
     for_bits(which & given, [&](std::size_t i) { to.push_back(entries[i]); });
   };
-  PlainBatch::Seen seen;
-  PlainOverlap overlap = PlainOverlap::polygon;
-  switch (way) {
-  case Way::corners:
-    seen = batch_->evaluate_corners(scene, lanes);
-    overlap = PlainOverlap::corners;
-    break;
-  case Way::face:
-    seen = batch_->evaluate_faces(scene, lanes);
-    overlap = PlainOverlap::face;
-    break;
-  case Way::edges:
-    seen = batch_->evaluate_edges(scene, lanes);
-    overlap = PlainOverlap::edges;
-    break;
-  default:
-    seen = batch_->evaluate(scene, lanes);
-  }
-  if (way != Way::polygon) {
-    const PlainPair::Kind kind = lanes.pair[0]->kind;
-    const auto elsewhere_to = [&](Way other, bool may_be, unsigned with) {
-      return way != other && may_be ? with : 0U;
-    };
-    const unsigned to_corners = elsewhere_to(Way::corners, kind.may_be_corners(), seen.with_corners);
-    const unsigned to_faces = elsewhere_to(Way::face, kind.may_be_face(), seen.with_face);
-    const unsigned to_edges = elsewhere_to(Way::edges, kind.may_be_edges(), seen.with_edges);
-    leave(to_corners, corners_);
-    leave(to_faces, faces_);
-    leave(to_edges, edges_);
-    const unsigned elsewhere = to_corners | to_faces | to_edges;
-    if (way == Way::polygon_as_before) { // they may not be so any more
-      seen.touching &= ~elsewhere;
-    } else {
-      leave(~(seen.touching | seen.apart | elsewhere), remaining_);
-    }
+  const bool are_corners = way == Way::corners;
+  PlainBatch::Seen seen =
+      are_corners ? batch_->evaluate_corners(scene, lanes) : batch_->evaluate(scene, lanes);
+  if (are_corners) {
+    leave(~(seen.touching | seen.apart), remaining_);
+  } else if (way == Way::polygon_as_before && lanes.pair[0]->kind.may_be_corners()) {
+    leave(seen.with_corners, corners_);
+    seen.touching &= ~seen.with_corners;
   }
   const unsigned touching = seen.touching & given;
   report_.evaluations -=
@@ -158,7 +131,7 @@ void ContactForces::evaluate_alike(const PlainScene &scene, std::span<const std:
   if (touching != 0 && is_again_) {
     store_again(lanes, touching);
   } else if (touching != 0) {
-    store_alike(scene, lanes, touching, overlap);
+    store_alike(scene, lanes, touching, are_corners ? PlainOverlap::corners : PlainOverlap::polygon);
   }
 }
 
@@ -237,32 +210,19 @@ void ContactForces::evaluate_all(const PlainScene &scene, const std::vector<std:
               [&](std::span<const std::uint32_t> batch) { evaluate_alike(scene, batch, way); });
 }
 
-// Mostly each list does with its own way. By the corners that are inside no two of the ways fit one pair
-// (lane_faces.hpp, lane_edges.hpp), so which one takes it does not depend on the list it came from, and what
-// one way leaves to another does not come back.
-void ContactForces::evaluate_by_shape(const PlainScene &scene) {
-  remaining_.clear();
-  evaluate_all(scene, edges_, Way::edges);
-  edges_.clear();
-  evaluate_all(scene, faces_, Way::face);
-  faces_.clear();
-  evaluate_all(scene, corners_, Way::corners);
-  evaluate_all(scene, faces_, Way::face);
-  evaluate_all(scene, edges_, Way::edges);
-  evaluate_all(scene, remaining_, Way::polygon);
-}
-
-// Those with a region. What was none of these mostly stays so: to see that no corner is inside costs less
-// than to look for the other ways in vain, and changes nothing.
+// Mostly each list does with its own kernel. What was another polygon than that of two corners mostly stays
+// so, and counting the corners inside costs less than looking for that overlap in vain. Which kernel takes a
+// pair depends on its shapes alone, not on the list it came from: where the one for corners applies, one
+// corner of each block is inside the other one.
 void ContactForces::evaluate_known(const PlainScene &scene) {
+  remaining_.clear();
   evaluate_all(scene, polygons_, Way::polygon_as_before);
-  evaluate_by_shape(scene);
+  evaluate_all(scene, corners_, Way::corners);
+  evaluate_all(scene, remaining_, Way::polygon);
 }
 
 void ContactForces::evaluate_without_region(const PlainScene &scene) {
   corners_.clear();
-  faces_.clear();
-  edges_.clear();
   polygons_.clear();
   for (const std::uint32_t entry : without_region_) {
     (scene.candidates.plain[entry].kind.may_be_corners() ? corners_ : polygons_).push_back(entry);
@@ -273,8 +233,7 @@ void ContactForces::evaluate_without_region(const PlainScene &scene) {
 // Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
 void ContactForces::find_meeting(const BlockSystem &system, const Candidates &candidates,
                                  const ContactHistory &history, std::size_t first, std::size_t last) {
-  std::array<std::vector<std::uint32_t> *, 5> lists{&without_region_, &corners_, &faces_, &edges_,
-                                                    &polygons_};
+  const std::array<std::vector<std::uint32_t> *, 3> lists{&without_region_, &corners_, &polygons_};
   std::array<std::uint32_t *, lists.size()> ends{};
   for (std::size_t i = 0; i < lists.size(); ++i) {
     lists[i]->resize(last - first);

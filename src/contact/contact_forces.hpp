@@ -247,17 +247,16 @@ private:
   /// Entries [first, last) of Candidates::plain, at most PlainPair::pairs_in_group.
   void evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                             const ContactHistory &history, std::size_t first, std::size_t last);
-  /// The overlap that a kernel supposes: one corner of each block; corners of one in a face of the other;
-  /// whole edges on each other; some other polygon, as in the step before or for certain.
-  enum class Way { corners, face, edges, polygon_as_before, polygon };
+  /// The overlap that a kernel supposes: one corner of each block; some other polygon, as in the step before
+  /// or for certain.
+  enum class Way { corners, polygon_as_before, polygon };
   PlainLanes lanes_of(const PlainScene &scene, std::span<const std::uint32_t> entries);
   void evaluate_alike(const PlainScene &scene, std::span<const std::uint32_t> entries, Way way);
   /// Entries [first, last) whose boxes meet.
   void find_meeting(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                     std::size_t first, std::size_t last);
   void evaluate_all(const PlainScene &scene, const std::vector<std::uint32_t> &entries, Way way);
-  /// Evaluate corners_, faces_ and edges_, and the entries among them to which no specialised kernel applies.
-  void evaluate_by_shape(const PlainScene &scene);
+  /// Evaluate corners_ and polygons_.
   void evaluate_known(const PlainScene &scene);
   void evaluate_without_region(const PlainScene &scene);
   /// Places for the lanes that touch.
@@ -334,10 +333,8 @@ private:
   std::unique_ptr<PlainBatch> batch_;
   // Entries of Candidates::plain whose boxes meet, by the overlap each pair had in the last evaluation.
   std::vector<std::uint32_t> corners_;
-  std::vector<std::uint32_t> faces_;
-  std::vector<std::uint32_t> edges_;
   std::vector<std::uint32_t> polygons_;       ///< the overlap was some other polygon
-  std::vector<std::uint32_t> remaining_;      ///< in this evaluation no specialised kernel applies
+  std::vector<std::uint32_t> remaining_;      ///< no longer an overlap of corners
   std::vector<std::uint32_t> without_region_; ///< the blocks did not touch
   std::vector<std::uint32_t> births_;         ///< new ones that must choose among laws
   std::array<CandidatePair, 8> own_;          ///< constants of mixed pairs at hand, by lane

@@ -69,10 +69,9 @@ struct RegionRange {
 };
 
 /// How a plain pair (contact/candidates.hpp) overlaps, and so mostly in the next step: with one corner of
-/// each block, with corners of one in a face of the other, with whole edges on each other, or in some other
-/// polygon. To know it saves work and changes no result. The PlainPair::Kind of the pair must allow the
-/// overlap; it always allows `polygon`.
-enum class PlainOverlap : std::uint8_t { none = 0, corners = 1, face = 2, edges = 3, polygon = 4 };
+/// each block, or in some other polygon. To know it saves work and changes no result. The PlainPair::Kind of
+/// the pair must allow corners.
+enum class PlainOverlap : std::uint8_t { none = 0, corners = 1, polygon = 2 };
 
 /// Contact memory by candidate pair. Only living regions are listed: at most one of two convex blocks, and
 /// behind those of a pair its bonds.

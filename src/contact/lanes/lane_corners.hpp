@@ -48,10 +48,8 @@ struct LaneCorner {
          (max(abs(chain.low.x), abs(chain.high.x)) + max(abs(chain.low.y), abs(chain.high.y)));
 }
 
-/// @param beyond  what counts as in the box besides it, m
-[[gnu::always_inline]] inline Mask is_in_box(const LaneVec &x, const LaneChain &chain, const Lanes &beyond) {
-  return (chain.low.x - beyond <= x.x) & (x.x <= chain.high.x + beyond) & (chain.low.y - beyond <= x.y) &
-         (x.y <= chain.high.y + beyond);
+[[gnu::always_inline]] inline Mask is_in_box(const LaneVec &x, const LaneChain &chain) {
+  return (chain.low.x <= x.x) & (x.x <= chain.high.x) & (chain.low.y <= x.y) & (x.y <= chain.high.y);
 }
 
 /// @param rounding  of the other block: edges in one line have no corner that is clearly inside, and it would
@@ -59,7 +57,7 @@ struct LaneCorner {
 template <std::size_t lines>
 [[gnu::always_inline]] inline Mask is_inside(const LaneVec &x, const LaneChain &other,
                                              const Lanes &rounding) {
-  Mask inside = is_in_box(x, other, 0.0);
+  Mask inside = is_in_box(x, other);
   each<lines>([&](auto j) { inside = inside & (dot(other.slope[j], other.vertex[j] - x) > rounding); });
   return inside;
 }
@@ -67,26 +65,19 @@ template <std::size_t lines>
 /// How many corners of one block are inside the other one.
 struct CornersInside {
   Mask any{};
-  Mask two{};       ///< at least
-  Mask three{};     ///< at least
-  Mask two_touch{}; ///< at least two are inside or, but for rounding, on the boundary
+  Mask two{}; ///< at least
 };
 
 inline CornersInside count_corners(const LaneChain &own, const LaneChain &other) {
   const Lanes rounding = rounding_of(other);
   CornersInside count;
-  Mask one_touches{};
   for (std::size_t k = 1; k < own.edges; ++k) {
     const LaneVec &x = own.vertex[k];
     Lanes least = dot(other.slope[0], other.vertex[0] - x);
     for (std::size_t j = 1; j < other.edges; ++j) {
       least = min(least, dot(other.slope[j], other.vertex[j] - x));
     }
-    const Mask inside = is_in_box(x, other, 0.0) & (least > rounding);
-    const Mask touches = is_in_box(x, other, rounding) & (least >= -rounding);
-    count.two_touch = count.two_touch | (one_touches & touches);
-    one_touches = one_touches | touches;
-    count.three = count.three | (count.two & inside);
+    const Mask inside = is_in_box(x, other) & (least > rounding);
     count.two = count.two | (count.any & inside);
     count.any = count.any | inside;
   }
@@ -202,30 +193,45 @@ template <std::size_t lines>
   return s * total + piece * piece * (here + Lanes(2.0) * there) * Lanes(1.0 / 6.0);
 }
 
+/// How a walk along an edge begins and ends: the line that is nearest at the corner, and the one across which
+/// the edge leaves the block first.
+template <std::size_t lines> struct WalkEnds {
+  PlaceAlong exit;
+  Mask leaves; ///< across a line that is wanted
+  NearestLine nearest;
+  Lanes other_fall; ///< of two lines, of the one that is not the nearest
+
+  /// @param wanted  by line
+  [[gnu::always_inline]] WalkEnds(const FallingDepths<lines> &lower,
+                                  const std::array<Mask, most_corner_edges> &wanted)
+      : exit{lower.depth[0], max(0.0, lower.fall[0])},
+        leaves(wanted[0]), nearest{lower.depth[0], lower.fall[0]}, other_fall(lower.fall[0]) {
+    each<lines - 1>([&](auto before) __attribute__((always_inline)) {
+      constexpr std::size_t j = before + 1;
+      const Lanes &depth = lower.depth[j];
+      const Lanes &fall = lower.fall[j];
+      const Mask first = PlaceAlong{depth, fall}.is_before(exit);
+      leaves = (first & wanted[j]) | (leaves & !first);
+      exit.over = select(first, depth, exit.over);
+      exit.rate = select(first, fall, exit.rate);
+      const Mask nearer = (depth < nearest.depth) | ((depth == nearest.depth) & (fall > nearest.fall));
+      other_fall = select(nearer, nearest.fall, fall);
+      nearest.depth = select(nearer, depth, nearest.depth);
+      nearest.fall = select(nearer, fall, nearest.fall);
+    });
+  }
+};
+
 /// Walk along the lower envelope of the depths to where the first one is used up.
 /// @param wanted  by line
 /// @return where that is a line that is wanted
-template <std::size_t lines, std::size_t places>
+template <std::size_t lines>
 [[gnu::always_inline]] inline Mask integrate_stretch(const FallingDepths<lines> &lower,
-                                                     const std::array<Mask, places> &wanted,
+                                                     const std::array<Mask, most_corner_edges> &wanted,
                                                      CornerStretch<lines> &stretch) {
-  PlaceAlong exit{lower.depth[0], max(0.0, lower.fall[0])};
-  Mask leaves = wanted[0];
-  NearestLine nearest{lower.depth[0], lower.fall[0]};
-  Lanes other_fall = lower.fall[0]; // of two lines
-  each<lines - 1>([&](auto before) __attribute__((always_inline)) {
-    constexpr std::size_t j = before + 1;
-    const Lanes &depth = lower.depth[j];
-    const Lanes &fall = lower.fall[j];
-    const Mask first = PlaceAlong{depth, fall}.is_before(exit);
-    leaves = (first & wanted[j]) | (leaves & !first);
-    exit.over = select(first, depth, exit.over);
-    exit.rate = select(first, fall, exit.rate);
-    const Mask nearer = (depth < nearest.depth) | ((depth == nearest.depth) & (fall > nearest.fall));
-    other_fall = select(nearer, nearest.fall, fall);
-    nearest.depth = select(nearer, depth, nearest.depth);
-    nearest.fall = select(nearer, fall, nearest.fall);
-  });
+  const WalkEnds<lines> ends(lower, wanted);
+  const PlaceAlong &exit = ends.exit;
+  NearestLine nearest = ends.nearest;
   // One division for the exit and the first crossing, if that comes before. A line left out of the chain
   // never does, so it changes no bit.
   NearestLine next = nearest;
@@ -233,7 +239,8 @@ template <std::size_t lines, std::size_t places>
   PlaceAlong crossing;
   if constexpr (lines == 2) { // they cross once, whichever is nearer
     crossing = {lower.depth[1] - lower.depth[0], lower.fall[1] - lower.fall[0]};
-    crosses = (other_fall > nearest.fall) & (abs(crossing.over) * exit.rate < exit.over * abs(crossing.rate));
+    crosses =
+        (ends.other_fall > nearest.fall) & (abs(crossing.over) * exit.rate < exit.over * abs(crossing.rate));
   } else {
     crossing = find_crossing<lines>(lower, nearest, next);
     crosses = crossing.is_before(exit);
@@ -268,7 +275,7 @@ template <std::size_t lines, std::size_t places>
     here = there;
   });
   stretch.moment = stretch.pressure * stretch.begin + along * stretch.direction;
-  return leaves;
+  return ends.leaves;
 }
 
 /// Do all of the edges of `own` that can take part lie beyond a line of `other`?
@@ -305,8 +312,6 @@ template <std::size_t edges> struct CornerOverlap {
   LaneCorner higher;
   std::array<CornerStretch<edges>, 2> on_lower;
   std::array<CornerStretch<edges>, 2> on_higher;
-  Mask lower_has; ///< it has a corner inside the other one
-  Mask higher_has;
 
   /// Where the boundary is measured from.
   [[nodiscard]] const LaneVec &origin() const { return lower.vertex; }
@@ -365,9 +370,8 @@ CornerOverlap<edges>::find_stretches(const LaneCorner &own, const LaneChain &oth
 
 template <std::size_t edges>
 Mask CornerOverlap<edges>::find(const LaneChain &lower_chain, const LaneChain &higher_chain) {
-  lower_has = find_corner<edges>(lower_chain, higher_chain, lower);
-  higher_has = find_corner<edges>(higher_chain, lower_chain, higher);
-  const Mask has_both = lower_has & higher_has;
+  const Mask lower_has = find_corner<edges>(lower_chain, higher_chain, lower);
+  const Mask has_both = lower_has & find_corner<edges>(higher_chain, lower_chain, higher);
   if (!has_both.any()) {
     return has_both;
   }

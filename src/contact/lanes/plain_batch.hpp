@@ -85,27 +85,19 @@ public:
   /// The same of deformable rows.
   virtual void find_deforming_motions(BlockSystem &system, std::size_t first,
                                       std::span<Mat2> velocity_gradients) const = 0;
-  /// What one of the ways below says of each lane, by bits.
+  /// What an evaluation says of each lane, by bits.
   struct Seen {
     unsigned touching = 0;
     unsigned meeting = 0;      ///< the boxes do
     unsigned apart = 0;        ///< the blocks are seen not to touch
     unsigned with_corners = 0; ///< of each block one corner is in the other one: evaluate_corners() may do
-    unsigned with_face = 0;    ///< corners of one block only are: evaluate_faces() may do
-    unsigned with_edges = 0;   ///< none is: evaluate_edges() may do
   };
   /// Whatever the overlap is.
   virtual Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) = 0;
   /// The same with far less work, where PlainPair::Kind::may_be_corners, for those that overlap with one
   /// corner of each block (lane_corners.hpp). Others do not touch; some are seen to be apart, the rest is
-  /// left to the other ways.
+  /// left to evaluate().
   virtual Seen evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) = 0;
-  /// The same, where PlainPair::Kind::may_be_face, for those that overlap with one or two corners of one
-  /// block in a face of the other one (lane_faces.hpp).
-  virtual Seen evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) = 0;
-  /// The same, where PlainPair::Kind::may_be_edges, for those that overlap with edges of one length whose
-  /// neighbours run in one line (lane_edges.hpp).
-  virtual Seen evaluate_edges(const PlainScene &scene, const PlainLanes &lanes) = 0;
   /// Energies by lane, m3; see find_energies.
   struct Energies {
     unsigned known = 0; ///< by bits

@@ -3,9 +3,7 @@
 // What plain_batch.hpp promises, with one contact in each lane.
 
 #include "contact/lanes/lane_corners.hpp"
-#include "contact/lanes/lane_edges.hpp"
 #include "contact/lanes/lane_energies.hpp"
-#include "contact/lanes/lane_faces.hpp"
 #include "contact/lanes/lane_motion.hpp"
 #include "contact/lanes/lane_region.hpp"
 #include "contact/lanes/lane_stretch.hpp"
@@ -33,8 +31,6 @@ public:
   }
   Seen evaluate(const PlainScene &scene, const PlainLanes &lanes) override;
   Seen evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) override;
-  Seen evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) override;
-  Seen evaluate_edges(const PlainScene &scene, const PlainLanes &lanes) override;
   Energies find_corner_energies(const BlockSystem &system, const Candidates &candidates,
                                 const PlainLanes &lanes) override;
   Energies find_energies(const BlockSystem &system, const Candidates &candidates,
@@ -58,19 +54,19 @@ private:
   void measure(const LaneConstants &constants);
   template <class AnyMotion> void add_dashpot(const LaneConstants &constants, const AnyMotion &motion);
   template <std::size_t edges> Seen evaluate_corners(const PlainScene &scene, const Pairs &pairs);
-  /// Overlap: FaceOverlap or EdgeOverlap.
-  template <class Overlap, std::size_t edges> Seen evaluate_as(const PlainScene &scene, const Pairs &pairs);
   /// Of the lanes whose overlap is known, which touch.
-  template <class Overlap>
-  unsigned evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
+  template <std::size_t edges>
+  unsigned evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const CornerOverlap<edges> &overlap,
                             const Mask &known);
   template <std::size_t edges> struct PairChains;
   static Energies by_lane(const Mask &known, const Lanes &energy);
   /// visit(edges) with the number of edges of the longer chain, where there are few.
   template <class Visit> static auto with_few_edges(const PlainPair &pair, Visit &&visit);
-  template <class Overlap> void measure(const Overlap &overlap, const LaneConstants &constants);
-  template <class Overlap, class AnyMotion>
-  void add_dashpot(const Overlap &overlap, const LaneConstants &constants, const AnyMotion &motion);
+  template <std::size_t edges>
+  void measure(const CornerOverlap<edges> &overlap, const LaneConstants &constants);
+  template <std::size_t edges, class AnyMotion>
+  void add_dashpot(const CornerOverlap<edges> &overlap, const LaneConstants &constants,
+                   const AnyMotion &motion);
   template <class AddDashpot>
   void add_friction_and_dashpots(const PlainScene &scene, const Pairs &pairs, const LaneConstants &constants,
                                  AddDashpot &&add_dashpot);
@@ -252,9 +248,6 @@ inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const Plain
   seen.touching = regions_.touches.by_lane();
   seen.meeting = meets.by_lane();
   seen.with_corners = (meets & of_lower.any & of_higher.any & !(of_lower.two | of_higher.two)).by_lane();
-  seen.with_face = (meets & (of_lower.any ^ of_higher.any) & !(of_lower.three | of_higher.three)).by_lane();
-  seen.with_edges =
-      (meets & of_lower.two_touch & of_higher.two_touch & !(of_lower.any | of_higher.any)).by_lane();
   if (seen.touching == 0) {
     return seen;
   }
@@ -267,7 +260,8 @@ inline PlainBatch::Seen LaneBatch::evaluate(const PlainScene &scene, const Plain
 }
 
 // The corners and the places where the boundaries cross.
-template <class Overlap> void LaneBatch::measure(const Overlap &overlap, const LaneConstants &constants) {
+template <std::size_t edges>
+void LaneBatch::measure(const CornerOverlap<edges> &overlap, const LaneConstants &constants) {
   const LaneVec normal = regions_.normal();
   const LaneVec tangent = perp(normal);
   const LaneVec to_point = regions_.point() - regions_.origin;
@@ -289,8 +283,9 @@ template <class Overlap> void LaneBatch::measure(const Overlap &overlap, const L
   regions_.take_extent(extent, deepest, constants);
 }
 
-template <class Overlap, class AnyMotion>
-void LaneBatch::add_dashpot(const Overlap &overlap, const LaneConstants &constants, const AnyMotion &motion) {
+template <std::size_t edges, class AnyMotion>
+void LaneBatch::add_dashpot(const CornerOverlap<edges> &overlap, const LaneConstants &constants,
+                            const AnyMotion &motion) {
   std::array<Lanes, 4> share;
   Lanes facing_pressure = 0.0;
   overlap.for_stretches([&](auto i, const auto &stretch, const LaneVec &push) __attribute__((always_inline)) {
@@ -304,9 +299,9 @@ void LaneBatch::add_dashpot(const Overlap &overlap, const LaneConstants &constan
   regions_.add_dashpot(dashpot.total, dashpot.moment, motion);
 }
 
-template <class Overlap>
-unsigned LaneBatch::evaluate_overlap(const PlainScene &scene, const Pairs &pairs, const Overlap &overlap,
-                                     const Mask &known) {
+template <std::size_t edges>
+unsigned LaneBatch::evaluate_overlap(const PlainScene &scene, const Pairs &pairs,
+                                     const CornerOverlap<edges> &overlap, const Mask &known) {
   regions_.start(overlap.origin());
   overlap.for_stretches([&](auto, const auto &stretch, const LaneVec &push) __attribute__((always_inline)) {
     regions_.add_pressure(stretch.pressure, stretch.moment, push);
@@ -358,36 +353,13 @@ PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const Pair
   seen.meeting = meets.by_lane();
   seen.apart = (!meets).by_lane();
   if ((!valid).any()) {
-    const Mask with_face = meets & (overlap.lower_has ^ overlap.higher_has);
     chains.load_ends(scene.system, pairs);
-    const Mask apart = are_apart<edges>(chains.lower, chains.higher);
-    seen.with_face = with_face.by_lane();
-    seen.apart |= (apart & !valid & !with_face).by_lane();
-    seen.with_edges = (meets & !apart & !(overlap.lower_has | overlap.higher_has)).by_lane();
+    seen.apart |= (are_apart<edges>(chains.lower, chains.higher) & !valid).by_lane();
     if (!valid.any()) {
       return seen;
     }
   }
   seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
-  return seen;
-}
-
-template <class Overlap, std::size_t edges>
-PlainBatch::Seen LaneBatch::evaluate_as(const PlainScene &scene, const Pairs &pairs) {
-  const PairChains<edges> chains(scene.system, pairs);
-  Overlap overlap;
-  const Mask meets = boxes_meet(chains.lower, chains.higher);
-  const Mask valid =
-      meets & overlap.find(chains.lower, chains.last_lower + 1, chains.higher, chains.last_higher + 1);
-  Seen seen;
-  seen.meeting = meets.by_lane();
-  seen.apart = (!meets).by_lane();
-  seen.with_corners = (meets & overlap.lower_has & overlap.higher_has).by_lane();
-  seen.with_face = (meets & (overlap.lower_has ^ overlap.higher_has)).by_lane();
-  seen.with_edges = (meets & !(overlap.lower_has | overlap.higher_has)).by_lane();
-  if (valid.any()) {
-    seen.touching = evaluate_overlap(scene, pairs, overlap, valid);
-  }
   return seen;
 }
 
@@ -406,18 +378,6 @@ template <class Visit> auto LaneBatch::with_few_edges(const PlainPair &pair, Vis
 inline PlainBatch::Seen LaneBatch::evaluate_corners(const PlainScene &scene, const PlainLanes &lanes) {
   const Pairs pairs(scene, lanes);
   return with_few_edges(pairs.first, [&](auto edges) { return evaluate_corners<edges>(scene, pairs); });
-}
-
-inline PlainBatch::Seen LaneBatch::evaluate_faces(const PlainScene &scene, const PlainLanes &lanes) {
-  const Pairs pairs(scene, lanes);
-  return with_few_edges(pairs.first,
-                        [&](auto edges) { return evaluate_as<FaceOverlap<edges>, edges>(scene, pairs); });
-}
-
-inline PlainBatch::Seen LaneBatch::evaluate_edges(const PlainScene &scene, const PlainLanes &lanes) {
-  const Pairs pairs(scene, lanes);
-  return pairs.first.kind.has_three_edges_each() ? evaluate_as<EdgeOverlap<3>, 3>(scene, pairs)
-                                                 : evaluate_as<EdgeOverlap<4>, 4>(scene, pairs);
 }
 
 inline PlainBatch::Energies LaneBatch::by_lane(const Mask &known, const Lanes &energy) {

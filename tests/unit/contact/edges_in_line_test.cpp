@@ -1,5 +1,5 @@
-// Blocks that lie on each other with whole edges, their next edges in one line
-// (src/contact/lanes/lane_edges.hpp).
+// Blocks that lie on each other with whole edges, their next edges in one line: no corner of one is clearly
+// inside the other one.
 
 #include "support/plain_pairs.hpp"
 #include "support/scenes.hpp"
@@ -114,7 +114,7 @@ void expect_agreement(bool (*is_deformable)(std::size_t), Shape shape) {
   for (int step = 0; step < 3; ++step) {
     move_together(engine, {&ways.plain, &ways.general});
     evaluate_and_finish(ways.plain, ways.general);
-    EXPECT_GE(num_seen_as(PlainOverlap::edges, ways.plain.history), num_couples * 9 / 10);
+    EXPECT_GE(num_seen_as(PlainOverlap::polygon, ways.plain.history), num_couples * 9 / 10);
     ASSERT_EQ(std::ssize(ways.plain.regions.all()), num_couples);
     ASSERT_EQ(std::ssize(ways.general.regions.all()), num_couples);
     for (std::size_t couple = 0; couple < num_couples && !::testing::Test::HasFailure(); ++couple) {
@@ -160,13 +160,13 @@ TEST(EdgesInLine, EdgesThatAreLeftOutChangeNoBit) {
     }
     expect_same_sums(cut, whole);
   }
-  EXPECT_GE(num_seen_as(PlainOverlap::edges, cut.history), num_couples * 9 / 10);
+  EXPECT_GE(num_seen_as(PlainOverlap::polygon, cut.history), num_couples * 9 / 10);
 }
 
 // A refresh forgets how a pair overlaps, and rank counts decide when maps are made anew; also where blocks
 // touch by rounding only, as all do that a joint has cut apart.
 TEST(EdgesInLine, WhatIsForgottenChangesNoBit) {
-  std::ptrdiff_t by_edges = 0;
+  std::ptrdiff_t by_polygon = 0;
   for (int digits = 0; digits <= 16; ++digits) {
     const double scale = std::pow(10.0, -digits);
     std::mt19937 engine(20);
@@ -181,13 +181,13 @@ TEST(EdgesInLine, WhatIsForgottenChangesNoBit) {
         expect_same_bits(forgetful.regions.all()[k], knowing.regions.all()[k]);
       }
       EXPECT_EQ(forgetful.history.overlaps, knowing.history.overlaps);
-      by_edges += num_seen_as(PlainOverlap::edges, knowing.history);
+      by_polygon += num_seen_as(PlainOverlap::polygon, knowing.history);
       for (PlainOverlap &overlap : forgetful.history.overlaps) {
         overlap = overlap == PlainOverlap::none ? overlap : PlainOverlap::corners;
       }
     }
   }
-  EXPECT_GT(by_edges, 4 * num_couples);
+  EXPECT_GT(by_polygon, 4 * num_couples);
 }
 
 TEST(EdgesInLine, WiderRegistersChangeNoBit) {
@@ -236,7 +236,7 @@ TEST(EdgesInLine, LeaveTheLineWithoutAJump) {
       EXPECT_NEAR(bench.seen.torque[k], turning[k], most + norm(in_line) * shift);
     }
   }
-  EXPECT_TRUE(ways.contains(PlainOverlap::edges));
+  EXPECT_TRUE(ways.contains(PlainOverlap::polygon));
   EXPECT_TRUE(ways.contains(PlainOverlap::corners));
 }
 
