@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# All tests: installs what is missing, builds Release and runs CTest, then the unit tests under the sanitizers and the
-# fuzz targets for a short while. Arguments go to CTest and mean just that: tests/run.sh -L parallel, -R ...
+# All tests: installs what is missing, builds Release and runs CTest, then clang-format and clang-tidy on what changed, the
+# unit tests under the sanitizers and the fuzz targets for a short while. Arguments go to CTest and mean just that:
+# tests/run.sh -L parallel, -R ...
 set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 source "$here/../run/set_up.sh"
@@ -17,5 +18,6 @@ if [ $# -gt 0 ]; then
   exec ctest --test-dir "$build" --output-on-failure "$@"
 fi
 ctest --test-dir "$build" --output-on-failure -j 2 -LE paraview # drawing needs a display server
+"$here/lint.sh"
 "$here/sanitizers/run.sh" unit
 "$here/fuzz/run.sh" 10
