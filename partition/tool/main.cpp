@@ -146,7 +146,7 @@ void partition(const std::string &path, int num_parts) {
 
 } // namespace
 
-int main(int argc, char **argv) {
+int main(int argc, char **argv) try {
   CLI::App app("Cut a grid of weighted cells into parts of equal weight with short borders.");
   std::string path;
   int num_parts = 1;
@@ -159,17 +159,15 @@ int main(int argc, char **argv) {
   } catch (const CLI::ParseError &error) {
     return app.exit(error) == 0 ? done : usage;
   }
-  try {
-    partition(path, num_parts);
-    return done;
-  } catch (const BadInput &error) {
-    std::cerr << to_string(error.what) << '\n';
-    return bad_input;
-  } catch (const FileError &error) {
-    std::cerr << error.what() << '\n';
-    return file_trouble;
-  } catch (const std::exception &error) {
-    std::cerr << "internal error: " << error.what() << '\n';
-    return internal;
-  }
+  partition(path, num_parts);
+  return done;
+} catch (const BadInput &error) {
+  std::cerr << to_string(error.what) << '\n';
+  return bad_input;
+} catch (const FileError &error) {
+  std::cerr << error.what() << '\n';
+  return file_trouble;
+} catch (const std::exception &error) {
+  std::cerr << "internal error: " << error.what() << '\n';
+  return internal;
 }

@@ -419,18 +419,8 @@ private:
     summary.time_step = plan.time_step;
     summary.time_step_min = plan.time_step;
     summary.contacts = contacts_at_end_;
-    summary.contact_steps = total(communicator_, counters.contact_steps);
-    summary.evaluations_per_rank = counts_by_rank(communicator_, counters.evaluations);
-    summary.imbalance = imbalance_of(summary.evaluations_per_rank);
-    summary.work_per_rank = counts_by_rank(communicator_, counters.evaluations + counters.block_steps);
-    summary.ghosts_per_rank =
-        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_ghosts));
-    summary.wall_s = spread(communicator_, loop_seconds_)[2];
-    const auto num_ranks = static_cast<double>(communicator_.size());
-    summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
-    summary.setup_wall_s = spread(communicator_, set_up_seconds_)[2];
-    summary.output_wall_s = spread(communicator_, output_seconds())[2];
-    summary.total_wall_s = spread(communicator_, seconds_since(start_))[2];
+    fill_work(summary);
+    fill_times(summary);
     double max_overlap = counters.max_overlap;
     communicator_.max(std::span(&max_overlap, 1));
     summary.max_overlap = max_overlap;
@@ -444,19 +434,25 @@ private:
     if (simulation_.restored()) {
       summary.restarted_at = simulation_.restored()->facts.time;
     }
-    const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps - first_step_, 1));
-    summary.bytes_sent_per_step = static_cast<double>(total(communicator_, counters.bytes)) / steps;
-    summary.messages_per_step = static_cast<double>(total(communicator_, counters.messages)) / steps;
-    for (std::size_t p = 0; p < phase_names.size(); ++p) {
-      const double seconds = simulation_.phases().seconds(static_cast<Phase>(p));
-      summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
-    }
     if (simulation_.is_staged()) {
       for (const StageResult &result : simulation_.stage_results()) {
         const Stage &stage = simulation_.stages()[summary.stages.size()];
         summary.stages.push_back({stage.name, word_of(result.verdict), result});
       }
     }
+  }
+
+  void fill_work(RunSummary &summary) {
+    const Counters &counters = simulation_.counters();
+    summary.contact_steps = total(communicator_, counters.contact_steps);
+    summary.evaluations_per_rank = counts_by_rank(communicator_, counters.evaluations);
+    summary.imbalance = imbalance_of(summary.evaluations_per_rank);
+    summary.work_per_rank = counts_by_rank(communicator_, counters.evaluations + counters.block_steps);
+    summary.ghosts_per_rank =
+        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_ghosts));
+    const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps - first_step_, 1));
+    summary.bytes_sent_per_step = static_cast<double>(total(communicator_, counters.bytes)) / steps;
+    summary.messages_per_step = static_cast<double>(total(communicator_, counters.messages)) / steps;
     const auto add = [&](const char *name, std::int64_t value) {
       summary.counters.emplace_back(name, static_cast<double>(value));
     };
@@ -466,6 +462,19 @@ private:
     add("cross_rank_contacts", total(communicator_, counters.cross_rank_contacts));
     add("cross_rank_contacts_formed", total(communicator_, counters.cross_rank_contacts_formed));
     add("normals_undefined", total(communicator_, counters.normals_undefined));
+  }
+
+  void fill_times(RunSummary &summary) {
+    summary.wall_s = spread(communicator_, loop_seconds_)[2];
+    const auto num_ranks = static_cast<double>(communicator_.size());
+    summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
+    summary.setup_wall_s = spread(communicator_, set_up_seconds_)[2];
+    summary.output_wall_s = spread(communicator_, output_seconds())[2];
+    summary.total_wall_s = spread(communicator_, seconds_since(start_))[2];
+    for (std::size_t p = 0; p < phase_names.size(); ++p) {
+      const double seconds = simulation_.phases().seconds(static_cast<Phase>(p));
+      summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
+    }
   }
 
   Clock::time_point start_ = Clock::now();

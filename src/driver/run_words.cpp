@@ -12,7 +12,7 @@ namespace {
 std::string words_on_shorter_step(const Simulation &simulation) {
   const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
   const double shorter = std::min(0.5 * simulation.plan().time_step, simulation.bound().time_step);
-  const std::string step = fmt::format("run.time_step = {:.2g}", shorter);
+  std::string step = fmt::format("run.time_step = {:.2g}", shorter);
   if (stage.kind != StageKind::settle) {
     return step;
   }

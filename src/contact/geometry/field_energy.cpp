@@ -260,6 +260,32 @@ double FieldEnergy::among_vertices(const Polygon &cell, const Features &features
   return sum;
 }
 
+namespace {
+
+/// Shares of the way from a to b between which the vertex or the line is the nearer one, 0 and 1 with them:
+/// |x - v|^2 = d^2 at x = a + s (b - a).
+std::vector<double> shares_where_as_far(Vec2 vertex, Vec2 a, Vec2 b, double depth_a, double depth_b) {
+  const Vec2 ab = b - a;
+  const double rise = depth_b - depth_a;
+  const double c2 = dot(ab, ab) - rise * rise;
+  const double c1 = dot(ab, a - vertex) - rise * depth_a;
+  const double c0 = dot(a - vertex, a - vertex) - depth_a * depth_a;
+  std::vector<double> shares{0.0, 1.0};
+  const double square = c1 * c1 - c2 * c0;
+  if (square > 0.0) {
+    const double larger = -(c1 + std::copysign(std::sqrt(square), c1));
+    for (const double share : {larger / c2, c0 / larger}) {
+      if (share > 0.0 && share < 1.0) {
+        shares.push_back(share);
+      }
+    }
+    std::sort(shares.begin(), shares.end());
+  }
+  return shares;
+}
+
+} // namespace
+
 double FieldEnergy::of_line_and_vertex(const Polygon &cell, std::size_t line, std::size_t v) const {
   const auto line_depth = [&](Vec2 x) { return depth(line, x); };
   const double all_line = integrate_linear(cell, line_depth);
@@ -268,52 +294,39 @@ double FieldEnergy::of_line_and_vertex(const Polygon &cell, std::size_t line, st
   if (v == line || v == after(line) || !(at_vertex > 0.0)) {
     return all_line; // a vertex on the line is nowhere nearer than it
   }
+  double saved = 0.0;
+  for (std::size_t k = 0; k < cell.size(); ++k) {
+    const Vec2 a = cell[k];
+    const Vec2 b = cell[(k + 1) % cell.size()];
+    const std::vector<double> shares = shares_where_as_far(vertex, a, b, line_depth(a), line_depth(b));
+    for (std::size_t m = 0; m + 1 < shares.size(); ++m) {
+      saved += saved_by_vertex(line, vertex, a + shares[m] * (b - a), a + shares[m + 1] * (b - a));
+    }
+  }
+  return all_line - saved;
+}
+
+double FieldEnergy::saved_by_vertex(std::size_t line, Vec2 vertex, Vec2 p, Vec2 q) const {
   const auto cot_of_half = [&](Vec2 x) {
     const double radius = norm(x - vertex);
     const double along = -dot(normal_[line], x - vertex);
     const double across = cross(-normal_[line], x - vertex);
     return along > 0.0 ? (radius + along) / across : across / (radius - along);
   };
-  double saved = 0.0;
-  for (std::size_t k = 0; k < cell.size(); ++k) {
-    const Vec2 a = cell[k];
-    const Vec2 b = cell[(k + 1) % cell.size()];
-    const Vec2 ab = b - a;
-    // |x - v|^2 = d^2 at x = a + s ab.
-    const double rise = line_depth(b) - line_depth(a);
-    const double c2 = dot(ab, ab) - rise * rise;
-    const double c1 = dot(ab, a - vertex) - rise * line_depth(a);
-    const double c0 = dot(a - vertex, a - vertex) - line_depth(a) * line_depth(a);
-    std::vector<double> shares{0.0, 1.0};
-    const double square = c1 * c1 - c2 * c0;
-    if (square > 0.0) {
-      const double larger = -(c1 + std::copysign(std::sqrt(square), c1));
-      for (const double share : {larger / c2, c0 / larger}) {
-        if (share > 0.0 && share < 1.0) {
-          shares.push_back(share);
-        }
-      }
-      std::sort(shares.begin(), shares.end());
-    }
-    for (std::size_t m = 0; m + 1 < shares.size(); ++m) {
-      const Vec2 p = a + shares[m] * ab;
-      const Vec2 q = a + shares[m + 1] * ab;
-      const Vec2 middle = 0.5 * (p + q);
-      const double twice = cross(p - vertex, q - vertex);
-      if (norm(middle - vertex) <= line_depth(middle)) {
-        saved +=
-            0.5 * twice * (at_vertex + line_depth(p) + line_depth(q)) / 3.0 - integrate_radius(vertex, p, q);
-      } else if (twice != 0.0) {
-        const double from = cot_of_half(p);
-        const double to = cot_of_half(q);
-        const double angle = (from - to) * (0.5 + (from * from + from * to + to * to) / 6.0);
-        if (std::isfinite(angle)) { // else the ray along the axis, which leaves no parabola
-          saved += at_vertex * at_vertex * at_vertex / 6.0 * angle;
-        }
-      }
-    }
+  const double at_vertex = depth(line, vertex);
+  const Vec2 middle = 0.5 * (p + q);
+  const double twice = cross(p - vertex, q - vertex);
+  if (norm(middle - vertex) <= depth(line, middle)) {
+    return 0.5 * twice * (at_vertex + depth(line, p) + depth(line, q)) / 3.0 - integrate_radius(vertex, p, q);
   }
-  return all_line - saved;
+  if (twice == 0.0) {
+    return 0.0;
+  }
+  const double from = cot_of_half(p);
+  const double to = cot_of_half(q);
+  const double angle = (from - to) * (0.5 + (from * from + from * to + to * to) / 6.0);
+  // Not finite: the ray along the axis, which leaves no parabola.
+  return std::isfinite(angle) ? at_vertex * at_vertex * at_vertex / 6.0 * angle : 0.0;
 }
 
 } // namespace gcpdda

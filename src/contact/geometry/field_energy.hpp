@@ -42,6 +42,9 @@ private:
   [[nodiscard]] double among_lines(const Polygon &cell, const Features &features) const;
   [[nodiscard]] double among_vertices(const Polygon &cell, const Features &features) const;
   [[nodiscard]] double of_line_and_vertex(const Polygon &cell, std::size_t line, std::size_t v) const;
+  /// What the depth below a line integrates to beyond the distance to the vertex, between the vertex and the
+  /// stretch from p to q, along which one of the two is the nearer one, m3.
+  [[nodiscard]] double saved_by_vertex(std::size_t line, Vec2 vertex, Vec2 p, Vec2 q) const;
 
   std::span<const Vec2> vertex_;
   std::span<const Vec2> normal_;

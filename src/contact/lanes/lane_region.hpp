@@ -126,6 +126,13 @@ private:
     return LaneNoGrip(point_);
   }
 
+  using Places = std::array<std::byte *, num_lanes>;
+  template <class Part>
+  static Places places(const PlainResults &results, const std::array<Part *, most_lanes> &wanted,
+                       Part &unwanted);
+  void store_details(const PlainResults &results);
+  void store_dyads(const PlainResults &results);
+
   LaneVec force_;
   FourLanes dyad_;
   Lanes pressure_;
@@ -281,17 +288,43 @@ constexpr double only_law_and(ContactState state) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(state) << 32U | 0xffffffffU);
 }
 
+template <class Part>
+[[gnu::always_inline]] inline LaneRegions::Places
+LaneRegions::places(const PlainResults &results, const std::array<Part *, most_lanes> &wanted,
+                    Part &unwanted) {
+  Places to;
+  for (std::size_t i = 0; i < num_lanes; ++i) {
+    const bool is_wanted = (results.wanted >> i & 1U) != 0;
+    to[i] = reinterpret_cast<std::byte *>(is_wanted ? wanted[i] : &unwanted);
+  }
+  return to;
+}
+
+inline void LaneRegions::store_details(const PlainResults &results) {
+  const Places known = places(results, results.details, unwanted_details_);
+  store_by_lane(known, offsetof(RegionDetails, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
+  store_by_lane(known, offsetof(RegionDetails, origin), origin.x, origin.y, point_.x, point_.y);
+  store_by_lane(known, offsetof(RegionDetails, normal), normal_.x, normal_.y, normal_force_, shear_);
+  store_by_lane(known, offsetof(RegionDetails, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
+                select(undefined, 0.0, extent_end_));
+  store_pairs(known, offsetof(RegionDetails, grip), grip_.x, grip_.y);
+  const unsigned cancels = undefined.by_lane();
+  for_bits(results.wanted,
+           [&](std::size_t i) { results.details[i]->normal_undefined = (cancels >> i & 1U) != 0; });
+}
+
+inline void LaneRegions::store_dyads(const PlainResults &results) {
+  static_assert(sizeof(RegionDyads) == 3 * sizeof(Mat2));
+  const Places known = places(results, results.dyads, unwanted_dyads_);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const FourLanes &m = on_gradient_[k];
+    store_by_lane(known, k * sizeof(Mat2), m[0], m[1], m[2], m[3]);
+  }
+  store_pairs(places(results, results.grips, unwanted_grip_), 0, reference_grip_.x, reference_grip_.y);
+}
+
 inline unsigned LaneRegions::store(const PlainResults &results) {
-  using Places = std::array<std::byte *, num_lanes>;
-  const auto wants = [&](std::size_t i) { return (results.wanted >> i & 1U) != 0; };
-  const auto places = [&](const auto &of_results, auto &unwanted) {
-    Places to;
-    for (std::size_t i = 0; i < num_lanes; ++i) {
-      to[i] = reinterpret_cast<std::byte *>(wants(i) ? of_results[i] : &unwanted);
-    }
-    return to;
-  };
-  const Places sums = places(results.sums, unwanted_sums_);
+  const Places sums = places(results, results.sums, unwanted_sums_);
   const LaneVec shear_force = -elastic_ * perp(normal_);
   store_by_lane(sums, offsetof(RegionSums, force), force_.x, force_.y, torque_[0], torque_[1]);
   store_by_lane(sums, offsetof(RegionSums, shear_force), shear_force.x, shear_force.y, shear_torque_[0],
@@ -301,37 +334,19 @@ inline unsigned LaneRegions::store(const PlainResults &results) {
   static_assert(offsetof(RegionState, law) == 3 * sizeof(double) &&
                 offsetof(RegionState, state) == offsetof(RegionState, law) + sizeof(std::int32_t) &&
                 sizeof(RegionState) == 4 * sizeof(double) && std::endian::native == std::endian::little);
-  const Places memory = places(results.memory, unwanted_memory_);
   store_by_lane(
-      memory, offsetof(RegionState, shear), elastic_, longest_, slip_,
+      places(results, results.memory, unwanted_memory_), offsetof(RegionState, shear), elastic_, longest_,
+      slip_,
       select(slips_, Lanes(only_law_and(ContactState::slip)), Lanes(only_law_and(ContactState::stick))));
   const Mask wanted = Mask::from(results.wanted);
   max_overlap_ = select(wanted, max(max_overlap_, overlap_), max_overlap_);
   max_overlap_share_ = select(wanted, max(max_overlap_share_, overlap_share_), max_overlap_share_);
+  normals_undefined_ += std::popcount(undefined.by_lane() & results.wanted);
   if (results.has_details) {
-    const Places known = places(results.details, unwanted_details_);
-    store_by_lane(known, offsetof(RegionDetails, dyad), dyad_[0], dyad_[1], dyad_[2], dyad_[3]);
-    store_by_lane(known, offsetof(RegionDetails, origin), origin.x, origin.y, point_.x, point_.y);
-    store_by_lane(known, offsetof(RegionDetails, normal), normal_.x, normal_.y, normal_force_, shear_);
-    store_by_lane(known, offsetof(RegionDetails, cap), cap_, overlap_, select(undefined, 0.0, extent_begin_),
-                  select(undefined, 0.0, extent_end_));
-    store_pairs(known, offsetof(RegionDetails, grip), grip_.x, grip_.y);
+    store_details(results);
   }
   if (results.has_dyads) {
-    static_assert(sizeof(RegionDyads) == 3 * sizeof(Mat2));
-    const Places known = places(results.dyads, unwanted_dyads_);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const FourLanes &m = on_gradient_[k];
-      store_by_lane(known, k * sizeof(Mat2), m[0], m[1], m[2], m[3]);
-    }
-    store_pairs(places(results.grips, unwanted_grip_), 0, reference_grip_.x, reference_grip_.y);
-  }
-  const unsigned cancels = undefined.by_lane() & results.wanted;
-  normals_undefined_ += std::popcount(cancels);
-  for (std::size_t i = 0; results.has_details && i < num_lanes; ++i) {
-    if (wants(i)) {
-      results.details[i]->normal_undefined = (cancels >> i & 1U) != 0;
-    }
+    store_dyads(results);
   }
   return (wanted & (overlap_share_ > 0.5)).by_lane();
 }

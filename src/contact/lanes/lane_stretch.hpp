@@ -140,84 +140,111 @@ template <std::size_t lines>
   }
 }
 
+/// Where an edge runs inside the other block, seen from `origin` along `tangent`.
+template <std::size_t lines> struct EdgeInside {
+  Mask valid; ///< somewhere it does
+  LaneVec origin;
+  LaneVec tangent;
+  PerLine<lines> depth; ///< at the origin
+  PerLine<lines> slope;
+  PerLine<lines> root; ///< from the begin of the edge
+  Lanes begin;
+  Lanes end;
+  Mask entered; ///< it begins outside
+  ActiveLine entry;
+
+  [[gnu::always_inline]] void find_ends(const LaneChain &own, std::size_t edge, const LaneChain &other,
+                                        const PerLine<lines> &at_begin, const PerLine<lines> &at_end) {
+    const Lanes &edge_length = own.length[edge];
+    tangent = perp(own.normal[edge]);
+    begin = 0.0;
+    end = edge_length;
+    each<lines>([&](auto j) {
+      slope[j] = -dot(other.slope[edge_of<lines>(other, j)], tangent);
+      root[j] = -at_begin[j] / slope[j];
+      const Mask enters = at_begin[j] < 0.0;
+      begin = max(begin, select(enters, root[j], 0.0));
+      end = min(end, select(at_end[j] < 0.0, root[j], edge_length));
+      valid = valid & !(enters & (slope[j] <= 0.0)); // depth 0 but for rounding
+    });
+    valid = valid & (begin < end);
+    entered = valid & (begin > 0.0);
+    entry = {0.0, std::numeric_limits<double>::infinity()};
+    depth = at_begin;
+    origin = own.vertex[edge];
+  }
+
+  /// Measured from near the entry, the rest of a long edge costs no digits of the stretch inside. The ends
+  /// move by rounding only: the root of a line that is parallel but for rounding could move anywhere.
+  [[gnu::always_inline]] void measure_from_entry(const LaneChain &own, std::size_t edge,
+                                                 const LaneChain &other, const PerLine<lines> &at_begin) {
+    const Lanes &edge_length = own.length[edge];
+    origin = select(entered, origin + begin * tangent, origin);
+    const Lanes rounding = Lanes(16.0 * std::numeric_limits<double>::epsilon()) *
+                           (edge_length + max(abs(origin.x), abs(origin.y)));
+    const Lanes old_end = end - begin;
+    const Mask leaves = end < edge_length;
+    Lanes near_end = dot(own.vertex[edge + 1] - origin, tangent);
+    each<lines>([&](auto j) {
+      const std::size_t k = edge_of<lines>(other, j);
+      depth[j] = select(entered, dot(other.slope[k], other.vertex[k] - origin), depth[j]);
+      // Of lines that let it in at the same place the one of smallest slope.
+      const Mask is_entry = (at_begin[j] < 0.0) & (root[j] == begin) & (slope[j] < entry.slope);
+      entry.depth = select(is_entry, depth[j], entry.depth);
+      entry.slope = select(is_entry, slope[j], entry.slope);
+      near_end = select((slope[j] < 0.0) & leaves, min(near_end, -depth[j] / slope[j]), near_end);
+    });
+    begin = select(entered, clamp(-entry.depth / entry.slope, -rounding, rounding), begin);
+    end = select(entered, clamp(near_end, old_end - rounding, old_end + rounding), end);
+    valid = valid & (begin < end);
+  }
+
+  [[nodiscard, gnu::always_inline]] ActiveLine lowest() const {
+    ActiveLine lowest{depth[0], slope[0]};
+    for (std::size_t j = 1; j < lines; ++j) {
+      const Mask lower = (depth[j] < lowest.depth) | ((depth[j] == lowest.depth) & (slope[j] < lowest.slope));
+      lowest.depth = select(lower, depth[j], lowest.depth);
+      lowest.slope = select(lower, slope[j], lowest.slope);
+    }
+    return lowest;
+  }
+};
+
 template <std::size_t lines>
 void cut_edge(const LaneChain &own, std::size_t edge, const LaneChain &other, const PerLine<lines> &at_begin,
               const PerLine<lines> &at_end, LaneStretch &stretch) {
   Lanes least = max(at_begin[0], at_end[0]);
   each<lines>([&](auto j) { least = min(least, max(at_begin[j], at_end[j])); });
-  Mask valid = least > 0.0; // else beyond one of the lines
-  if (!valid.any()) {
-    stretch.valid = valid;
+  EdgeInside<lines> inside;
+  inside.valid = least > 0.0; // else beyond one of the lines
+  if (!inside.valid.any()) {
+    stretch.valid = inside.valid;
     stretch.begin = stretch.end = own.vertex[edge];
     stretch.length = stretch.pressure = stretch.moment = stretch.deepest = 0.0;
     stretch.num_pieces = 0;
     return;
   }
-  const LaneVec tangent = perp(own.normal[edge]);
-  const Lanes edge_length = own.length[edge];
-  PerLine<lines> slope;
-  PerLine<lines> root;
-  Lanes begin = 0.0;
-  Lanes end = edge_length;
-  each<lines>([&](auto j) {
-    slope[j] = -dot(other.slope[edge_of<lines>(other, j)], tangent);
-    root[j] = -at_begin[j] / slope[j];
-    const Mask enters = at_begin[j] < 0.0;
-    begin = max(begin, select(enters, root[j], 0.0));
-    end = min(end, select(at_end[j] < 0.0, root[j], edge_length));
-    valid = valid & !(enters & (slope[j] <= 0.0)); // depth 0 but for rounding
-  });
-  valid = valid & (begin < end);
-  const Mask entered = valid & (begin > 0.0);
-  PerLine<lines> depth = at_begin;
-  LaneVec a = own.vertex[edge];
-  Lanes entry_depth = 0.0;
-  Lanes entry_slope = std::numeric_limits<double>::infinity();
-  if (entered.any()) {
-    // Measured from near the entry, the rest of a long edge costs no digits of the stretch inside. The ends
-    // move by rounding only: the root of a line that is parallel but for rounding could move anywhere.
-    a = select(entered, a + begin * tangent, a);
-    const Lanes rounding =
-        Lanes(16.0 * std::numeric_limits<double>::epsilon()) * (edge_length + max(abs(a.x), abs(a.y)));
-    const Lanes old_end = end - begin;
-    const Mask leaves = end < edge_length;
-    Lanes near_end = dot(own.vertex[edge + 1] - a, tangent);
-    each<lines>([&](auto j) {
-      const std::size_t k = edge_of<lines>(other, j);
-      depth[j] = select(entered, dot(other.slope[k], other.vertex[k] - a), depth[j]);
-      // Of lines that let it in at the same place the one of smallest slope.
-      const Mask is_entry = (at_begin[j] < 0.0) & (root[j] == begin) & (slope[j] < entry_slope);
-      entry_depth = select(is_entry, depth[j], entry_depth);
-      entry_slope = select(is_entry, slope[j], entry_slope);
-      near_end = select((slope[j] < 0.0) & leaves, min(near_end, -depth[j] / slope[j]), near_end);
-    });
-    begin = select(entered, clamp(-entry_depth / entry_slope, -rounding, rounding), begin);
-    end = select(entered, clamp(near_end, old_end - rounding, old_end + rounding), end);
-    valid = valid & (begin < end);
+  inside.find_ends(own, edge, other, at_begin, at_end);
+  if (inside.entered.any()) {
+    inside.measure_from_entry(own, edge, other, at_begin);
   }
   // Lines left out of the chain may meet outside the other block: then all of the stretch lies outside its
   // box.
-  const LaneVec middle = a + (Lanes(0.5) * (begin + end)) * tangent;
-  valid = valid & (other.low.x <= middle.x) & (middle.x <= other.high.x) & (other.low.y <= middle.y) &
-          (middle.y <= other.high.y);
-  begin = select(valid, begin, 0.0);
-  end = select(valid, end, 0.0);
-  a = select(valid, a, own.vertex[edge]);
-
-  ActiveLine lowest{depth[0], slope[0]};
-  for (std::size_t j = 1; j < lines; ++j) {
-    const Mask lower = (depth[j] < lowest.depth) | ((depth[j] == lowest.depth) & (slope[j] < lowest.slope));
-    lowest.depth = select(lower, depth[j], lowest.depth);
-    lowest.slope = select(lower, slope[j], lowest.slope);
-  }
-  const Lanes depth_begin = select(valid & !entered, lowest.depth, 0.0);
-  const ActiveLine line{select(entered, entry_depth, lowest.depth),
-                        select(entered, entry_slope, lowest.slope)};
+  const LaneVec middle = inside.origin + (Lanes(0.5) * (inside.begin + inside.end)) * inside.tangent;
+  const Mask valid = inside.valid & (other.low.x <= middle.x) & (middle.x <= other.high.x) &
+                     (other.low.y <= middle.y) & (middle.y <= other.high.y);
+  const Lanes begin = select(valid, inside.begin, 0.0);
+  const Lanes end = select(valid, inside.end, 0.0);
+  const LaneVec origin = select(valid, inside.origin, own.vertex[edge]);
+  const ActiveLine lowest = inside.lowest();
+  const Lanes depth_begin = select(valid & !inside.entered, lowest.depth, 0.0);
+  const ActiveLine line{select(inside.entered, inside.entry.depth, lowest.depth),
+                        select(inside.entered, inside.entry.slope, lowest.slope)};
   stretch.valid = valid;
-  stretch.begin = a + begin * tangent;
-  stretch.end = a + end * tangent;
+  stretch.begin = origin + begin * inside.tangent;
+  stretch.end = origin + end * inside.tangent;
   stretch.length = end - begin;
-  walk<lines>(depth, slope, line, depth_begin, begin, end, stretch);
+  walk<lines>(inside.depth, inside.slope, line, depth_begin, begin, end, stretch);
 }
 
 template <std::size_t lines>

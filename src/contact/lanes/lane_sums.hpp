@@ -126,54 +126,78 @@ private:
   AtHand at_hand_;
 };
 
+/// Adds a group's regions to the sums of its blocks.
+template <bool has_dyads, bool some_wait> class GroupAdder {
+public:
+  [[gnu::always_inline]] explicit GroupAdder(GroupToAdd &group)
+      : group_(group), num_owned_(group.sums.size()) {}
+  /// @return false where one of the blocks waits: then the pair has only been added to the other one
+  [[gnu::always_inline]] bool add(std::size_t slot, const RegionAtHand &region) {
+    const CandidatePair &pair = group_.pairs[slot];
+    lower_.of(sum_of(pair.lower.value)).add_to_lower(region);
+    if (BlockContactSum *sum = sum_of(pair.higher.value)) {
+      SumAtHand higher;
+      higher.load(*sum);
+      higher.add_to_higher(region);
+      higher.store(*sum);
+    }
+    if constexpr (has_dyads) {
+      add_dyads(pair, slot, region);
+    }
+    return !(some_wait && (waits(pair.lower.value) || waits(pair.higher.value)));
+  }
+  [[gnu::always_inline]] void close() {
+    lower_.close();
+    lower_gradient_.close();
+  }
+
+private:
+  [[gnu::always_inline]] void add_dyads(const CandidatePair &pair, std::size_t slot,
+                                        const RegionAtHand &region) {
+    GradientAtHand dyads;
+    dyads.load(group_.dyads[slot]);
+    lower_gradient_.of(gradient_of(pair.lower.value)).add_to_lower(dyads);
+    if (BlockGradientSum *sum = gradient_of(pair.higher.value)) {
+      GradientAtHand higher;
+      higher.load(*sum);
+      higher.add_to_higher(dyads, region,
+                           group_.motions[pair.lower.value].centroid -
+                               group_.motions[pair.higher.value].centroid);
+      higher.store(*sum);
+    }
+  }
+  [[nodiscard, gnu::always_inline]] bool gets_it(std::size_t row) const {
+    return row < num_owned_ && (!some_wait || group_.is_added[row] != 0);
+  }
+  [[nodiscard, gnu::always_inline]] bool waits(std::size_t row) const {
+    return row < num_owned_ && !gets_it(row);
+  }
+  [[gnu::always_inline]] BlockContactSum *sum_of(std::size_t row) {
+    return gets_it(row) ? &group_.sums[row] : nullptr;
+  }
+  [[gnu::always_inline]] BlockGradientSum *gradient_of(std::size_t row) {
+    const std::uint32_t entry = group_.deformation_begin[row];
+    return gets_it(row) && entry < group_.deformation_begin[row + 1] ? &group_.deformations[entry].contact
+                                                                     : nullptr;
+  }
+
+  GroupToAdd &group_;
+  std::size_t num_owned_;
+  LowerSum<SumAtHand, BlockContactSum> lower_;
+  LowerSum<GradientAtHand, BlockGradientSum> lower_gradient_;
+};
+
 template <bool has_dyads, bool some_wait> inline void add_pairs(GroupToAdd &group) {
   static_assert(std::endian::native == std::endian::little);
-  LowerSum<SumAtHand, BlockContactSum> lower;
-  LowerSum<GradientAtHand, BlockGradientSum> lower_gradient;
-  const std::size_t num_owned = group.sums.size();
-  const auto gets_it = [&](std::size_t row) __attribute__((always_inline)) {
-    return row < num_owned && (!some_wait || group.is_added[row] != 0);
-  };
-  const auto sum_of = [&](std::size_t row) __attribute__((always_inline)) {
-    return gets_it(row) ? &group.sums[row] : nullptr;
-  };
-  const auto gradient_of = [&](std::size_t row) __attribute__((always_inline))->BlockGradientSum * {
-    const std::uint32_t entry = group.deformation_begin[row];
-    return gets_it(row) && entry < group.deformation_begin[row + 1] ? &group.deformations[entry].contact
-                                                                    : nullptr;
-  };
+  GroupAdder<has_dyads, some_wait> adder(group);
   double largest_squared = group.largest_squared;
   for (std::size_t first = 0; first < group.seen.size(); first += sizeof(std::uint64_t)) {
     std::uint64_t seen = 0;
     std::memcpy(&seen, &group.seen[first], sizeof(seen));
     for (seen &= 0x0101010101010101U * GroupToAdd::touches; seen != 0; seen &= seen - 1) {
       const std::size_t slot = first + static_cast<std::size_t>(std::countr_zero(seen)) / 8;
-      const CandidatePair &pair = group.pairs[slot];
       const RegionAtHand region(group.regions[slot]);
-      lower.of(sum_of(pair.lower.value)).add_to_lower(region);
-      if (BlockContactSum *sum = sum_of(pair.higher.value)) {
-        SumAtHand higher;
-        higher.load(*sum);
-        higher.add_to_higher(region);
-        higher.store(*sum);
-      }
-      if constexpr (has_dyads) {
-        GradientAtHand dyads;
-        dyads.load(group.dyads[slot]);
-        lower_gradient.of(gradient_of(pair.lower.value)).add_to_lower(dyads);
-        if (BlockGradientSum *sum = gradient_of(pair.higher.value)) {
-          GradientAtHand higher;
-          higher.load(*sum);
-          higher.add_to_higher(dyads, region,
-                               group.motions[pair.lower.value].centroid -
-                                   group.motions[pair.higher.value].centroid);
-          higher.store(*sum);
-        }
-      }
-      const auto waits = [&](std::size_t row) __attribute__((always_inline)) {
-        return row < num_owned && !gets_it(row);
-      };
-      if (some_wait && (waits(pair.lower.value) || waits(pair.higher.value))) {
+      if (!adder.add(slot, region)) {
         group.waiting[group.num_waiting++] = static_cast<std::uint16_t>(slot);
         continue;
       }
@@ -182,8 +206,7 @@ template <bool has_dyads, bool some_wait> inline void add_pairs(GroupToAdd &grou
       ++group.num_touching;
     }
   }
-  lower.close();
-  lower_gradient.close();
+  adder.close();
   group.largest_squared = largest_squared;
 }
 

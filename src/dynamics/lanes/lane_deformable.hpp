@@ -79,6 +79,54 @@ struct LaneStepped {
   }
 };
 
+/// The elasticity at the trial configuration, in turning axes, at the spring's time so far known.
+struct LaneResistance {
+  LaneMat back; ///< to turning axes
+  LaneMat stretch;
+  LaneMat stress;
+  LaneMat viscous; ///< of stiffness damping
+  LaneMat all;     ///< both
+
+  [[gnu::always_inline]] LaneResistance(const LaneDeformable &block, const LaneMat &turn,
+                                        const BlockSolve &step)
+      : back(transposed(turn)), stretch(back * block.trial),
+        stress(block.elasticity.force(stretch, block.initial_strain)), viscous{{0.0, 0.0, 0.0, 0.0}} {
+    if (step.is_implicit) {
+      const LaneMat f_base = base_of(step, block.gradient, block.rate, block.acceleration);
+      stress = stress + block.elasticity.stress(back * (f_base - block.trial));
+    }
+    all = stress;
+    if (step.stiffness_damping > 0.0) {
+      viscous = Lanes(step.stiffness_damping) *
+                block.elasticity.stress(back * base_rate_of(step, block.rate, block.acceleration));
+      all = all + viscous;
+    }
+  }
+};
+
+/// a J added to the elastic force so that all of it, K e included, has no torque. One linear equation: it
+/// works on r alone, as the force -2 a against it.
+/// @param x  the solution without it; takes it in
+/// @return a J
+template <class Matrix>
+[[gnu::always_inline]] inline LaneMat free_of_torque(const LaneElasticity &elasticity, const Matrix &matrix,
+                                                     const LaneResistance &resistance, const BlockSolve &step,
+                                                     LaneDofs &x) {
+  const LaneMat &stretch = resistance.stretch;
+  const Lanes coming = step.spring.coming + step.stiffness_damping * step.spring.rate_coming;
+  const LaneDofs by_torque = matrix.by_torque();
+  const LaneMat whole = resistance.all + coming * elasticity.stress(lane_gradient_of(x.gradient));
+  const Lanes no_torque =
+      lane_moment(whole, stretch) /
+      (stretch.xx() + stretch.yy() +
+       Lanes(2.0) * coming * lane_moment(elasticity.stress(lane_gradient_of(by_torque.gradient)), stretch));
+  x.u = x.u - Lanes(2.0) * no_torque * by_torque.u;
+  for (std::size_t k = 0; k < 4; ++k) {
+    x.gradient[k] = x.gradient[k] - Lanes(2.0) * no_torque * by_torque.gradient[k];
+  }
+  return LaneMat{{0.0, -no_torque, no_torque, 0.0}};
+}
+
 /// @param force, gradient_force  all that acts at the trial configuration, without the elasticity
 /// @param way  from the trial configuration before to this one; read where local damping acts
 template <class Matrix>
@@ -86,45 +134,17 @@ template <class Matrix>
 step_of(const LaneDeformable &block, const Matrix &matrix, const Lanes &mass, const LaneVec &force,
         const LaneMat &gradient_force, const LaneWay &way, const BlockSolve &step) {
   const LaneMat turn = lane_rotation_of(block.trial);
-  const LaneMat back = transposed(turn);
-  const LaneMat stretch = back * block.trial;
+  const LaneResistance resistance(block, turn, step);
   const LaneElasticity &elasticity = block.elasticity;
-  // In turning axes, at the spring's time so far known.
-  LaneMat stress = elasticity.force(stretch, block.initial_strain);
-  if (step.is_implicit) {
-    const LaneMat f_base = base_of(step, block.gradient, block.rate, block.acceleration);
-    stress = stress + elasticity.stress(back * (f_base - block.trial));
-  }
-  const bool is_viscous = step.stiffness_damping > 0.0;
-  LaneMat viscous{{0.0, 0.0, 0.0, 0.0}};
-  LaneMat resisting = stress;
-  if (is_viscous) {
-    viscous = Lanes(step.stiffness_damping) *
-              elasticity.stress(back * base_rate_of(step, block.rate, block.acceleration));
-    resisting = resisting + viscous;
-  }
-
+  const LaneMat &back = resistance.back;
   const double am = step.scheme.alpha_m;
   const LaneMat h =
-      back * (gradient_force - Lanes(am) * (block.acceleration * block.second_moment)) - resisting;
+      back * (gradient_force - Lanes(am) * (block.acceleration * block.second_moment)) - resistance.all;
   LaneDofs x{back(force - am * mass * block.a), lane_force_dofs(h)};
   matrix.solve(x);
   LaneMat torque_free{{0.0, 0.0, 0.0, 0.0}};
   if (step.is_implicit) {
-    // a J added to the elastic force so that all of it, K e included, has no torque. One linear equation: it
-    // works on r alone, as the force -2 a against it.
-    const Lanes coming = step.spring.coming + step.stiffness_damping * step.spring.rate_coming;
-    const LaneDofs by_torque = matrix.by_torque();
-    const LaneMat whole = resisting + coming * elasticity.stress(lane_gradient_of(x.gradient));
-    const Lanes no_torque =
-        lane_moment(whole, stretch) /
-        (stretch.xx() + stretch.yy() +
-         Lanes(2.0) * coming * lane_moment(elasticity.stress(lane_gradient_of(by_torque.gradient)), stretch));
-    x.u = x.u - Lanes(2.0) * no_torque * by_torque.u;
-    for (std::size_t k = 0; k < 4; ++k) {
-      x.gradient[k] = x.gradient[k] - Lanes(2.0) * no_torque * by_torque.gradient[k];
-    }
-    torque_free = LaneMat{{0.0, -no_torque, no_torque, 0.0}};
+    torque_free = free_of_torque(elasticity, matrix, resistance, step, x);
   }
   LaneStepped now;
   now.damped = {{0.0, 0.0}, {{0.0, 0.0, 0.0, 0.0}}};
@@ -132,6 +152,7 @@ step_of(const LaneDeformable &block, const Matrix &matrix, const Lanes &mass, co
     const LaneDofs d = damp_locally(block, matrix, mass, back, way, step, x);
     now.damped = {turn(d.u), turn * lane_force_of(d.gradient)};
   }
+  LaneMat stress = resistance.stress;
   if (step.is_implicit) {
     stress =
         stress + (Lanes(step.spring.coming) * elasticity.stress(lane_gradient_of(x.gradient)) + torque_free);
@@ -140,10 +161,10 @@ step_of(const LaneDeformable &block, const Matrix &matrix, const Lanes &mass, co
   now.a = turn(x.u);
   now.acceleration = turn * lane_gradient_of(x.gradient);
   now.internal = turn * stress;
-  now.viscous = viscous;
-  if (is_viscous) {
-    now.viscous = turn * (viscous + Lanes(step.stiffness_damping * step.spring.rate_coming) *
-                                        elasticity.stress(lane_gradient_of(x.gradient)));
+  now.viscous = resistance.viscous;
+  if (step.stiffness_damping > 0.0) {
+    now.viscous = turn * (resistance.viscous + Lanes(step.stiffness_damping * step.spring.rate_coming) *
+                                                   elasticity.stress(lane_gradient_of(x.gradient)));
   }
   const double dt = step.time_step;
   now.u = position_of(step.scheme, dt, block.u, block.v, block.a, now.a);
@@ -155,69 +176,84 @@ step_of(const LaneDeformable &block, const Matrix &matrix, const Lanes &mass, co
   return now;
 }
 
-template <class MatrixOf>
-inline unsigned step_scattered(BlockSystem &system, DeformableLanes &lanes, const BlockSolve &step,
-                               MatrixOf &&matrix_of) {
+/// Blocks of any rows, one in each lane; lanes beyond repeat the last one.
+struct ScatteredRows {
   std::array<std::size_t, num_lanes> row;
-  std::array<std::size_t, num_lanes> given;
+  std::array<std::size_t, num_lanes> given; ///< place in DeformableLanes
   std::array<Deformation *, num_lanes> of;
-  for (std::size_t i = 0; i < num_lanes; ++i) { // lanes beyond repeat the last one
-    given[i] = i < lanes.count ? i : lanes.count - 1;
-    row[i] = lanes.row[given[i]];
-    of[i] = &system.deformation_of(row[i]);
+
+  ScatteredRows(BlockSystem &system, const DeformableLanes &lanes) {
+    for (std::size_t i = 0; i < num_lanes; ++i) {
+      given[i] = i < lanes.count ? i : lanes.count - 1;
+      row[i] = lanes.row[given[i]];
+      of[i] = &system.deformation_of(row[i]);
+    }
   }
-  const auto load = [&](Mat2 Deformation::*field) __attribute__((always_inline)) {
+  [[nodiscard, gnu::always_inline]] LaneMat load(Mat2 Deformation::*field) const {
     return LaneMat::of([&](std::size_t i) { return &(of[i]->*field); });
-  };
-  const auto load_u = [&](const std::vector<RigidDof> &field) __attribute__((always_inline)) {
+  }
+  [[nodiscard, gnu::always_inline]] LaneVec load_u(const std::vector<RigidDof> &field) const {
     return LaneVec::of([&](std::size_t i) { return &field[row[i]].u; });
-  };
-  LaneDeformable block;
-  block.u = load_u(system.displacement);
-  block.v = load_u(system.velocity);
-  block.a = load_u(system.acceleration);
-  block.load([&](std::size_t i) { return of[i]; });
-  const LaneMasses masses = LaneMasses::of([&](std::size_t i) { return &system.properties[row[i]]; });
-  LaneVec force = LaneVec::of([&](std::size_t i) { return &system.contact[row[i]].force.u; });
-  LaneMat gradient_force = LaneMat::of([&](std::size_t i) { return &of[i]->contact.force; });
-  if (lanes.are_held) {
-    force = force + LaneVec::of([&](std::size_t i) { return &lanes.held[given[i]].u; });
-    gradient_force =
-        gradient_force + LaneMat::of([&](std::size_t i) { return &lanes.held[given[i]].gradient; });
   }
-  const LaneWay way{LaneVec::of([&](std::size_t i) { return &system.motion[row[i]].step; }),
-                    LaneMat{load_by_lane([&](std::size_t i) { return &system.motion[row[i]].turn[0].x; })} *
-                        block.trial};
-  LaneStepped now =
-      step_of(block, matrix_of(block, masses, row), masses.mass, force, gradient_force, way, step);
-  const Mask sound = now.are_sound();
-  const unsigned broken = (!sound).by_lane() & ((1U << lanes.count) - 1U);
-  if (broken != 0) {
-    now.keep_where(sound, block, load(&Deformation::internal));
-  }
-  const Lanes most_motion =
-      now.most_motion(load_u(system.refreshed), load(&Deformation::refreshed), masses.radius, step.time_step);
+};
+
+inline void store_scattered(const LaneStepped &now, const LaneWay &way, const Lanes &most_motion,
+                            const ScatteredRows &rows, BlockSystem &system, DeformableLanes &lanes) {
   std::array<std::byte *, num_lanes> state;
   std::array<std::byte *, num_lanes> viscous;
   for (std::size_t i = 0; i < num_lanes; ++i) {
-    state[i] = reinterpret_cast<std::byte *>(of[i]);
-    viscous[i] = reinterpret_cast<std::byte *>(&lanes.viscous[given[i]]);
+    state[i] = reinterpret_cast<std::byte *>(rows.of[i]);
+    viscous[i] = reinterpret_cast<std::byte *>(&lanes.viscous[rows.given[i]]);
   }
   now.store(state);
   store_by_lane(viscous, 0, now.viscous.xx(), now.viscous.xy(), now.viscous.yx(), now.viscous.yy());
   const Lanes damped_work = half_work(now.damped, way);
   for (std::size_t i = 0; i < lanes.count; ++i) {
+    const std::size_t row = rows.row[i];
     const LaneMat &damped = now.damped.gradient;
     lanes.damped[i] = {{now.damped.u.x[i], now.damped.u.y[i]},
                        {damped.xx()[i], damped.xy()[i], damped.yx()[i], damped.yy()[i]}};
     lanes.damped_work[i] = damped_work[i];
-    system.displacement[row[i]].u = {now.u.x[i], now.u.y[i]};
-    system.displacement[row[i]].r += now.turned[i];
-    system.velocity[row[i]].u = {now.v.x[i], now.v.y[i]};
-    system.acceleration[row[i]].u = {now.a.x[i], now.a.y[i]};
+    system.displacement[row].u = {now.u.x[i], now.u.y[i]};
+    system.displacement[row].r += now.turned[i];
+    system.velocity[row].u = {now.v.x[i], now.v.y[i]};
+    system.acceleration[row].u = {now.a.x[i], now.a.y[i]};
     lanes.turned[i] = now.turned[i];
     lanes.most_motion[i] = most_motion[i];
   }
+}
+
+template <class MatrixOf>
+inline unsigned step_scattered(BlockSystem &system, DeformableLanes &lanes, const BlockSolve &step,
+                               MatrixOf &&matrix_of) {
+  const ScatteredRows rows(system, lanes);
+  LaneDeformable block;
+  block.u = rows.load_u(system.displacement);
+  block.v = rows.load_u(system.velocity);
+  block.a = rows.load_u(system.acceleration);
+  block.load([&](std::size_t i) { return rows.of[i]; });
+  const LaneMasses masses = LaneMasses::of([&](std::size_t i) { return &system.properties[rows.row[i]]; });
+  LaneVec force = LaneVec::of([&](std::size_t i) { return &system.contact[rows.row[i]].force.u; });
+  LaneMat gradient_force = LaneMat::of([&](std::size_t i) { return &rows.of[i]->contact.force; });
+  if (lanes.are_held) {
+    force = force + LaneVec::of([&](std::size_t i) { return &lanes.held[rows.given[i]].u; });
+    gradient_force =
+        gradient_force + LaneMat::of([&](std::size_t i) { return &lanes.held[rows.given[i]].gradient; });
+  }
+  const LaneWay way{
+      LaneVec::of([&](std::size_t i) { return &system.motion[rows.row[i]].step; }),
+      LaneMat{load_by_lane([&](std::size_t i) { return &system.motion[rows.row[i]].turn[0].x; })} *
+          block.trial};
+  LaneStepped now =
+      step_of(block, matrix_of(block, masses, rows.row), masses.mass, force, gradient_force, way, step);
+  const Mask sound = now.are_sound();
+  const unsigned broken = (!sound).by_lane() & ((1U << lanes.count) - 1U);
+  if (broken != 0) {
+    now.keep_where(sound, block, rows.load(&Deformation::internal));
+  }
+  const Lanes most_motion = now.most_motion(rows.load_u(system.refreshed), rows.load(&Deformation::refreshed),
+                                            masses.radius, step.time_step);
+  store_scattered(now, way, most_motion, rows, system, lanes);
   return broken;
 }
 

@@ -212,7 +212,8 @@ private:
 /// That of blocks on springs of their own, as it stands in the system.
 class HeldMatrix {
 public:
-  template <class Get> [[gnu::always_inline]] explicit HeldMatrix(Get &&get) {
+  /// @param get  the matrix of lane i
+  template <class Get> [[gnu::always_inline]] explicit HeldMatrix(const Get &get) {
     static_assert(offsetof(BlockMatrix, by_torque) == 21 * sizeof(double));
     const auto load = [&](std::size_t first) __attribute__((always_inline)) {
       return load_by_lane([&](std::size_t i) { return get(i)->factor.data() + first; });

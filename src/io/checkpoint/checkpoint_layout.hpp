@@ -249,7 +249,7 @@ static_assert(sizeof(BlockMark) == 6 * sizeof(double));
 static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
-static_assert(sizeof(Deformation) == 7 * 64);
+static_assert(sizeof(Deformation) == std::size_t{7} * 64);
 static_assert(sizeof(RegionMemory) == 11 * sizeof(double));
 static_assert(sizeof(PseudoMotion) == 18 * sizeof(double)); // simulation/static_state.cpp
 

@@ -96,10 +96,9 @@ private:
   template <class Row>
   void expect_rising_times(const Section &section, const char *key, const std::vector<Row> &rows) {
     const toml::array &nodes = *section.sound(key)->as_array();
-    const auto time_fault = [&](std::size_t i, std::string why, std::string hint) {
+    const auto time_fault = [&](std::size_t i, const std::string &why, const std::string &hint) {
       fault((*nodes[i].as_array())[0],
-            fmt::format("row {} of {} has the time {}", i, section.subject(key), rows[i].time),
-            std::move(why), std::move(hint));
+            fmt::format("row {} of {} has the time {}", i, section.subject(key), rows[i].time), why, hint);
     };
     if (rows[0].time != 0.0) {
       time_fault(0, "the table must begin at 0", "add a row for the time 0");

@@ -78,6 +78,34 @@ struct Text {
   const std::vector<std::string> &sets;
 };
 
+/// The tree of a stage: that of the file with all that is set up to it.
+struct TreeOfStage {
+  std::optional<toml::table> root;
+  bool changes = false;                          ///< this stage sets something
+  std::optional<toml::source_region> stress_set; ///< where it sets the in-situ stress
+};
+
+TreeOfStage tree_of_stage(const Text &text, std::size_t last, Faults &faults) {
+  TreeOfStage tree{parse_scene(text.toml, faults), false, {}};
+  for (std::size_t i = 0; i < text.sets.size(); ++i) {
+    apply_set(*tree.root, text.sets[i], i, faults);
+  }
+  toml::array *stages = (*tree.root)["stage"].as_array();
+  for (std::size_t k = 0; k <= last; ++k) {
+    toml::table *stage = (*stages)[k].as_table();
+    toml::table *set = stage == nullptr ? nullptr : stage->get_as<toml::table>("set");
+    tree.changes = set != nullptr;
+    for (auto entry = set == nullptr ? toml::table::iterator() : set->begin();
+         tree.changes && entry != set->end(); ++entry) {
+      if (k == last && sets_stress(entry->first.str())) {
+        tree.stress_set = entry->first.source();
+      }
+      apply_change(*tree.root, entry->first, entry->second, faults);
+    }
+  }
+  return tree;
+}
+
 /// The scene of a stage is that of the file with all that is set up to it; its faults are told where they are
 /// set. Moved values leave a copy of the tree that is no longer good: each stage takes a new one.
 void read_changes(const Text &text, Faults &faults, Scene &scene) {
@@ -87,37 +115,19 @@ void read_changes(const Text &text, Faults &faults, Scene &scene) {
   hold_where_they_are(start, could_move);
   for (std::size_t last = 0; last < scene.stages.size(); ++last) {
     Faults own(faults.origins());
-    auto root = parse_scene(text.toml, own);
-    for (std::size_t i = 0; i < text.sets.size(); ++i) {
-      apply_set(*root, text.sets[i], i, own);
-    }
-    toml::array *stages = (*root)["stage"].as_array();
-    bool changes = false;
-    std::optional<toml::source_region> stress_set; // in this stage
-    for (std::size_t k = 0; k <= last; ++k) {
-      const toml::table *stage = (*stages)[k].as_table();
-      toml::table *set = stage == nullptr ? nullptr : (*stages)[k].as_table()->get_as<toml::table>("set");
-      changes = set != nullptr;
-      for (auto entry = set == nullptr ? toml::table::iterator() : set->begin();
-           changes && entry != set->end(); ++entry) {
-        if (k == last && sets_stress(entry->first.str())) {
-          stress_set = entry->first.source();
-        }
-        apply_change(*root, entry->first, entry->second, own);
-      }
-    }
-    if (!changes) {
+    TreeOfStage tree = tree_of_stage(text, last, own);
+    if (!tree.changes) {
       continue;
     }
     auto after = std::make_shared<Scene>();
-    const FaultyNodes faulty = check_keys(*root, own);
-    const SceneSource source{*root, faulty, own};
+    const FaultyNodes faulty = check_keys(*tree.root, own);
+    const SceneSource source{*tree.root, faulty, own};
     read_parts(source, text.file, *after);
-    if (stress_set) {
+    if (tree.stress_set) {
       after->in_situ = read_in_situ(source, *after);
       read_stressed_sides(source, *after);
       if (after->in_situ.present) { // else it has been told
-        check_changed_stress(source, *stress_set, *after, stress);
+        check_changed_stress(source, *tree.stress_set, *after, stress);
       }
       stress = after->in_situ;
       scene.stages[last].changes_stress = true;
