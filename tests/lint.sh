@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# lint.sh [--all]: checks the format of all C++ files with clang-format, and the sources of src/ and partition/ that
-# differ from the state before with clang-tidy (--all: every one of them). The state before is the commit where this branch left
-# main, on main itself the commit before. Of a changed header one source is checked that includes it.
+# lint.sh [--all | COMMIT]: checks the format of all C++ files with clang-format, and the sources of src/ and partition/
+# that differ from a commit with clang-tidy (--all: every one of them). By default that is the commit where this branch left
+# main, on main itself the commit before. Of a changed header one source is checked that includes it, by others or itself.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/../run/set_up.sh"
@@ -25,9 +25,35 @@ state_before() {
   echo "$base"
 }
 
+# Files that include a header, which is named from src/ or include/.
+includers_of() {
+  local name=${1#include/}
+  git grep -lF "#include \"${name#src/}\"" -- 'src/*' 'partition/*' 'include/*' || true
+}
+
+# A source that includes the header, if need be by other headers (of which none includes itself).
+source_with() {
+  local file found
+  local -a files
+  mapfile -t files < <(includers_of "$1")
+  for file in "${files[@]}"; do
+    if [[ $file == *.cpp ]]; then
+      echo "$file"
+      return
+    fi
+  done
+  for file in "${files[@]}"; do
+    found=$(source_with "$file")
+    if [ -n "$found" ]; then
+      echo "$found"
+      return
+    fi
+  done
+}
+
 # sources_to_check --all | COMMIT
 sources_to_check() {
-  local file name
+  local file
   if [ "$1" = --all ]; then
     git ls-files 'src/*.cpp' 'partition/*.cpp'
     return
@@ -35,11 +61,7 @@ sources_to_check() {
   git diff --name-only --diff-filter=d "$1" -- include src partition | while read -r file; do
     case $file in
       *.cpp) echo "$file" ;;
-      *.hpp)
-        name=${file#include/}
-        name=${name#src/}
-        git grep -lF "#include \"$name\"" -- 'src/*.cpp' 'partition/*.cpp' | head -n 1 || true
-        ;;
+      *.hpp) source_with "$file" ;;
     esac
   done | sort -u
 }
@@ -55,4 +77,4 @@ mapfile -t sources < <(sources_to_check "$before")
 echo "== clang-tidy: ${#sources[@]} sources =="
 [ ${#sources[@]} -gt 0 ] || exit 0
 cmake -S "$top" -B "$build" --preset "$preset" >/dev/null
-printf '%s\n' "${sources[@]}" | xargs -n 1 -P 2 clang-tidy --quiet -p "$build"
+printf '%s\n' "${sources[@]}" | xargs -n 1 -P 2 clang-tidy --quiet -p "$build" 2> >(grep -v 'warnings generated' >&2)
