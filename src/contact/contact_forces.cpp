@@ -332,7 +332,7 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
   for (const std::uint32_t k : pairs) {
     const CandidatePair &pair = candidates.pairs[k];
     if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) ||
-        history.has_bonds(k) || history.is_dilated(k)) {
+        history.has_bonds(k) || history.is_opened(k)) {
       ++report_.evaluations;
       evaluate_general_pair(system, candidates, k, history.of_other(k));
     }
@@ -352,7 +352,7 @@ ForceReport ContactForces::evaluate(BlockSystem &system, const Candidates &candi
 void ContactForces::begin(BlockSystem &system, const Candidates &candidates) {
   begin_rows(system, system.first_fixed(), system.num_rows());
   num_forces_ = 0;
-  dilation_works_.clear();
+  opening_works_.clear();
   next_.overlaps.assign(candidates.pairs.size(), PlainOverlap::none);
   next_.ranges.assign(candidates.general.empty() ? 0 : candidates.pairs.size(), {});
   next_.regions.clear();

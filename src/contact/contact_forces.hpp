@@ -35,7 +35,7 @@
 #include "contact/block_sums.hpp"
 #include "contact/candidates.hpp"
 #include "contact/geometry/overlap.hpp"
-#include "contact/laws/dilation.hpp"
+#include "contact/opened_regions.hpp"
 #include "contact/region_sums.hpp"
 
 #include <array>
@@ -208,7 +208,7 @@ public:
 
   /// What slip has done against the pressure in the last evaluation, off the work of friction in the ledger
   /// of each block.
-  void add_dilation_works(const Candidates &candidates, BlockSystem &system);
+  void add_opening_works(const Candidates &candidates, BlockSystem &system);
 
 private:
   struct RelativeVelocity;
@@ -297,19 +297,13 @@ private:
   [[nodiscard]] BondShare share_of_bonds(const CandidatePair &pair, const Region &region) const;
   /// Those that hold as regions of their own.
   void append_bonds(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number);
-  /// The pair at hand with `dilation` taken out, and its region that goes on with this memory.
-  const Region *find_dilated(const BlockSystem &system, const CandidatePair &pair, const RegionMemory &memory,
-                             Vec2 dilation);
-  double guessed_slip(const BlockSystem &system, const CandidatePair &pair, const RegionMemory &known);
-  [[nodiscard]] double consistent_slip(const BlockSystem &system, const CandidatePair &pair,
-                                       const RegionMemory &known, const RegionForce &force,
-                                       double guess) const;
-  void evaluate_dilated(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
-                        const RegionMemory &known);
+  /// The pair at hand with `opening` taken out, and its region that goes on with this memory.
+  const Region *find_opened(const BlockSystem &system, const CandidatePair &pair, const RegionMemory &memory,
+                            Vec2 opening);
+  void evaluate_opened(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                       const RegionMemory &known);
   void keep_open(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
                  const RegionMemory &known);
-  void dilate(const BlockSystem &system, const CandidatePair &pair, double slip_before,
-              const RegionForce &force, RegionMemory &memory);
   void add_friction(const BlockSystem &system, const CandidatePair &pair, const RelativeVelocity &velocity,
                     const BondShare &bonds, RegionMemory &memory, RegionForce &force);
   void slip(const BlockSystem &system, const CandidatePair &pair, const JointLaw &law, double stiffness,
@@ -364,14 +358,14 @@ private:
   /// A memory within reach of a region: their distance (m) and numbers.
   std::vector<std::tuple<double, std::size_t, std::size_t>> matches_;
   std::vector<double> facing_; ///< of the pieces at hand, scratch
-  /// N opened by slip, J/m.
-  struct DilationWork {
+  /// Of laws that open a region against its pressure, J/m.
+  struct OpeningWork {
     std::uint32_t pair = 0;
     double work = 0.0;
   };
-  std::vector<DilationWork> dilation_works_;
-  std::vector<RegionMemory> dilated_; ///< of the pair at hand
-  ClosedPair closed_;                 ///< the same, with one of these taken out
+  std::vector<OpeningWork> opening_works_;
+  std::vector<RegionMemory> opened_; ///< of the pair at hand
+  ClosedPair closed_;                ///< the same, with one of these taken out
 };
 
 /// int t X^T with X = F^-1 (x - x_c) of what BlockSums has added.

@@ -2,6 +2,7 @@
 
 #include "contact/contact_forces.hpp"
 #include "contact/laws/bond_work.hpp"
+#include "contact/laws/dilation.hpp"
 #include "contact/laws/grip.hpp"
 #include "contact/laws/region_law.hpp"
 #include "contact/pair_motion.hpp"
@@ -148,7 +149,7 @@ void ContactForces::slip(const BlockSystem &system, const CandidatePair &pair, c
   memory.shear = std::copysign(force.cap, memory.shear);
   memory.state = ContactState::slip;
   if (law.dilates()) {
-    dilate(system, pair, slip_before, force, memory);
+    opening_works_.push_back({force.pair, dilate(system, pair, law, slip_before, force, memory)});
   }
 }
 
@@ -317,14 +318,53 @@ void ContactForces::load_found(const BlockSystem &system, const CandidatePair &p
   load_region(system, constants_of(system, parameters_, pair, memory.law), region, share, memory, force);
 }
 
+// With the opening that its law gives it in this evaluation.
+void ContactForces::evaluate_opened(const BlockSystem &system, const CandidatePair &pair,
+                                    std::uint32_t number, const RegionMemory &known) {
+  const CandidatePair constants = constants_of(system, parameters_, pair, known.law);
+  const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(constants.law)];
+  const bool opens = law.dilates() && known.longest > 0.0 && known.slip < law.dilation_limit;
+  RegionForce force;
+  const Region *region = nullptr;
+  const auto touches_after = [&](double slip) {
+    const double opened = law.dilation_at(known.slip + slip) - law.dilation_at(known.slip);
+    force = {};
+    region = find_opened(system, pair, known, (1.0 + opened / norm(known.opening)) * known.opening);
+    return region != nullptr && measure(*region, force);
+  };
+  const double guess =
+      opens && known.state == ContactState::slip ? guessed_slip(system, pair, known, closed_) : 0.0;
+  bool touches = touches_after(guess);
+  if (touches && opens && !force.normal_undefined) {
+    if (const double slip = consistent_slip(system, constants, law, known, force, guess); slip != guess) {
+      touches = touches_after(slip);
+    }
+  }
+  if (!touches) {
+    keep_open(system, pair, number, known);
+    return;
+  }
+  force.pair = number;
+  force.born = known.longest == 0.0;
+  damping_dyad_ = {};
+  RegionMemory memory = known;
+  if (!pair.is_convex) {
+    memory.position = reference_point(system, pair.lower.value, force.point);
+  }
+  append_force(force);
+  next_.regions.push_back(memory);
+  const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, *region);
+  load_region(system, constants, *region, share, next_.regions.back(), forces_[num_forces_ - 1]);
+}
+
 void ContactForces::find_regions(const BlockSystem &system, const Candidates &candidates,
                                  std::uint32_t number, std::span<RegionMemory> old) {
   const CandidatePair &pair = candidates.pairs[number];
-  dilated_.clear();
-  std::copy_if(old.begin(), old.end(), std::back_inserter(dilated_),
-               [](const RegionMemory &m) { return m.is_dilated(); });
-  const bool all_dilated = pair.is_convex && !dilated_.empty(); // its only region
-  const bool touches = !all_dilated &&
+  opened_.clear();
+  std::copy_if(old.begin(), old.end(), std::back_inserter(opened_),
+               [](const RegionMemory &m) { return m.is_opened(); });
+  const bool all_opened = pair.is_convex && !opened_.empty(); // its only region
+  const bool touches = !all_opened &&
                        system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) &&
                        overlap_.find(view_of(system, pair.lower.value, outlines_[0]),
                                      view_of(system, pair.higher.value, outlines_[1]), parameters_.potential);
@@ -341,13 +381,13 @@ void ContactForces::find_regions(const BlockSystem &system, const Candidates &ca
     find_touching(system, pair, old);
   }
   for (const FoundRegion &found : found_) {
-    if (found.known != nullptr && found.known->is_dilated()) { // on its own below
+    if (found.known != nullptr && found.known->is_opened()) { // on its own below
       continue;
     }
     load_found(system, pair, number, found);
   }
-  for (const RegionMemory &known : dilated_) {
-    evaluate_dilated(system, pair, number, known);
+  for (const RegionMemory &known : opened_) {
+    evaluate_opened(system, pair, number, known);
   }
   if (!bonds_.empty()) {
     append_bonds(system, pair, number);
@@ -368,9 +408,9 @@ void ContactForces::load_region(const BlockSystem &system, const CandidatePair &
     }
   } else {
     RelativeVelocity velocity(system, pair, force.origin);
-    const Vec2 dilation_before = memory.dilation;
+    const Vec2 opening_before = memory.opening;
     add_friction(system, pair, velocity, bonds, memory, force);
-    if (memory.dilation != dilation_before) { // what slip opens does not part the surfaces that touch
+    if (memory.opening != opening_before) { // what slip opens does not part the surfaces that touch
       const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
       const double sliding = dot(velocity.at(force.grip - force.origin), perp(force.normal));
       velocity.at_origin -= law.tan_dilation * std::abs(sliding) * force.normal;

@@ -9,9 +9,6 @@
 // down on its own, and the bracket keeps the stretch between. With ranks to spare the trials that would come
 // next after either outcome run at the same time, each on its own ranks. A trial gives the same bits on any
 // number of ranks, and so the factor is the same.
-//
-// Barton and Bandis' tan(phi) is divided at every pressure. A dilation angle above the friction that is left
-// is lowered to it: otherwise slip would do more work than friction takes.
 
 #include "gcpdda/base/exit_code.hpp"
 #include "gcpdda/model/scene.hpp"

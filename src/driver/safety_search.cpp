@@ -86,26 +86,10 @@ private:
   SafetySearch found_;
 };
 
-void weaken(JointLaw &law, double factor) {
-  if (law.is_barton_bandis) {
-    law.reduction = factor;
-  } else {
-    law.tan_friction /= factor;
-    law.residual_tan_friction /= factor;
-  }
-  law.cohesion /= factor;
-  law.residual_cohesion /= factor;
-  law.tension /= factor;
-  const double left = law.has_bonds          ? law.residual_tan_friction
-                      : law.is_barton_bandis ? law.tan_friction / factor
-                                             : law.tan_friction;
-  law.tan_dilation = std::min(law.tan_dilation, left);
-}
-
 void weaken(Scene &scene, const StrengthReduction &reduction, double factor) {
   for (std::size_t i = 0; i < scene.joints.laws.size(); ++i) {
     if (is_weakened(reduction, i)) {
-      weaken(scene.joints.laws[i], factor);
+      scene.joints.laws[i].weaken(factor);
     }
   }
 }

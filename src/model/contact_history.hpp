@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace gcpdda {
@@ -25,17 +26,34 @@ struct RegionState {
   ContactState state = ContactState::stick;
 };
 
+/// A member of RegionMemory by name.
+template <class Member> struct RegionField {
+  const char *name;
+  Member member;
+};
+template <class Member> RegionField(const char *, Member) -> RegionField<Member>;
+
 /// Memory of any region, or of one bond, alive until it breaks.
 struct RegionMemory : RegionState {
   Vec2 position; ///< x_r in the lower block's reference axes, m; not kept for two convex blocks
-  Vec2 dilation; ///< what slip has opened, in axes that turn with the mean of both blocks, m
+  Vec2 opening;  ///< of the joint by its law, in axes that turn with the mean of both blocks, m
   std::int32_t lower_stretch = 0;  ///< stretches of the outlines between re-entrant vertices that face each
   std::int32_t higher_stretch = 0; ///< other; 0 for a convex block; of a bond -1 - number of its edge
   Vec2 grip; ///< where friction acts, in the lower block's reference axes, m; kept if one of the blocks
              ///< deforms
 
   [[nodiscard]] bool is_bond() const { return lower_stretch < 0; }
-  [[nodiscard]] bool is_dilated() const { return dilation != Vec2{}; }
+  [[nodiscard]] bool is_opened() const { return opening != Vec2{}; }
+
+  /// Everything but blocks, stretches, state and law, with the names that checkpoints give it.
+  static constexpr auto fields() {
+    return std::tuple{RegionField{"/region/shear", &RegionMemory::shear},
+                      RegionField{"/region/longest", &RegionMemory::longest},
+                      RegionField{"/region/slip", &RegionMemory::slip},
+                      RegionField{"/region/position", &RegionMemory::position},
+                      RegionField{"/region/dilation", &RegionMemory::opening},
+                      RegionField{"/region/grip", &RegionMemory::grip}};
+  }
 
   /// Two copies of one region, not two regions of a pair.
   [[nodiscard]] bool is_same_region(const RegionMemory &other) const {
@@ -43,6 +61,8 @@ struct RegionMemory : RegionState {
            position == other.position;
   }
 };
+// A field that is added joins RegionMemory::fields().
+static_assert(sizeof(RegionMemory) == 11 * sizeof(double));
 
 /// A memory with its identity, as it travels with a block.
 struct RegionRecord {
@@ -128,9 +148,9 @@ struct ContactHistory {
     const std::span<const RegionMemory> known = of_other(pair);
     return !known.empty() && known.back().is_bond();
   }
-  [[nodiscard]] bool is_dilated(std::size_t pair) const {
+  [[nodiscard]] bool is_opened(std::size_t pair) const {
     const std::span<const RegionMemory> known = of_other(pair);
-    return std::any_of(known.begin(), known.end(), [](const RegionMemory &m) { return m.is_dilated(); });
+    return std::any_of(known.begin(), known.end(), [](const RegionMemory &m) { return m.is_opened(); });
   }
 };
 

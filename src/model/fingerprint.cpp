@@ -48,7 +48,6 @@ private:
 
 // A field that is added to one of these must join its function below, or the words over fingerprints().
 static_assert(sizeof(RunSettings) == 136);
-static_assert(sizeof(JointLaw) == 160);
 static_assert(sizeof(PointLoad) == 72);
 static_assert(sizeof(Water) == 96);
 static_assert(sizeof(SupportType) == 128);
@@ -69,11 +68,12 @@ void add(Chain &chain, const RunSettings &run) {
 
 void add(Chain &chain, const JointLaws &joints) {
   for (const JointLaw &law : joints.laws) {
-    chain.add({law.normal_stiffness, law.allowed_overlap, law.tangential_ratio, law.tan_friction,
-               law.cohesion, law.tension, law.residual_tan_friction, law.residual_cohesion, law.tan_dilation,
-               law.dilation_limit, law.roughness, law.reduction, law.strength});
-    chain.add(std::uint64_t{law.has_bonds});
-    chain.add(std::uint64_t{law.is_barton_bandis});
+    for (const auto number : JointLaw::numbers()) {
+      chain.add({law.*number});
+    }
+    for (const auto choice : JointLaw::choices()) {
+      chain.add(std::uint64_t{law.*choice});
+    }
   }
   chain.add(joints.of_material);
 }

@@ -3,6 +3,7 @@
 #include "base/exact_sum.hpp"
 #include "contact/laws/bonds.hpp"
 #include "contact/laws/region_law.hpp"
+#include "contact/opened_regions.hpp"
 #include "contact/pair_energies.hpp"
 #include "dynamics/deformable.hpp"
 #include "simulation/step_rows.hpp"
@@ -73,54 +74,6 @@ double mean_stiffness(const RunState &run, std::size_t number, const BlockView &
   return weights > 0.0 ? weighted / weights : parameters.constants(pair.law).half_stiffness;
 }
 
-/// Share of the pair's energy that is in the regions for which `counts` holds.
-template <class Counts> double energy_share(const Overlap &overlap, Counts &&counts) {
-  double all = 0.0;
-  double counted = 0.0;
-  for (const Region &region : overlap.regions()) {
-    const double weight = energy_weight(overlap, region);
-    all += weight;
-    counted += counts(region) ? weight : 0.0;
-  }
-  return all > 0.0 ? counted / all : 0.0;
-}
-
-/// Of a pair with dilated regions: each with its own opening taken out, the rest as the blocks lie.
-double dilated_energy(const RunState &run, std::size_t number, const BlockView &first,
-                      const BlockView &second) {
-  const CandidatePair &pair = run.neighbours.candidates.pairs[number];
-  const ContactParameters &parameters = run.contacts.parameters();
-  const std::vector<RegionMemory> known = run.neighbours.history.of_pair(number);
-  Overlap overlap;
-  ClosedPair closed;
-  double sum = 0.0;
-  for (const RegionMemory &memory : known) {
-    if (!memory.is_dilated()) {
-      continue;
-    }
-    closed.move(run.blocks, pair, memory.dilation);
-    if (!closed.lower().box.meets(closed.higher().box) ||
-        !overlap.find(closed.lower(), closed.higher(), parameters.potential)) {
-      continue;
-    }
-    const Region *own = region_of(run.blocks, pair, overlap, memory);
-    sum += parameters.constants(memory.law >= 0 ? memory.law : pair.law).half_stiffness *
-           overlap_energy(closed.lower(), closed.higher()) *
-           energy_share(overlap, [&](const Region &region) { return &region == own; });
-  }
-  if (pair.is_convex || !overlap.find(first, second, parameters.potential)) {
-    return sum;
-  }
-  const auto is_fresh = [&](const Region &region) {
-    return std::none_of(known.begin(), known.end(), [&](const RegionMemory &memory) {
-      return memory.is_dilated() && region.faces == RegionFaces{memory.lower_stretch, memory.higher_stretch};
-    });
-  };
-  const double half_stiffness = pair.is_mixed ? mean_stiffness(run, number, first, second)
-                                              : parameters.constants(pair.law).half_stiffness;
-  return sum + half_stiffness * overlap_energy(first, second) * energy_share(overlap, is_fresh);
-}
-
 /// Potential of the contact pressure of each candidate pair, J/m; zero where the pair counts on another rank.
 std::vector<double> normal_energies(const RunState &run) {
   std::vector<double> found(run.neighbours.candidates.pairs.size(), 0.0);
@@ -136,18 +89,18 @@ std::vector<double> normal_energies(const RunState &run) {
     const CandidatePair &pair = run.neighbours.candidates.pairs[k];
     const std::size_t a = pair.lower.value;
     const std::size_t b = pair.higher.value;
-    const bool is_dilated = history.is_dilated(k);
+    const bool is_opened = history.is_opened(k);
     const std::size_t place = k % PlainPair::pairs_in_group;
     if (place == 0) {
       of_group = energies.of_group(blocks, run.neighbours.candidates,
                                    static_cast<std::uint32_t>(k / PlainPair::pairs_in_group));
     }
     if (!counts_here(run.blocks, pair.lower) ||
-        !(is_dilated || blocks.motion[a].box.meets(blocks.motion[b].box))) {
+        !(is_opened || blocks.motion[a].box.meets(blocks.motion[b].box))) {
       continue;
     }
     const double energy = of_group[place];
-    const bool is_known = !std::isnan(energy) && !is_dilated;
+    const bool is_known = !std::isnan(energy) && !is_opened;
     const bool has_plain = history.has_plain(k); // one region, whose law does not change
     const std::int32_t law = has_plain && pair.is_mixed ? history.plain[k].law : pair.law;
     const bool has_one_law = has_plain || !pair.is_mixed;
@@ -157,8 +110,12 @@ std::vector<double> normal_energies(const RunState &run) {
     }
     const BlockView first = view_of(blocks, a, outlines[0]);
     const BlockView second = view_of(blocks, b, outlines[1]);
-    if (is_dilated) {
-      found[k] = dilated_energy(run, k, first, second);
+    if (is_opened) {
+      const double rest = pair.is_convex  ? 0.0
+                          : pair.is_mixed ? mean_stiffness(run, k, first, second)
+                                          : half_stiffness_of(pair.law);
+      found[k] =
+          opened_energy(blocks, pair, run.contacts.parameters(), history.of_pair(k), first, second, rest);
     } else {
       const double half_stiffness =
           has_one_law ? half_stiffness_of(law) : mean_stiffness(run, k, first, second);

@@ -57,7 +57,7 @@ void evaluate_still(RunState &run) {
 void sum_forces(RunState &run) {
   const auto scope = run.phases.measure(Phase::forces);
   run.contact_count = run.contacts.finish_sums(run.blocks, run.neighbours.candidates);
-  run.contacts.add_dilation_works(run.neighbours.candidates, run.blocks);
+  run.contacts.add_opening_works(run.neighbours.candidates, run.blocks);
   run.bolts.add_forces(run.blocks, run.contacts.sums().of_blocks());
 }
 

@@ -44,9 +44,9 @@ std::int64_t Neighbourhood::refresh(BlockSystem &blocks, const ContactParameters
   // Fast blocks would use up the usual skin at once: it grows so that half of it outlasts several steps.
   constexpr double steps_in_skin = 16.0;
   std::array<double, 2> largest{};
-  auto &[reach, dilation] = largest;
-  for (const RegionRecord &record : memory.others) { // a joint that slip has opened still acts
-    dilation = std::max(dilation, norm(record.memory.dilation));
+  auto &[reach, opening] = largest;
+  for (const RegionRecord &record : memory.others) { // a joint that its law has opened still acts
+    opening = std::max(opening, norm(record.memory.opening));
   }
   for (std::size_t row = 0; row < blocks.num_owned; ++row) {
     reach = std::max(reach, motion_bound(blocks, row, time_step));
@@ -57,11 +57,11 @@ std::int64_t Neighbourhood::refresh(BlockSystem &blocks, const ContactParameters
     }
   }
   communicator.max(largest);
-  dilation += parameters.joints.largest_dilation();
+  opening += parameters.joints.largest_opening();
   skin = std::max(base_skin, steps_in_skin * reach);
 
   // A joint is remembered until it is open by twice that; only one of its blocks may be inflated.
-  const double reach_skin = skin + 4.0 * dilation;
+  const double reach_skin = skin + 4.0 * opening;
   std::vector<Aabb> boxes = reach_boxes(blocks, reach_skin);
   ghosts.rebuild(blocks, boxes, bolts.partners(communicator, blocks), &map);
   border_trials.reserve(ghosts.sent_rows().size());

@@ -1,5 +1,7 @@
 #include "simulation/plausibility.hpp"
 
+#include "io/scene/joint_parameters.hpp"
+
 #include "base/check.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/polygon.hpp"
@@ -170,24 +172,13 @@ void judge_materials(Doubts &doubts) {
 
 void judge_joints(Doubts &doubts) {
   for (const JointLaw &law : doubts.scene().joints.laws) {
-    const auto judge = [&](const std::string &key, double value) {
-      doubts.judge("joint.*." + key, "joint." + law.name + "." + key, value);
-    };
-    judge("normal_stiffness", law.normal_stiffness);
-    judge("allowed_overlap", law.allowed_overlap);
-    judge("tangential_ratio", law.tangential_ratio);
-    if (law.is_barton_bandis) { // its friction angle is the residual one
-      judge("jrc", law.roughness);
-      judge("jcs", law.strength);
-    } else {
-      judge("friction_angle_deg", degrees_of(law.tan_friction));
+    for (const scene_text::JointParameter &parameter : scene_text::joint_parameters()) {
+      if (parameter.value != nullptr) {
+        doubts.judge(parameter.key.path,
+                     fmt::format("joint.{}.{}", law.name, scene_text::name_of(parameter.key)),
+                     parameter.value(law));
+      }
     }
-    judge("residual_friction_angle_deg", degrees_of(law.residual_tan_friction));
-    judge("cohesion", law.cohesion);
-    judge("tension", law.tension);
-    judge("residual_cohesion", law.residual_cohesion);
-    judge("dilation_angle_deg", degrees_of(law.tan_dilation));
-    judge("dilation_limit", law.dilation_limit);
   }
 }
 

@@ -4,32 +4,12 @@
 
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/model/scene.hpp"
+#include "io/scene/plausible_range.hpp"
 
 #include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace gcpdda {
-
-/// A unit that people give a quantity in by mistake.
-struct UnitSlip {
-  double factor = 0.0; ///< from that unit to the one of the key
-  std::string_view unit;
-};
-
-/// What a quantity of a scene has in rock, soil, concrete, steel or masonry. Zero means that there is none
-/// and is always plausible.
-struct PlausibleRange {
-  std::string_view key; ///< path as in scene_keys.md
-  std::string_view unit;
-  double low = 0.0;
-  double high = 0.0;
-  double typical = 0.0;        ///< of two unit slips the one that comes nearer is named first
-  std::vector<UnitSlip> slips; ///< none where no unit is mistaken for the right one
-  std::string_view what;       ///< "natural and crushed rock ... have"
-  std::string_view source;
-};
 
 /// All rows, in the order of scene_keys.md.
 std::span<const PlausibleRange> plausible_ranges();

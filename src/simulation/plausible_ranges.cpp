@@ -2,6 +2,8 @@
 
 #include "simulation/plausibility.hpp"
 
+#include "io/scene/joint_parameters.hpp"
+
 #include <fmt/format.h>
 
 #include <numbers>
@@ -16,40 +18,21 @@ constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 // Shared by several rows.
 const std::vector<UnitSlip> of_density{
     {1e3 / earth_gravity, "kN/m3"}, {1e3, "t/m3"}, {1.0 / earth_gravity, "N/m3"}, {1e-3, "g/m3"}};
-const std::vector<UnitSlip> of_stress{{1e3, "kPa"}, {1e6, "MPa"}};
 const std::vector<UnitSlip> of_force{{1e3, "kN"}, {1e6, "MN"}};
 const std::vector<UnitSlip> of_force_per_length{{1e3, "kN/m"}, {1e6, "MN/m"}};
-const std::vector<UnitSlip> of_length{{1e-3, "mm"}, {1e-2, "cm"}};
-const std::vector<UnitSlip> of_angle{{degrees_per_radian, "radians"}};
-const std::vector<UnitSlip> of_share{{1e-2, "per cent"}};
 
-constexpr std::string_view strength_sources =
-    "Hoek & Bray (1981) table 1: 10 kPa (bentonite) to 55 MPa (granite); EN 10138: steel 1.9 GPa";
-constexpr std::string_view angle_sources = "Barton & Choubey (1977): at most 70 degrees; Hoek & Bray (1981) "
-                                           "table 1: bentonite 7, broken rock 50; Lama "
-                                           "& Vutukuri (1978)";
 constexpr std::string_view bolt_sources = "Stillborg (1994); Hoek, Kaiser & Bawden (1995)";
 
 // Bounds are rounded outwards from what the sources have: what lies beyond is another unit, not another rock.
 // clang-format off
-const std::vector<PlausibleRange> all_ranges{
+const std::vector<PlausibleRange> ranges_before_joints{
   {"run.gravity", "m/s2", 0.1, 2000, earth_gravity, {{1e-3, "mm/s2"}, {1e3, "km/s2"}}, "planets and geotechnical centrifuges have", "Taylor (1995): centrifuges up to 200 times 9.81 m/s2"},
   {"run.rayleigh.ratio", "", 1e-4, 1, 0.05, of_share, "rock and joints lose", "Kramer (1996) chapter 6"},
   {"run.contact_damping", "", 1e-4, 2, 0.05, of_share, "dashpots have", "Kramer (1996) chapter 6"},
   {"material.*.density", "kg/m3", 300, 12000, 2500, of_density, "timber, soil, masonry, concrete, rock, ore, steel and lead have", "EN 1991-1-1 annex A: softwood 350, concrete 2,400, granite 2,700 to 3,000, steel 7,850, lead 11,400"},
   {"material.*.youngs_modulus", "Pa", 5e5, 5e11, 2e10, {{1e9, "GPa"}, {1e6, "MPa"}}, "soil, masonry, concrete, rock and steel have", "Bowles (1996) table 2-8: very soft clay 2 MPa; EN 1992-1-1 table 3.1: concrete 27 to 44 GPa; EN 1993-1-1: steel 210 GPa; Lama & Vutukuri (1978)"},
-  {"joint.*.normal_stiffness", "Pa/m", 1e6, 1e14, 5e9, {{1e6, "MPa/m"}, {1e9, "GPa/m"}}, "clay-filled to tight rock joints, and what stands for a rigid contact, have", "Bandis, Lumsden & Barton (1983); Lama & Vutukuri (1978)"},
-  {"joint.*.allowed_overlap", "", 1e-8, 0.05, 1e-3, of_share, "overlaps that are small against a block have", "an overlap at rest above 5 % of a block is refused"},
-  {"joint.*.tangential_ratio", "", 1e-3, 10, 0.5, {}, "rock joints and contacts have", "Bandis, Lumsden & Barton (1983)"},
-  {"joint.*.friction_angle_deg", "degrees", 3, 80, 35, of_angle, "wet clay gouge to rough fresh joints have", angle_sources},
-  {"joint.*.cohesion", "Pa", 1e3, 2e9, 3e5, of_stress, "soil, joints, mortar, concrete, rock and steel have", strength_sources},
-  {"joint.*.tension", "Pa", 1e3, 2e9, 1e6, of_stress, "soil, mortar, concrete, rock and steel have", strength_sources},
-  {"joint.*.residual_friction_angle_deg", "degrees", 3, 80, 30, of_angle, "wet clay gouge to rough fresh joints have", angle_sources},
-  {"joint.*.residual_cohesion", "Pa", 1e3, 2e9, 3e4, of_stress, "soil, joints, mortar, concrete and rock have", strength_sources},
-  {"joint.*.dilation_angle_deg", "degrees", 0.3, 60, 8, of_angle, "rock joints have", "Barton & Choubey (1977); Wyllie & Mah (2004) chapter 4"},
-  {"joint.*.dilation_limit", "m", 1e-5, 2, 0.01, of_length, "asperities of rock joints have lengths of", "Barton & Choubey (1977)"},
-  {"joint.*.jrc", "", 0.01, 20, 8, {}, "the profiles of Barton & Choubey have", "Barton & Choubey (1977): 0 to 20"},
-  {"joint.*.jcs", "Pa", 5e5, 5e8, 5e7, of_stress, "weathered walls to fresh rock have", "Barton & Choubey (1977); Hoek & Bray (1981)"},
+};
+const std::vector<PlausibleRange> ranges_after_joints{
   {"block.*.size", "m", 1e-3, 500, 1, of_length, "the roots of the areas of blocks are", "grains of sand to blocks of a mountain"},
   {"block.*.velocity", "m/s", 1e-9, 300, 5, {{1e-3, "mm/s"}, {1e-2, "cm/s"}}, "falling and blasted rock has", "Wyllie & Mah (2004) chapter 12: rock fall"},
   {"block.*.spin", "rad/s", 1e-9, 200, 3, {{1.0 / degrees_per_radian, "degrees/s"}}, "falling rock spins at", "Wyllie & Mah (2004) chapter 12: rock fall"},
@@ -140,12 +123,23 @@ Besides these values the following is warned of, each kind in one line with the 
 } // namespace
 
 std::span<const PlausibleRange> plausible_ranges() {
-  return all_ranges;
+  static const std::vector<PlausibleRange> ranges = [] {
+    std::vector<PlausibleRange> all = ranges_before_joints;
+    for (const scene_text::JointParameter &parameter : scene_text::joint_parameters()) {
+      if (parameter.value != nullptr) {
+        all.push_back(parameter.plausible);
+        all.back().key = parameter.key.path;
+      }
+    }
+    all.insert(all.end(), ranges_after_joints.begin(), ranges_after_joints.end());
+    return all;
+  }();
+  return ranges;
 }
 
 std::string plausible_values_page() {
   std::string page(page_head);
-  for (const PlausibleRange &row : all_ranges) {
+  for (const PlausibleRange &row : plausible_ranges()) {
     std::string slips;
     for (const UnitSlip &slip : row.slips) {
       slips += fmt::format("{}{}", slips.empty() ? "" : ", ", slip.unit);

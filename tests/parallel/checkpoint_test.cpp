@@ -192,7 +192,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
         record.memory.shear = static_cast<double>(count * a + b);
         record.memory.lower_stretch = static_cast<std::int32_t>(10 - k); // not in the order of their numbers
         record.memory.law = static_cast<std::int32_t>(k) - 1;
-        record.memory.dilation = {static_cast<double>(a), static_cast<double>(k)};
+        record.memory.opening = {static_cast<double>(a), static_cast<double>(k)};
       }
     }
   }
@@ -232,7 +232,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
         EXPECT_EQ(record->memory.shear, static_cast<double>(count * a + b));
         EXPECT_EQ(record->memory.lower_stretch, 10 - k);
         EXPECT_EQ(record->memory.law, k - 1);
-        EXPECT_EQ(record->memory.dilation, (Vec2{static_cast<double>(a), static_cast<double>(k)}));
+        EXPECT_EQ(record->memory.opening, (Vec2{static_cast<double>(a), static_cast<double>(k)}));
       }
     }
   }

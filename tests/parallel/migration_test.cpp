@@ -48,7 +48,7 @@ RegionMemory evaluated(RegionMemory memory, const Pair &pair, int step) {
   memory.longest = std::max(memory.longest, hashed(pair.second, pair.first, step));
   memory.slip += 1e-3 * memory.longest;
   memory.position = {hashed(step, pair.first, 1), hashed(step, pair.second, 2)};
-  memory.dilation = {1e-3 * memory.slip, hashed(step, pair.second, 3)};
+  memory.opening = {1e-3 * memory.slip, hashed(step, pair.second, 3)};
   memory.higher_stretch = step % 3;
   memory.law = memory.law < 0 ? static_cast<std::int32_t>(pair.first % 5) : memory.law;
   memory.state = hashed(pair.first, step, 9) < 0.5 ? ContactState::stick : ContactState::slip;
@@ -57,7 +57,7 @@ RegionMemory evaluated(RegionMemory memory, const Pair &pair, int step) {
 
 bool operator==(const RegionMemory &a, const RegionMemory &b) {
   return a.shear == b.shear && a.longest == b.longest && a.slip == b.slip && a.state == b.state &&
-         a.law == b.law && a.dilation == b.dilation && a.is_same_region(b);
+         a.law == b.law && a.opening == b.opening && a.is_same_region(b);
 }
 
 using Memories = std::map<Pair, RegionMemory>;

@@ -3,6 +3,7 @@
 // Contact laws of families of joints, and which of them a pair of edges or materials has.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -57,6 +58,24 @@ struct JointLaw {
     return {0.5 * normal_stiffness, tangential_ratio * normal_stiffness,
             has_bonds ? residual_tan_friction : tan_friction, has_bonds ? residual_cohesion : cohesion};
   }
+  /// With strengths divided by a factor: tan(phi) of friction, for Barton and Bandis at every pressure,
+  /// cohesion, tension. A dilation angle above the friction that is left is lowered to it: otherwise slip
+  /// would do more work than friction takes.
+  void weaken(double factor) {
+    if (is_barton_bandis) {
+      reduction = factor;
+    } else {
+      tan_friction /= factor;
+      residual_tan_friction /= factor;
+    }
+    cohesion /= factor;
+    residual_cohesion /= factor;
+    tension /= factor;
+    const double left = has_bonds          ? residual_tan_friction
+                        : is_barton_bandis ? tan_friction / factor
+                                           : tan_friction;
+    tan_dilation = std::min(tan_dilation, left);
+  }
   /// By how much slip opens the joint, from a fresh one, m.
   [[nodiscard]] double dilation_at(double slip) const {
     return tan_dilation * std::min(slip, dilation_limit);
@@ -77,7 +96,27 @@ struct JointLaw {
     const double angle = residual + roughness * degree * std::log10(strength / normal_stress);
     return std::tan(std::min(angle, steepest)) / reduction;
   }
+
+  /// All parameters that a saved state depends on, in the order of its fingerprint.
+  static constexpr auto numbers() {
+    return std::array{&JointLaw::normal_stiffness,
+                      &JointLaw::allowed_overlap,
+                      &JointLaw::tangential_ratio,
+                      &JointLaw::tan_friction,
+                      &JointLaw::cohesion,
+                      &JointLaw::tension,
+                      &JointLaw::residual_tan_friction,
+                      &JointLaw::residual_cohesion,
+                      &JointLaw::tan_dilation,
+                      &JointLaw::dilation_limit,
+                      &JointLaw::roughness,
+                      &JointLaw::reduction,
+                      &JointLaw::strength};
+  }
+  static constexpr auto choices() { return std::array{&JointLaw::has_bonds, &JointLaw::is_barton_bandis}; }
 };
+// A parameter that is added must join these lists. Each of the three flags fills a place of eight bytes.
+static_assert(sizeof(JointLaw) == sizeof(std::string) + sizeof(double) * (JointLaw::numbers().size() + 3));
 
 /// All laws of a scene and which one a pair of materials takes.
 struct JointLaws {
@@ -90,8 +129,8 @@ struct JointLaws {
                        static_cast<std::size_t>(b)];
   }
 
-  /// The most that slip opens any joint, m.
-  [[nodiscard]] double largest_dilation() const {
+  /// The most that a law opens any joint, m.
+  [[nodiscard]] double largest_opening() const {
     double largest = 0.0;
     for (const JointLaw &law : laws) {
       largest = std::max(largest, law.dilation_at(law.dilation_limit));

@@ -3,19 +3,12 @@
 // Dilation: slip on a rough joint pushes its sides apart.
 //
 // Plastic slip dl of a region, what the stick spring loses when it is cut at the cap, opens its joint by
-// tan(psi) dl along n_r until it has slipped by the limit of its law. The opening D is a vector of the
-// region's memory (|D| = tan(psi) min(slip, limit) where n_r does not turn in the axes it is kept in). The
-// contact of the region is that of both blocks moved towards each other, the lower one by -D/2, the higher
-// one by +D/2: the surface on which they touch without overlap lies higher by D, whatever their shapes.
+// tan(psi) dl along n_r until it has slipped by the limit of its law: |D| = tan(psi) min(slip, limit) where
+// n_r does not turn in the axes that D is kept in. What an opening D does is in opened_regions.hpp.
 //
-// Energy. Between two slips D is a constant in axes that turn with the mean of both rotations, for the reason
-// given in bonds.hpp: the overlap of the moved blocks then is a potential of the configuration alone, and its
-// force, taken at the same point on both blocks, has just the power that this potential loses. (The moved
-// point of the lower block is x_A - D/2, D' = perp(D)(w_A + w_B)/2; on both blocks together f does f.(v_A -
-// v_B) at the common point.) Deformable blocks: up to D times their rate of strain. Slip adds N tan(psi) dl
-// to the potential. Friction takes cap dl from the motion meanwhile, so N (tan(phi) - tan(psi)) dl + c l dl
-// of it is lost: never less than nothing, since the reader refuses psi > phi. The ledger counts this
-// difference as lost by friction.
+// Energy. Slip adds N tan(psi) dl to the potential of the contact. Friction takes cap dl from the motion
+// meanwhile, so N (tan(phi) - tan(psi)) dl + c l dl of it is lost: never less than nothing, since the reader
+// refuses psi > phi. The ledger counts this difference as lost by friction.
 //
 // Which angle the user sees. n_r is normal to the plane of the joint, not to its asperities: the shear force
 // at which a joint slips is N tan(phi) + c l, and lifting is paid for out of it. phi is so the angle of a
@@ -40,39 +33,29 @@
 // The dashpot along the normal sees the velocities without the opening, tan(psi) times the sliding: it damps
 // how the surfaces push on each other, and does not hold a block down that its joint lifts.
 //
-// The first opening of a region is taken one step late, and a region of several on a re-entrant block keeps
-// one of its own: it is found among those of the moved blocks by its stretches and its place.
-//
-// A block that lifts is thrown off its joint where the slip stops, if only by some overlaps, and comes to lie
-// on the same asperities. So a region without overlap is kept (longest = 0, no force, no stick spring) until
-// the moved blocks are farther apart than |D|; what closes after that is a fresh joint.
+// The first opening of a region is taken one step late.
 
-#include "contact/candidates.hpp"
-#include "contact/geometry/overlap.hpp"
-
-#include <array>
-#include <vector>
+#include "contact/opened_regions.hpp"
+#include "gcpdda/model/joint_law.hpp"
 
 namespace gcpdda {
 
-/// Both blocks of a pair, moved towards each other by what slip has opened.
-class ClosedPair {
-public:
-  /// @param dilation  as in RegionMemory, m
-  void move(const BlockSystem &system, const CandidatePair &pair, Vec2 dilation);
-  [[nodiscard]] const BlockView &lower() const { return view_[0]; }
-  [[nodiscard]] const BlockView &higher() const { return view_[1]; }
+struct RegionForce;
 
-private:
-  std::array<BlockView, 2> view_;
-  std::array<TrialOutline, 2> outline_;
-};
+/// How far the blocks slide on each other about where they meet, off the direction in which they open, m.
+/// @param closed  is moved to the opening that is known
+double guessed_slip(const BlockSystem &system, const CandidatePair &pair, const RegionMemory &known,
+                    ClosedPair &closed);
 
-/// The region of the moved blocks that goes on with a dilated memory; null if there is none.
-const Region *region_of(const BlockSystem &system, const CandidatePair &pair, const Overlap &overlap,
-                        const RegionMemory &memory);
+/// Slip that is consistent with what it opens, to first order from a contact in which `guess` has been opened
+/// already, m.
+/// @param force  of that contact, for k_n/2 = 1
+double consistent_slip(const BlockSystem &system, const CandidatePair &pair, const JointLaw &law,
+                       const RegionMemory &known, const RegionForce &force, double guess);
 
-/// int d^2 ds of a region (m3), times 8: its energy relative to that of others between the same blocks.
-double energy_weight(const Overlap &overlap, const Region &region);
+/// Open a region that has slipped.
+/// @return the work against its pressure, J/m
+double dilate(const BlockSystem &system, const CandidatePair &pair, const JointLaw &law, double slip_before,
+              const RegionForce &force, RegionMemory &memory);
 
 } // namespace gcpdda

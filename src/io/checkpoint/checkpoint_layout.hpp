@@ -193,11 +193,14 @@ template <auto Member> constexpr Field<std::vector<Deformation>> of_gradient_sum
   }
   > (name);
 }
-template <auto Member> constexpr Field<std::vector<RegionRecord>> of_region(const char *name) {
+template <std::size_t number> constexpr Field<std::vector<RegionRecord>> of_region() {
   return field < std::vector<RegionRecord>, [](auto &records, std::size_t row) -> auto & {
-    return records[row].memory.*Member;
+    return records[row].memory.*(std::get<number>(RegionMemory::fields()).member);
   }
-  > (name);
+  > (std::get<number>(RegionMemory::fields()).name);
+}
+template <std::size_t... numbers> constexpr auto of_all_regions(std::index_sequence<numbers...> /*of*/) {
+  return std::array{of_region<numbers>()...};
 }
 
 } // namespace detail
@@ -231,12 +234,8 @@ inline constexpr std::array deformation_fields{
     detail::of_gradient_sum<&BlockGradientSum::damping>("/deformation/damping_force"),
     detail::of_deformation<&Deformation::load_force>("/deformation/load_force"),
     detail::of_deformation<&Deformation::anchor_force>("/deformation/anchor_force")};
-inline constexpr std::array region_fields{detail::of_region<&RegionMemory::shear>("/region/shear"),
-                                          detail::of_region<&RegionMemory::longest>("/region/longest"),
-                                          detail::of_region<&RegionMemory::slip>("/region/slip"),
-                                          detail::of_region<&RegionMemory::position>("/region/position"),
-                                          detail::of_region<&RegionMemory::dilation>("/region/dilation"),
-                                          detail::of_region<&RegionMemory::grip>("/region/grip")};
+inline constexpr auto region_fields =
+    detail::of_all_regions(std::make_index_sequence<std::tuple_size_v<decltype(RegionMemory::fields())>>());
 inline constexpr const char *region_blocks = "/region/blocks"; ///< i64 (n, 2): lower, higher
 inline constexpr const char *region_stretches =
     "/region/stretches";                                      ///< i32 (n, 2): of the lower, of the higher
@@ -250,7 +249,6 @@ static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
 static_assert(sizeof(Deformation) == std::size_t{7} * 64);
-static_assert(sizeof(RegionMemory) == 11 * sizeof(double));
 static_assert(sizeof(PseudoMotion) == 18 * sizeof(double)); // simulation/static_state.cpp
 
 inline constexpr std::array<const char *, 10> groups{"/clock",       "/run",   "/stage",  "/bolt",

@@ -1,5 +1,6 @@
-// Tables [joint.NAME] of a scene: contact laws and which materials have them.
+// Tables [joint.NAME] of a scene: the keys of contact laws, how they are read, and which materials have them.
 
+#include "io/scene/joint_parameters.hpp"
 #include "io/scene/scene_parts.hpp"
 
 #include "base/edit_distance.hpp"
@@ -10,10 +11,21 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 namespace gcpdda::scene_text {
 
 namespace {
+
+constexpr std::string_view strength_sources =
+    "Hoek & Bray (1981) table 1: 10 kPa (bentonite) to 55 MPa (granite); EN 10138: steel 1.9 GPa";
+constexpr std::string_view angle_sources = "Barton & Choubey (1977): at most 70 degrees; Hoek & Bray (1981) "
+                                           "table 1: bentonite 7, broken rock 50; Lama "
+                                           "& Vutukuri (1978)";
+
+double degrees_of(double tangent) {
+  return std::atan(tangent) * 180.0 / std::numbers::pi;
+}
 
 using MaterialPair = std::pair<std::int32_t, std::int32_t>;
 
@@ -297,6 +309,54 @@ private:
 };
 
 } // namespace
+
+std::span<const JointParameter> joint_parameters() {
+  // clang-format off
+  static const std::vector<JointParameter> parameters{
+    {{"joint", Kind::named_tables, required, any, "", "", "[joint.default]", "Contact laws: default for every pair of materials, further ones for the pair they name or for the edges of blocks that name them."}, nullptr, {}},
+    {{"joint.*", Kind::table, optional, any, "", "", "[joint.default]", "One contact law; keys missing in another law than default are taken from default."}, nullptr, {}},
+    {{"joint.*.materials", Kind::pair_of_names, optional, any, "", "<none: a law for edges that name it>", "[\"granite\", \"clay\"]", "The pair of materials that takes this law."}, nullptr, {}},
+    {{"joint.*.normal_stiffness", Kind::number, optional, above_to(0, 1e20), "", "<exactly one of this and allowed_overlap>", "1e9", "[Pa/m] Normal stiffness k_n = 2 p_n/H."},
+     [](const JointLaw &law) { return law.normal_stiffness; },
+     {"", "Pa/m", 1e6, 1e14, 5e9, {{1e6, "MPa/m"}, {1e9, "GPa/m"}}, "clay-filled to tight rock joints, and what stands for a rigid contact, have", "Bandis, Lumsden & Barton (1983); Lama & Vutukuri (1978)"}},
+    {{"joint.*.allowed_overlap", Kind::number, optional, between(0, 1), "", "<exactly one of this and normal_stiffness>", "0.001", "Overlap under the weight of the scene relative to the block size, from which the normal stiffness follows."},
+     [](const JointLaw &law) { return law.allowed_overlap; },
+     {"", "", 1e-8, 0.05, 1e-3, of_share, "overlaps that are small against a block have", "an overlap at rest above 5 % of a block is refused"}},
+    {{"joint.*.tangential_ratio", Kind::number, optional, above_to(0, 1000), "", "0.5", "0.5", "Tangential stiffness over normal stiffness."},
+     [](const JointLaw &law) { return law.tangential_ratio; },
+     {"", "", 1e-3, 10, 0.5, {}, "rock joints and contacts have", "Bandis, Lumsden & Barton (1983)"}},
+    {{"joint.*.friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "0.0", "35.0", "[degrees] Friction angle."},
+     [](const JointLaw &law) { return law.is_barton_bandis ? 0.0 : degrees_of(law.tan_friction); },
+     {"", "degrees", 3, 80, 35, of_angle, "wet clay gouge to rough fresh joints have", angle_sources}},
+    {{"joint.*.cohesion", Kind::number, optional, from_to(0, 1e20), "", "0.0", "0.0", "[Pa] Cohesion."},
+     [](const JointLaw &law) { return law.cohesion; },
+     {"", "Pa", 1e3, 2e9, 3e5, of_stress, "soil, joints, mortar, concrete, rock and steel have", strength_sources}},
+    {{"joint.*.tension", Kind::number, optional, from_to(0, 1e20), "", "<none: no bonds>", "1e5", "[Pa] Tensile strength of the bonds, at most cohesion/tan(friction angle). A law with this key or a residual one has bonds: edges that lie on each other at the start hold together, with friction_angle_deg and cohesion in shear, until they break; then, and wherever else they touch, the residual values hold."},
+     [](const JointLaw &law) { return law.tension; },
+     {"", "Pa", 1e3, 2e9, 1e6, of_stress, "soil, mortar, concrete, rock and steel have", strength_sources}},
+    {{"joint.*.residual_friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "<friction_angle_deg>", "30.0", "[degrees] Friction angle without a bond, at most friction_angle_deg; of barton-bandis the angle that remains under high pressure."},
+     [](const JointLaw &law) { return degrees_of(law.residual_tan_friction); },
+     {"", "degrees", 3, 80, 30, of_angle, "wet clay gouge to rough fresh joints have", angle_sources}},
+    {{"joint.*.residual_cohesion", Kind::number, optional, from_to(0, 1e20), "", "<0 of a law with bonds>", "1e4", "[Pa] Cohesion without a bond, at most cohesion; only in a law with bonds."},
+     [](const JointLaw &law) { return law.residual_cohesion; },
+     {"", "Pa", 1e3, 2e9, 3e4, of_stress, "soil, joints, mortar, concrete and rock have", strength_sources}},
+    {{"joint.*.dilation_angle_deg", Kind::number, optional, from_below(0, 90), "", "0.0", "8.0", "[degrees] Slip opens the joint by the tangent of this angle times itself, at most friction_angle_deg (or the residual one, where there is one), which holds the work that this takes."},
+     [](const JointLaw &law) { return degrees_of(law.tan_dilation); },
+     {"", "degrees", 0.3, 60, 8, of_angle, "rock joints have", "Barton & Choubey (1977); Wyllie & Mah (2004) chapter 4"}},
+    {{"joint.*.dilation_limit", Kind::number, optional, above_to(0, 1e9), "", "<required with dilation_angle_deg>", "0.01", "[m] Slip of a contact after which it opens no further."},
+     [](const JointLaw &law) { return law.dilation_limit; },
+     {"", "m", 1e-5, 2, 0.01, of_length, "asperities of rock joints have lengths of", "Barton & Choubey (1977)"}},
+    {{"joint.*.law", Kind::choice, optional, any, "coulomb barton-bandis", "\"coulomb\"", "\"coulomb\"", "Friction: Coulomb, or phi = residual angle + JRC log10(JCS/normal stress), at most 70 degrees."}, nullptr, {}},
+    {{"joint.*.jrc", Kind::number, optional, above_to(0, 40), "", "<required for barton-bandis>", "8.0", "Joint roughness coefficient of barton-bandis."},
+     [](const JointLaw &law) { return law.is_barton_bandis ? law.roughness : 0.0; },
+     {"", "", 0.01, 20, 8, {}, "the profiles of Barton & Choubey have", "Barton & Choubey (1977): 0 to 20"}},
+    {{"joint.*.jcs", Kind::number, optional, above_to(0, 1e20), "", "<required for barton-bandis>", "50e6", "[Pa] Joint wall compressive strength of barton-bandis."},
+     [](const JointLaw &law) { return law.is_barton_bandis ? law.strength : 0.0; },
+     {"", "Pa", 5e5, 5e8, 5e7, of_stress, "weathered walls to fresh rock have", "Barton & Choubey (1977); Hoek & Bray (1981)"}},
+  };
+  // clang-format on
+  return parameters;
+}
 
 std::optional<std::int32_t> find_joint(const SceneSource &source, const toml::node &name,
                                        const JointLaws &joints) {

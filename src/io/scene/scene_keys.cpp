@@ -1,35 +1,21 @@
 #include "io/scene/scene_keys.hpp"
 
+#include "io/scene/joint_parameters.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
+#include <vector>
 
 namespace gcpdda::scene_text {
 
 namespace {
 
-constexpr Range any{};
-
-constexpr Range from_to(double low, double high) {
-  return {low, high, false, false};
-}
-constexpr Range above_to(double low, double high) {
-  return {low, high, true, false};
-}
-constexpr Range from_below(double low, double high) {
-  return {low, high, false, true};
-}
-constexpr Range between(double low, double high) {
-  return {low, high, true, true};
-}
-
-constexpr auto required = Need::required;
-constexpr auto optional = Need::optional;
-
 // Upper bounds without a physical reason are there so that no product of input numbers overflows.
 // clang-format off
-constexpr Key all_keys[] = {
+constexpr Key keys_before_joints[] = {
   {"run", Kind::table, required, any, "", "", "[run]", "How the run goes."},
   {"run.duration", Kind::number, optional, above_to(0, 1e12), "", "<required without [[stage]]>", "2.0", "[s] Simulated time; with [[stage]] the stages say how long they last."},
   {"run.gravity", Kind::vector2, optional, from_to(-1e6, 1e6), "", "[0.0, -9.81]", "[0.0, -9.81]", "[m/s2] Acceleration of gravity."},
@@ -56,24 +42,8 @@ constexpr Key all_keys[] = {
   {"material.*.density", Kind::number, required, above_to(0, 1e12), "", "", "2600.0", "[kg/m3] Density."},
   {"material.*.youngs_modulus", Kind::number, optional, above_to(0, 1e20), "", "<none>", "40e9", "[Pa] Young's modulus; needed only where a block may deform."},
   {"material.*.poissons_ratio", Kind::number, optional, from_below(0, 0.5), "", "<none>", "0.25", "Poisson's ratio; needed only where a block may deform."},
-
-  {"joint", Kind::named_tables, required, any, "", "", "[joint.default]", "Contact laws: default for every pair of materials, further ones for the pair they name or for the edges of blocks that name them."},
-  {"joint.*", Kind::table, optional, any, "", "", "[joint.default]", "One contact law; keys missing in another law than default are taken from default."},
-  {"joint.*.materials", Kind::pair_of_names, optional, any, "", "<none: a law for edges that name it>", "[\"granite\", \"clay\"]", "The pair of materials that takes this law."},
-  {"joint.*.normal_stiffness", Kind::number, optional, above_to(0, 1e20), "", "<exactly one of this and allowed_overlap>", "1e9", "[Pa/m] Normal stiffness k_n = 2 p_n/H."},
-  {"joint.*.allowed_overlap", Kind::number, optional, between(0, 1), "", "<exactly one of this and normal_stiffness>", "0.001", "Overlap under the weight of the scene relative to the block size, from which the normal stiffness follows."},
-  {"joint.*.tangential_ratio", Kind::number, optional, above_to(0, 1000), "", "0.5", "0.5", "Tangential stiffness over normal stiffness."},
-  {"joint.*.friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "0.0", "35.0", "[degrees] Friction angle."},
-  {"joint.*.cohesion", Kind::number, optional, from_to(0, 1e20), "", "0.0", "0.0", "[Pa] Cohesion."},
-  {"joint.*.tension", Kind::number, optional, from_to(0, 1e20), "", "<none: no bonds>", "1e5", "[Pa] Tensile strength of the bonds, at most cohesion/tan(friction angle). A law with this key or a residual one has bonds: edges that lie on each other at the start hold together, with friction_angle_deg and cohesion in shear, until they break; then, and wherever else they touch, the residual values hold."},
-  {"joint.*.residual_friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "<friction_angle_deg>", "30.0", "[degrees] Friction angle without a bond, at most friction_angle_deg; of barton-bandis the angle that remains under high pressure."},
-  {"joint.*.residual_cohesion", Kind::number, optional, from_to(0, 1e20), "", "<0 of a law with bonds>", "1e4", "[Pa] Cohesion without a bond, at most cohesion; only in a law with bonds."},
-  {"joint.*.dilation_angle_deg", Kind::number, optional, from_below(0, 90), "", "0.0", "8.0", "[degrees] Slip opens the joint by the tangent of this angle times itself, at most friction_angle_deg (or the residual one, where there is one), which holds the work that this takes."},
-  {"joint.*.dilation_limit", Kind::number, optional, above_to(0, 1e9), "", "<required with dilation_angle_deg>", "0.01", "[m] Slip of a contact after which it opens no further."},
-  {"joint.*.law", Kind::choice, optional, any, "coulomb barton-bandis", "\"coulomb\"", "\"coulomb\"", "Friction: Coulomb, or phi = residual angle + JRC log10(JCS/normal stress), at most 70 degrees."},
-  {"joint.*.jrc", Kind::number, optional, above_to(0, 40), "", "<required for barton-bandis>", "8.0", "Joint roughness coefficient of barton-bandis."},
-  {"joint.*.jcs", Kind::number, optional, above_to(0, 1e20), "", "<required for barton-bandis>", "50e6", "[Pa] Joint wall compressive strength of barton-bandis."},
-
+};
+constexpr Key keys_after_joints[] = {
   {"block[]", Kind::table_list, optional, any, "", "", "[[block]]", "Single blocks; they have the first ids, walls and pyramids in the order of the file the next."},
   {"block[].name", Kind::name, optional, any, "", "<b and the position of the block, from 0>", "\"slider\"", "Name, unique in the scene."},
   {"block[].material", Kind::name, required, any, "", "", "\"granite\"", "One of the materials."},
@@ -316,7 +286,15 @@ constexpr Key all_keys[] = {
 } // namespace
 
 std::span<const Key> scene_keys() {
-  return all_keys;
+  static const std::vector<Key> keys = [] {
+    std::vector<Key> all(std::begin(keys_before_joints), std::end(keys_before_joints));
+    for (const JointParameter &parameter : joint_parameters()) {
+      all.push_back(parameter.key);
+    }
+    all.insert(all.end(), std::begin(keys_after_joints), std::end(keys_after_joints));
+    return all;
+  }();
+  return keys;
 }
 
 std::string_view parent_of(const Key &key) {
@@ -334,7 +312,7 @@ std::string_view name_of(const Key &key) {
 }
 
 const Key *find_key(std::string_view parent, std::string_view name) {
-  for (const Key &key : all_keys) {
+  for (const Key &key : scene_keys()) {
     if (parent_of(key) == parent && (name_of(key) == name || name_of(key) == "*")) {
       return &key;
     }
@@ -344,7 +322,7 @@ const Key *find_key(std::string_view parent, std::string_view name) {
 
 std::vector<std::string> names_below(std::string_view parent) {
   std::vector<std::string> names;
-  for (const Key &key : all_keys) {
+  for (const Key &key : scene_keys()) {
     if (parent_of(key) == parent) {
       names.emplace_back(name_of(key));
     }

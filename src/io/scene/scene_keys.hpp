@@ -49,7 +49,23 @@ struct Range {
   }
 };
 
+constexpr Range any{};
+constexpr Range from_to(double low, double high) {
+  return {low, high, false, false};
+}
+constexpr Range above_to(double low, double high) {
+  return {low, high, true, false};
+}
+constexpr Range from_below(double low, double high) {
+  return {low, high, false, true};
+}
+constexpr Range between(double low, double high) {
+  return {low, high, true, true};
+}
+
 enum class Need { required, optional };
+constexpr auto required = Need::required;
+constexpr auto optional = Need::optional;
 
 /// One row of the table of scene keys: all that is known of a key by itself. What several keys mean together
 /// is checked where the scene is put together.
