@@ -20,6 +20,10 @@ namespace gcpdda::GCPDDA_INSTRUCTIONS {
 constexpr std::size_t num_lanes = GCPDDA_NUM_LANES;
 
 using LaneValues = double __attribute__((vector_size(num_lanes * sizeof(double))));
+/// As they stand in memory, where they need not begin with a register's worth. Registers are read and written
+/// by this: a std::memcpy() becomes one by halves, and the processor waits for both before it reads the
+/// whole.
+using UnalignedValues [[gnu::may_alias, gnu::aligned(sizeof(double))]] = LaneValues;
 #if GCPDDA_NUM_LANES == 8 // registers of masks have a bit a lane
 using LaneMask = __mmask8;
 // Intrinsics without a mask are warned about (g++ bug 105593).
@@ -281,10 +285,9 @@ template <class Get> [[gnu::always_inline]] inline FourLanes load_by_lane(Get &&
           Lanes(__builtin_shufflevector(even_0123, even_4567, 2, 3, 6, 7, 10, 11, 14, 15)),
           Lanes(__builtin_shufflevector(odd_0123, odd_4567, 2, 3, 6, 7, 10, 11, 14, 15))};
 #elif GCPDDA_NUM_LANES == 4
-  using Unaligned [[gnu::may_alias, gnu::aligned(sizeof(double))]] = LaneValues;
   const LaneValues row[] = {
-      *reinterpret_cast<const Unaligned *>(get(0)), *reinterpret_cast<const Unaligned *>(get(1)),
-      *reinterpret_cast<const Unaligned *>(get(2)), *reinterpret_cast<const Unaligned *>(get(3))};
+      *reinterpret_cast<const UnalignedValues *>(get(0)), *reinterpret_cast<const UnalignedValues *>(get(1)),
+      *reinterpret_cast<const UnalignedValues *>(get(2)), *reinterpret_cast<const UnalignedValues *>(get(3))};
   const LaneValues even_01 = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6);
   const LaneValues odd_01 = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7);
   const LaneValues even_23 = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6);
@@ -321,10 +324,9 @@ template <class Get> [[gnu::always_inline]] inline FourLanes load_by_lane(Get &&
   put(4, 6, __builtin_shufflevector(ab_even, cd_even, 4, 5, 12, 13, 6, 7, 14, 15));
   put(5, 7, __builtin_shufflevector(ab_odd, cd_odd, 4, 5, 12, 13, 6, 7, 14, 15));
 #else
-  using Unaligned [[gnu::may_alias, gnu::aligned(sizeof(double))]] = LaneValues;
   const auto put = [&](std::size_t lane, const LaneValues &row, std::size_t behind = 0)
       __attribute__((always_inline)) {
-    *reinterpret_cast<Unaligned *>(to[lane] + offset + behind) = row;
+    *reinterpret_cast<UnalignedValues *>(to[lane] + offset + behind) = row;
   };
 #if GCPDDA_NUM_LANES == 4
   const LaneValues ab_even = __builtin_shufflevector(a.values(), b.values(), 0, 4, 2, 6);
@@ -377,9 +379,10 @@ using ThreeLanes = std::array<Lanes, 3>;
 
 /// Lane i holds the three from 3 i on.
 [[gnu::always_inline]] inline ThreeLanes load_triples(const double *first) {
-  std::array<LaneValues, 3> v;
-  std::memcpy(&v, first, sizeof(v));
-  const auto &[a, b, c] = v;
+  const UnalignedValues *three = reinterpret_cast<const UnalignedValues *>(first);
+  const LaneValues a = three[0];
+  const LaneValues b = three[1];
+  const LaneValues c = three[2];
 #if GCPDDA_NUM_LANES == 8
   const LaneValues x = __builtin_shufflevector(a, b, 0, 3, 6, 9, 12, 15, -1, -1);
   const LaneValues y = __builtin_shufflevector(a, b, 1, 4, 7, 10, 13, -1, -1, -1);
@@ -404,25 +407,26 @@ using ThreeLanes = std::array<Lanes, 3>;
   const LaneValues &x = lanes[0].values();
   const LaneValues &y = lanes[1].values();
   const LaneValues &z = lanes[2].values();
+  UnalignedValues *three = reinterpret_cast<UnalignedValues *>(first);
 #if GCPDDA_NUM_LANES == 8
   const LaneValues a = __builtin_shufflevector(x, y, 0, 8, -1, 1, 9, -1, 2, 10);
   const LaneValues b = __builtin_shufflevector(x, y, -1, 3, 11, -1, 4, 12, -1, 5);
   const LaneValues c = __builtin_shufflevector(x, y, 13, -1, 6, 14, -1, 7, 15, -1);
-  const std::array<LaneValues, 3> v{__builtin_shufflevector(a, z, 0, 1, 8, 3, 4, 9, 6, 7),
-                                    __builtin_shufflevector(b, z, 10, 1, 2, 11, 4, 5, 12, 7),
-                                    __builtin_shufflevector(c, z, 0, 13, 2, 3, 14, 5, 6, 15)};
+  three[0] = __builtin_shufflevector(a, z, 0, 1, 8, 3, 4, 9, 6, 7);
+  three[1] = __builtin_shufflevector(b, z, 10, 1, 2, 11, 4, 5, 12, 7);
+  three[2] = __builtin_shufflevector(c, z, 0, 13, 2, 3, 14, 5, 6, 15);
 #elif GCPDDA_NUM_LANES == 4
   const LaneValues a = __builtin_shufflevector(x, y, 0, 4, -1, 1);
   const LaneValues b = __builtin_shufflevector(x, y, 5, -1, 2, 6);
   const LaneValues c = __builtin_shufflevector(x, y, -1, 3, 7, -1);
-  const std::array<LaneValues, 3> v{__builtin_shufflevector(a, z, 0, 1, 4, 3),
-                                    __builtin_shufflevector(b, z, 0, 5, 2, 3),
-                                    __builtin_shufflevector(c, z, 6, 1, 2, 7)};
+  three[0] = __builtin_shufflevector(a, z, 0, 1, 4, 3);
+  three[1] = __builtin_shufflevector(b, z, 0, 5, 2, 3);
+  three[2] = __builtin_shufflevector(c, z, 6, 1, 2, 7);
 #else
-  const std::array<LaneValues, 3> v{__builtin_shufflevector(x, y, 0, 2), __builtin_shufflevector(z, x, 0, 3),
-                                    __builtin_shufflevector(y, z, 1, 3)};
+  three[0] = __builtin_shufflevector(x, y, 0, 2);
+  three[1] = __builtin_shufflevector(z, x, 0, 3);
+  three[2] = __builtin_shufflevector(y, z, 1, 3);
 #endif
-  std::memcpy(first, &v, sizeof(v));
 }
 
 } // namespace gcpdda::GCPDDA_INSTRUCTIONS
