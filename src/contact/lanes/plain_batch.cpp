@@ -4,21 +4,17 @@
 
 #include "contact/lanes/plain_kernel.hpp"
 
-#include <utility>
+#include <memory>
 
 namespace gcpdda {
 
 const RegionState PlainLanes::no_memory{.slip = -1.0};
 
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions) {
-  std::unique_ptr<PlainBatch> batch;
-  if (instructions == Instructions::widest) {
-    batch = make_avx512_batch();
-  }
-  if (!batch && instructions != Instructions::portable) {
-    batch = make_avx2_batch();
-  }
-  return batch ? std::move(batch) : std::make_unique<GCPDDA_INSTRUCTIONS::LaneBatch>();
+  using Batch = std::unique_ptr<PlainBatch>;
+  return with_copy_for(
+      instructions, [] { return make_avx512_batch(); }, [] { return make_avx2_batch(); },
+      [] { return Batch(std::make_unique<GCPDDA_INSTRUCTIONS::LaneBatch>()); });
 }
 
 } // namespace gcpdda

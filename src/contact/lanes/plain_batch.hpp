@@ -134,7 +134,7 @@ template <class Visit> void for_bits(unsigned bits, Visit &&visit) {
 }
 
 std::unique_ptr<PlainBatch> make_plain_batch(Instructions instructions);
-// Null where the compiler or the machine lacks these instructions, or where the whole build uses AVX.
+// With these instructions, where GCPDDA_HAS_COPIES.
 std::unique_ptr<PlainBatch> make_avx2_batch();
 std::unique_ptr<PlainBatch> make_avx512_batch();
 

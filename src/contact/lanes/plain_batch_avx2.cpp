@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <utility>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX__)
+#if GCPDDA_HAS_COPIES
 
 #pragma GCC push_options
 #pragma GCC target("avx2")
@@ -26,17 +26,7 @@
 namespace gcpdda {
 
 std::unique_ptr<PlainBatch> make_avx2_batch() {
-  return __builtin_cpu_supports("avx2") ? std::make_unique<avx2::LaneBatch>() : nullptr;
-}
-
-} // namespace gcpdda
-
-#else
-
-namespace gcpdda {
-
-std::unique_ptr<PlainBatch> make_avx2_batch() {
-  return nullptr;
+  return std::make_unique<avx2::LaneBatch>();
 }
 
 } // namespace gcpdda

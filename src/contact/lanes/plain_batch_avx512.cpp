@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <utility>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX__)
+#if GCPDDA_HAS_COPIES
 
 #include <immintrin.h>
 
@@ -26,19 +26,7 @@
 namespace gcpdda {
 
 std::unique_ptr<PlainBatch> make_avx512_batch() {
-  const bool is_able = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                       __builtin_cpu_supports("avx512vl");
-  return is_able ? std::make_unique<avx512::LaneBatch>() : nullptr;
-}
-
-} // namespace gcpdda
-
-#else
-
-namespace gcpdda {
-
-std::unique_ptr<PlainBatch> make_avx512_batch() {
-  return nullptr;
+  return std::make_unique<avx512::LaneBatch>();
 }
 
 } // namespace gcpdda

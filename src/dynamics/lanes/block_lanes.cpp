@@ -12,14 +12,9 @@ namespace gcpdda {
 namespace {
 
 BlockLanes lanes_of(Instructions instructions) {
-  BlockLanes lanes{};
-  if (instructions == Instructions::widest) {
-    lanes = avx512_blocks();
-  }
-  if (lanes.width == 0 && instructions != Instructions::portable) {
-    lanes = avx2_blocks();
-  }
-  return lanes.width > 0 ? lanes : GCPDDA_INSTRUCTIONS::blocks;
+  return with_copy_for(
+      instructions, [] { return avx512_blocks(); }, [] { return avx2_blocks(); },
+      [] { return GCPDDA_INSTRUCTIONS::blocks; });
 }
 
 } // namespace

@@ -104,7 +104,7 @@ inline bool are_free(const BlockSystem &system, std::size_t first, std::size_t l
 
 /// All instructions give the same bits.
 const BlockLanes &block_lanes(Instructions instructions);
-// Of width 0 where the compiler or the machine lacks these instructions, or the whole build uses AVX.
+// With these instructions, where GCPDDA_HAS_COPIES.
 BlockLanes avx2_blocks();
 BlockLanes avx512_blocks();
 

@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX__)
+#if GCPDDA_HAS_COPIES
 
 #pragma GCC push_options
 #pragma GCC target("avx2")
@@ -25,17 +25,7 @@
 namespace gcpdda {
 
 BlockLanes avx2_blocks() {
-  return __builtin_cpu_supports("avx2") ? avx2::blocks : BlockLanes{};
-}
-
-} // namespace gcpdda
-
-#else
-
-namespace gcpdda {
-
-BlockLanes avx2_blocks() {
-  return {};
+  return avx2::blocks;
 }
 
 } // namespace gcpdda

@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX__)
+#if GCPDDA_HAS_COPIES
 
 #include <immintrin.h>
 
@@ -26,19 +26,7 @@
 namespace gcpdda {
 
 BlockLanes avx512_blocks() {
-  const bool is_able = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                       __builtin_cpu_supports("avx512vl");
-  return is_able ? avx512::blocks : BlockLanes{};
-}
-
-} // namespace gcpdda
-
-#else
-
-namespace gcpdda {
-
-BlockLanes avx512_blocks() {
-  return {};
+  return avx512::blocks;
 }
 
 } // namespace gcpdda
