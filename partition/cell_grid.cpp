@@ -1,12 +1,11 @@
-// The grid of background cells (domain_map.hpp).
-
-#include "partition/domain_map.hpp"
+#include "partition/cell_grid.hpp"
 
 #include "base/check.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace gcpdda {
 

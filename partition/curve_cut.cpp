@@ -1,7 +1,7 @@
 // The fallback, and the yardstick, of METIS: cells in Hilbert order, cut where the heaviest part is lightest.
 // Borders are longer than METIS's, but it works on any number of cells, any weights and any number of parts.
 
-#include "partition/cut.hpp"
+#include "partition/curve_cut.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,8 +1,7 @@
-// Cells cut by METIS (cut.hpp).
-
-#include "partition/cut.hpp"
+#include "partition/metis_cut.hpp"
 
 #include "base/check.hpp"
+#include "partition/curve_cut.hpp"
 
 #include <metis.h>
 

@@ -1,8 +1,10 @@
 // Which cells hold work, who cuts them, and who gets the empty ones.
 
-#include "partition/cut.hpp"
+#include "partition/partition_cells.hpp"
 
 #include "base/check.hpp"
+#include "partition/curve_cut.hpp"
+#include "partition/metis_cut.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -146,20 +148,6 @@ PartitionReport report_on(const OccupiedCells &cells, const Choice &choice, int 
 }
 
 } // namespace
-
-OccupiedCells::OccupiedCells(const CellGrid &cells, std::span<const std::int64_t> weights)
-    : grid(cells), row_of(weights.size(), -1) {
-  std::int64_t room = max_total_weight;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    expect(weights[i] >= 0 && weights[i] <= room, "cell weights: not negative, sum up to 2^58");
-    room -= weights[i];
-    if (weights[i] > 0) {
-      row_of[i] = static_cast<std::int32_t>(cell.size());
-      cell.push_back(static_cast<std::int64_t>(i));
-      weight.push_back(weights[i]);
-    }
-  }
-}
 
 DomainMap partition_cells(const CellGrid &grid, std::span<const std::int64_t> weights, int num_parts,
                           PartitionReport *report, CutEffort effort) {

@@ -1,6 +1,4 @@
-// Which part goes to which rank (domain_map.hpp).
-
-#include "partition/domain_map.hpp"
+#include "partition/ranks_of_parts.hpp"
 
 #include <algorithm>
 #include <tuple>

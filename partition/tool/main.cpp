@@ -5,6 +5,7 @@
 #include "base/input_file.hpp"
 #include "gcpdda/base/diagnostic.hpp"
 #include "partition/domain_map.hpp"
+#include "partition/partition_cells.hpp"
 
 #include <CLI/CLI.hpp>
 

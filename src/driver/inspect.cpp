@@ -4,6 +4,7 @@
 #include "base/exact_sum.hpp"
 #include "driver/svg.hpp"
 #include "model/stiffness.hpp"
+#include "partition/partition_cells.hpp"
 #include "simulation/simulation.hpp"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include "base/check.hpp"
 #include "gcpdda/driver/run.hpp"
-#include "gcpdda/io/result_files.hpp"
 #include "io/checkpoint/checkpoint.hpp"
+#include "io/results/result_directory.hpp"
 #include "model/fingerprint.hpp"
 #include "simulation/simulation.hpp"
 

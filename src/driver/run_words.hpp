@@ -2,7 +2,7 @@
 
 // Sentences of the log on faults, progress, laws, bolts and verdicts.
 
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/run_summary.hpp"
 #include "simulation/simulation.hpp"
 
 #include <filesystem>

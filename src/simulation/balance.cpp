@@ -1,4 +1,6 @@
 #include "simulation/balance.hpp"
+#include "partition/partition_cells.hpp"
+#include "partition/ranks_of_parts.hpp"
 
 #include <algorithm>
 #include <array>

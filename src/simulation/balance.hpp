@@ -18,6 +18,7 @@
 #include "contact/candidates.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "partition/domain_map.hpp"
+#include "partition/partition_cells.hpp"
 
 #include <cstdint>
 #include <optional>

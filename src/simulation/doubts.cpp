@@ -2,9 +2,9 @@
 
 #include "base/edit_distance.hpp"
 #include "contact/stiffness_bound.hpp"
-#include "gcpdda/io/result_files.hpp"
 #include "geometry/mean_width.hpp"
 #include "geometry/polygon.hpp"
+#include "io/results/id_slabs.hpp"
 #include "simulation/plausibility.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/stage_changes.hpp"

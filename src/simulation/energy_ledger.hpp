@@ -19,7 +19,7 @@
 // contact pressure, by their potential (support) and by what yielding and rupture have taken (support_loss),
 // as the means of both trial configurations.
 
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/run_summary.hpp"
 #include "simulation/run_state.hpp"
 
 #include <array>

@@ -27,7 +27,7 @@
 // Nothing is done in a step. What is remembered is a velocity per block; it is neither migrated nor in a
 // checkpoint: the results do not depend on it.
 
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/run_summary.hpp"
 #include "simulation/simulation.hpp"
 
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "contact/in_situ.hpp"
 #include "dynamics/deformable.hpp"
-#include "gcpdda/io/result_files.hpp"
+#include "io/results/id_slabs.hpp"
 #include "parallel/migration.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "simulation/monitors.hpp"
 
-#include "gcpdda/io/result_files.hpp"
 #include "geometry/holds_point.hpp"
+#include "io/results/id_slabs.hpp"
 
 #include <algorithm>
 #include <array>

@@ -11,6 +11,7 @@
 #include "gcpdda/parallel/communicator.hpp"
 #include "parallel/ghosts.hpp"
 #include "partition/domain_map.hpp"
+#include "partition/partition_cells.hpp"
 #include "simulation/balance.hpp"
 #include "simulation/bolts.hpp"
 

@@ -1,7 +1,7 @@
 #include "simulation/region_slabs.hpp"
 
 #include "base/check.hpp"
-#include "gcpdda/io/result_files.hpp"
+#include "io/results/id_slabs.hpp"
 #include "model/block_source.hpp"
 
 #include <algorithm>

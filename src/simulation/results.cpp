@@ -1,5 +1,7 @@
 #include "simulation/results.hpp"
 
+#include "io/results/id_slabs.hpp"
+
 #include "dynamics/deformable.hpp"
 
 #include <algorithm>

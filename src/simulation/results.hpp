@@ -2,7 +2,10 @@
 
 // Rows of frames, histories and checkpoints from the state of a run.
 
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/frame_rows.hpp"
+#include "gcpdda/io/run_summary.hpp"
+#include "io/results/frame_writer.hpp"
+#include "io/results/history_writer.hpp"
 #include "simulation/simulation.hpp"
 
 #include <vector>

@@ -1,7 +1,7 @@
 #include "simulation/saved_state.hpp"
 
 #include "base/check.hpp"
-#include "gcpdda/io/result_files.hpp"
+#include "io/results/id_slabs.hpp"
 #include "model/fingerprint.hpp"
 #include "simulation/stage_changes.hpp"
 #include "simulation/static_stage.hpp"

@@ -4,9 +4,9 @@
 #include "contact/stiffness_bound.hpp"
 #include "dynamics/deformable.hpp"
 #include "dynamics/frequency_bound.hpp"
-#include "gcpdda/io/result_files.hpp"
 #include "geometry/holds_point.hpp"
 #include "geometry/polygon.hpp"
+#include "io/results/id_slabs.hpp"
 #include "model/fidelity.hpp"
 
 #include <algorithm>

@@ -330,7 +330,7 @@ TEST(Includes, LegalOnesAreNot) {
       {"src/io/writer.cpp", "#include <hdf5.h>"},
       {"src/dynamics/scheme.cpp", "#include <Eigen/Dense>"},
       {"src/app/main.cpp", "#include \"gcpdda/model/scene.hpp\""},
-      {"partition/tool/main.cpp", "#include \"partition/cut.hpp\""},
+      {"partition/tool/main.cpp", "#include \"partition/curve_cut.hpp\""},
   }};
   for (const Planted &plant : good) {
     EXPECT_EQ(faults_in(plant.path, plant.line), std::vector<std::string>()) << plant.line;

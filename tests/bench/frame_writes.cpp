@@ -2,7 +2,8 @@
 // parallel HDF5 alone, both synced to the disk, by turns. Run by mpirun; prints medians of 7 and their
 // ratios.
 
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/frame_rows.hpp"
+#include "io/results/frame_writer.hpp"
 
 #include <fmt/format.h>
 #include <hdf5.h>

@@ -2,6 +2,7 @@
 
 #include "simulation/balance.hpp"
 
+#include "partition/partition_cells.hpp"
 #include "simulation/simulation.hpp"
 #include "support/scenes.hpp"
 

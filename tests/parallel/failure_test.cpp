@@ -4,6 +4,7 @@
 #include "gcpdda/driver/run.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/run_comparison.hpp"
+#include "partition/partition_cells.hpp"
 #include "shared_folder.hpp"
 #include "simulation/balance.hpp"
 #include "simulation/simulation.hpp"

@@ -1,7 +1,9 @@
 // Frames: what the ranks put in is what a reader gets out, in BlockId order, in files that do not depend on
 // the number of ranks. No fatal assertion: a rank that left early would leave the others waiting.
 
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/frame_rows.hpp"
+#include "io/results/frame_writer.hpp"
+#include "io/results/id_slabs.hpp"
 #include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"
 #include "support/frame_data.hpp"

@@ -4,6 +4,7 @@
 
 #include "contact/candidates.hpp"
 #include "parallel/ghosts.hpp"
+#include "partition/partition_cells.hpp"
 #include "random_blocks.hpp"
 #include "simulation/balance.hpp"
 

@@ -1,6 +1,6 @@
 // A region cut by all ranks: the same blocks, byte for byte, and the same run.
 
-#include "gcpdda/io/result_files.hpp"
+#include "io/results/id_slabs.hpp"
 #include "simulation/region_slabs.hpp"
 #include "simulation/simulation.hpp"
 #include "support/regions.hpp"

@@ -3,7 +3,8 @@
 // A run from its scene to its result folder.
 
 #include "gcpdda/base/exit_code.hpp"
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/result_manifest.hpp"
+#include "gcpdda/io/run_summary.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 

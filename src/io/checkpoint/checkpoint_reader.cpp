@@ -1,12 +1,12 @@
 // Checkpoints read, verified and distributed (checkpoint.hpp).
 
-#include "gcpdda/io/result_files.hpp"
 #include "io/checkpoint/checkpoint_layout.hpp"
 #include "io/checkpoint/checkpoint_seal.hpp"
 #include "io/hdf5/hdf5_collective_file.hpp"
 #include "io/hdf5/hdf5_input.hpp"
 #include "io/hdf5/numbered_name.hpp"
 #include "io/results/frame_strips.hpp"
+#include "io/results/id_slabs.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 // Frames of contacts (result_files.hpp).
 
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/frame_rows.hpp"
+#include "io/results/frame_writer.hpp"
 
 #include "io/results/frame_fields.hpp"
 #include "io/results/frame_strips.hpp"

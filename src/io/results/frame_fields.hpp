@@ -4,7 +4,7 @@
 // files, the lines of run.xdmf, the reader, and the tables of run/guide/09_results_and_pictures.md, which a
 // test compares with it. Datasets are made in the order of a table, and the bytes of a file depend on it.
 
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/frame_rows.hpp"
 #include "io/results/hdf5_vtk_layout.hpp"
 #include "io/results/run_comparison.hpp"
 

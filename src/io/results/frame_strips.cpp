@@ -1,5 +1,7 @@
 #include "io/results/frame_strips.hpp"
 
+#include "io/results/id_slabs.hpp"
+
 #include <algorithm>
 
 namespace gcpdda {

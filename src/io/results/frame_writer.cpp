@@ -2,7 +2,7 @@
 // rank, every row travels once to the owner of its slab, and all ranks write their slabs together, strip by
 // strip. What never changes is in a topology file of its own, which the frames link to.
 
-#include "gcpdda/io/result_files.hpp"
+#include "io/results/frame_writer.hpp"
 
 #include "io/hdf5/durable_file.hpp"
 #include "io/hdf5/hdf5_input.hpp"
@@ -180,14 +180,6 @@ std::string xdmf_index(const std::vector<IndexedFrame> &frames) {
 }
 
 } // namespace
-
-std::int64_t slab_begin(std::int64_t num_blocks, int num_ranks, int rank) {
-  return num_blocks * rank / num_ranks;
-}
-
-int slab_owner(std::int64_t num_blocks, int num_ranks, std::int64_t block) {
-  return static_cast<int>(((block + 1) * num_ranks - 1) / num_blocks);
-}
 
 FrameWriter::FrameWriter(const Communicator &communicator, std::filesystem::path directory,
                          std::int64_t num_blocks, std::int64_t ids_per_strip)

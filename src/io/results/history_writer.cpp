@@ -1,6 +1,6 @@
 // Histories as CSV (result_files.hpp).
 
-#include "gcpdda/io/result_files.hpp"
+#include "io/results/history_writer.hpp"
 
 #include "base/check.hpp"
 #include "base/text.hpp"

@@ -1,6 +1,6 @@
 // The folder of a run: made, taken up again, recognised (result_files.hpp).
 
-#include "gcpdda/io/result_files.hpp"
+#include "io/results/result_directory.hpp"
 
 #include "base/check.hpp"
 #include "io/hdf5/durable_file.hpp"

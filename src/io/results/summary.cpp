@@ -1,6 +1,6 @@
 // summary.json (result_files.hpp).
 
-#include "gcpdda/io/result_files.hpp"
+#include "io/results/summary.hpp"
 
 #include "io/hdf5/durable_file.hpp"
 #include "io/results/json.hpp"

@@ -4,8 +4,11 @@
 #include "driver/restart.hpp"
 
 #include "base/check.hpp"
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/frame_rows.hpp"
+#include "gcpdda/io/run_summary.hpp"
 #include "io/results/folder_lock.hpp"
+#include "io/results/frame_writer.hpp"
+#include "io/results/history_writer.hpp"
 #include "io/results/run_comparison.hpp"
 #include "simulation/time_plan.hpp"
 #include "support/frame_data.hpp"

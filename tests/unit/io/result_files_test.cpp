@@ -1,6 +1,11 @@
 #include "base/check.hpp"
-#include "gcpdda/io/result_files.hpp"
+#include "gcpdda/io/frame_rows.hpp"
+#include "gcpdda/io/run_summary.hpp"
+#include "io/results/frame_writer.hpp"
+#include "io/results/history_writer.hpp"
+#include "io/results/result_directory.hpp"
 #include "io/results/run_comparison.hpp"
+#include "io/results/summary.hpp"
 #include "support/frame_data.hpp"
 
 #include <gtest/gtest.h>

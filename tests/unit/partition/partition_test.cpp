@@ -1,4 +1,6 @@
 #include "partition/domain_map.hpp"
+#include "partition/partition_cells.hpp"
+#include "partition/ranks_of_parts.hpp"
 
 #include "base/check.hpp"
 

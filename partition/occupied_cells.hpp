@@ -1,11 +1,12 @@
 #pragma once
 
-// The ways to cut the graph of cells into parts: METIS, or a space-filling curve.
+// The cells that hold work, and their neighbours: the graph that is cut.
 
-#include "partition/domain_map.hpp"
+#include "partition/cell_grid.hpp"
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <vector>
 
 namespace gcpdda {
@@ -43,17 +44,5 @@ template <class Visit> void for_each_neighbour(const CellGrid &grid, std::int64_
 inline std::int64_t face_weight(std::int64_t a, std::int64_t b) {
   return a / 2 + b / 2 + (a % 2 + b % 2) / 2;
 }
-
-/// Place of each occupied cell along the Hilbert curve of the smallest enclosing power of two.
-std::vector<std::uint64_t> hilbert_positions(const OccupiedCells &cells);
-
-/// Rows of the occupied cells in that order.
-std::vector<std::size_t> rows_along_curve(const OccupiedCells &cells);
-
-/// The contiguous cut of the curve whose heaviest part is lightest; no part is empty while there are cells.
-Cut cut_along_curve(const OccupiedCells &cells, int num_parts);
-
-/// Nothing when METIS left a part empty.
-std::optional<Cut> cut_by_metis(const OccupiedCells &cells, int num_parts, CutEffort effort);
 
 } // namespace gcpdda

@@ -1,0 +1,102 @@
+#pragma once
+
+// What summary.json says of a run, and the rows of energies and bolts that it takes from the histories.
+
+#include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/model/scene.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gcpdda {
+
+/// Columns of history/energy.csv after the time.
+struct EnergyRow {
+  double kinetic = 0.0;
+  double strain = 0.0;
+  double contact_normal = 0.0;
+  double contact_stick = 0.0;
+  double gravity = 0.0;
+  double friction_loss = 0.0;
+  double damping_loss = 0.0;
+  double boundary_work = 0.0;
+  double residual = 0.0;
+  double unbalanced_ratio = 0.0;
+  double max_speed = 0.0;
+  double support = 0.0; ///< this and the next in scenes with bolts only
+  double support_loss = 0.0;
+  double excess = 0.0; ///< at least so much is in contact_normal only because it is a mean; not written
+};
+
+/// One row of history/bolts.csv: largest values over the joints that one bolt crosses.
+struct BoltHistoryRow {
+  std::string name;
+  Vec2 head; ///< m
+  Vec2 tip;
+  double axial = 0.0;     ///< N, tension
+  double shear = 0.0;     ///< N
+  double extension = 0.0; ///< m
+  double slide = 0.0;     ///< m
+  std::int64_t links = 0;
+  std::int64_t yielded = 0;
+  std::int64_t broken = 0;
+};
+
+/// What one bolt has borne, for summary.json.
+struct BoltLoad {
+  BoltHistoryRow last;    ///< its last row
+  double time = 0.0;      ///< of it, s
+  double axial = 0.0;     ///< largest tension of all its rows, N
+  double shear = 0.0;     ///< N
+  double installed = 0.0; ///< when it was put in last, s; the next two are not known to the history
+  bool in_place = false;
+  std::string support;
+};
+
+/// Everything summary.json holds.
+struct RunSummary {
+  int ranks = 1;
+  std::int64_t blocks = 0;
+  std::int64_t fixed_blocks = 0;
+  std::int64_t steps = 0;
+  double time = 0.0;
+  double time_step = 0.0;
+  double time_step_min = 0.0;
+  std::int64_t contacts = 0;
+  std::int64_t contact_steps = 0;
+  std::vector<std::int64_t> evaluations_per_rank;
+  std::vector<std::int64_t> work_per_rank;   ///< evaluations and blocks, summed over steps
+  std::vector<std::int64_t> ghosts_per_rank; ///< at the end
+  double wall_s = 0.0;
+  double cpu_s = 0.0;
+  double setup_wall_s = 0.0;
+  double output_wall_s = 0.0;
+  double total_wall_s = 0.0;
+  double max_overlap = 0.0;
+  double permanent_displacement = -1.0; ///< m, largest since the ground began to shake; negative: it did not
+  std::string permanent_block;          ///< the one that has moved so far
+  EnergyRow energy;
+  double imbalance = 1.0;
+  double bytes_sent_per_step = 0.0;
+  double messages_per_step = 0.0;
+  /// name, {min, mean, max over ranks} in wall seconds
+  std::vector<std::pair<std::string, std::array<double, 3>>> phases;
+  /// name, count: extra facts a test or a person may want (migrations, refreshes, cross_rank_contacts, ...)
+  std::vector<std::pair<std::string, double>> counters;
+  double restarted_at = -1.0; ///< s, negative for a run from t = 0; times and counters "of the run" then are
+                              ///< of all of it, wall and CPU times, evaluations and messages of this part
+  struct StageLine {
+    std::string name;
+    std::string verdict;
+    StageResult result;
+  };
+  std::vector<BoltLoad> bolts;   ///< those that have been in place
+  std::vector<StageLine> stages; ///< those that have begun; none in a scene without stages
+  std::string verdict;
+  std::string message;
+};
+
+} // namespace gcpdda

@@ -1,0 +1,28 @@
+#pragma once
+
+// The result folder of a run as a whole.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gcpdda {
+
+/// Makes the folder of a run, root only. A folder that holds a run is refused with FileError unless
+/// `overwrite`, which removes only what a run writes. Writes scene.toml (the resolved text).
+void prepare_result_directory(const std::filesystem::path &directory, bool overwrite,
+                              const std::string &resolved_scene);
+
+/// Makes a run's folder fit to go on with: its scene.toml is this one, its summary is gone. Root only.
+void reopen_result_directory(const std::filesystem::path &directory, const std::string &resolved_scene);
+
+/// Whether summary.json says that the run has reached its end. Root only.
+bool says_completed(const std::filesystem::path &directory);
+
+/// Root only: decomposition/owners_<step>.csv, `block,rank` in BlockId order; anything that depends on ranks
+/// lives there.
+void write_owners(const std::filesystem::path &directory, std::int64_t step,
+                  const std::vector<std::int32_t> &owner_of_block);
+
+} // namespace gcpdda
