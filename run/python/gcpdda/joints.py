@@ -1,0 +1,164 @@
+"""Joints between blocks: where they are, how they have moved, and how much of their strength is used."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+STATES = ("open", "stick", "slip", "bond")  # by the number of a contact's state; 0 is no contact
+
+
+class Joints(NamedTuple):
+    """Where edges of two blocks lie on each other: numbers of the two blocks, and the ends (n, 2, 2) in m, in the order
+    of the edge of the first block, whose inside is to the left."""
+
+    blocks: np.ndarray
+    lines: np.ndarray
+
+
+def find_joints(frame, gap=5e-3):
+    """The joints of a frame: pairs of edges of opposite direction, not farther from each other than `gap` median block
+    sizes. Fixed blocks have no joints with each other."""
+    points, offsets = frame.points, frame.offsets
+    counts = np.diff(offsets)
+    owner = np.repeat(np.arange(len(counts)), counts)
+    following = np.arange(1, len(points) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    begin, end = points.copy(), points[following]
+    clockwise = _signed_areas(points, points[following], offsets) < 0.0
+    turned = clockwise[owner]
+    begin[turned], end[turned] = end[turned], points[turned]
+    size = float(np.median(np.sqrt(frame.areas)))
+    tolerance = gap * size
+
+    low, high = np.minimum(begin, end) - tolerance, np.maximum(begin, end) + tolerance
+    order = np.argsort(low[:, 0], kind="stable")
+    begin, end, owner, low, high = begin[order], end[order], owner[order], low[order], high[order]
+    fixed = frame.fixed[owner]
+    along = end - begin
+    length = np.hypot(*along.T)
+    along = along / np.maximum(length, 1e-300)[:, None]
+    last = np.searchsorted(low[:, 0], high[:, 0], side="right")
+    pairs, lines = [], []
+    for first in range(len(begin)):
+        near = np.arange(first + 1, last[first])
+        near = near[(low[near, 1] <= high[first, 1]) & (high[near, 1] >= low[first, 1]) & (owner[near] != owner[first])]
+        near = near[(along[near] @ along[first] < -0.9999) & ~(fixed[near] & fixed[first])]
+        if not len(near):
+            continue
+        t, n = along[first], np.array([-along[first, 1], along[first, 0]])
+        s = np.stack([(end[near] - begin[first]) @ t, (begin[near] - begin[first]) @ t])
+        middle = 0.5 * (begin[near] + end[near]) - begin[first]
+        # The part where the two edges are beside each other, and their distance in its middle.
+        s0, s1 = np.maximum(s[0], 0.0), np.minimum(s[1], length[first])
+        slope = -(along[near] @ n)
+        distance = np.abs(middle @ n + slope * (0.5 * (s0 + s1) - middle @ t))
+        for k in np.flatnonzero((s1 - s0 > 1e-2 * size) & (distance <= tolerance)):
+            pairs.append((owner[first], owner[near[k]]))
+            lines.append((begin[first] + s0[k] * t, begin[first] + s1[k] * t))
+    pairs = frame.ids[np.array(pairs, dtype=int).reshape(-1, 2)]
+    lines = np.array(lines).reshape(-1, 2, 2)
+    swapped = pairs[:, 0] > pairs[:, 1]
+    pairs[swapped], lines[swapped] = pairs[swapped][:, ::-1], lines[swapped][:, ::-1]
+    return Joints(pairs, lines)
+
+
+def _signed_areas(p, q, offsets):
+    origin = np.repeat(p[offsets[:-1]], np.diff(offsets), axis=0)
+    p, q = p - origin, q - origin
+    return 0.5 * np.add.reduceat(p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1], offsets[:-1])
+
+
+def affine_maps(old, new):
+    """Affine maps of blocks from one frame to another, which vertices give exactly: blocks are rigid or have one strain.
+    Returns rows in `new` (-1 for a block that is missing there) by row in `old`, matrices, centres in `old`, centres in `new`."""
+    row_of = {block: row for row, block in enumerate(new.ids.tolist())}
+    rows = np.array([row_of.get(block, -1) for block in old.ids.tolist()])
+    there = np.flatnonzero(rows >= 0)
+    counts = np.diff(old.offsets)[there]
+    begins = np.concatenate(([0], np.cumsum(counts)))[:-1]
+    p = np.concatenate([old.points[old.offsets[k]:old.offsets[k + 1]] for k in there])
+    q = np.concatenate([new.points[new.offsets[k]:new.offsets[k + 1]] for k in rows[there]])
+    centre_p = np.add.reduceat(p, begins) / counts[:, None]
+    centre_q = np.add.reduceat(q, begins) / counts[:, None]
+    p, q = p - np.repeat(centre_p, counts, axis=0), q - np.repeat(centre_q, counts, axis=0)
+    moments = np.add.reduceat(p[:, :, None] * p[:, None, :], begins)
+    mixed = np.add.reduceat(q[:, :, None] * p[:, None, :], begins)
+    matrices, centres_old, centres_new = np.zeros((len(rows), 2, 2)), np.zeros((len(rows), 2)), np.zeros((len(rows), 2))
+    matrices[there] = mixed @ np.linalg.inv(moments)
+    centres_old[there], centres_new[there] = centre_p, centre_q
+    return rows, matrices, centres_old, centres_new
+
+
+def track(joints, first, frame):
+    """Joints of the first frame in another one: their lines on the edges of the two blocks, openings and shear
+    displacements, and which of the joints are left, whose two blocks are both there."""
+    rows, matrices, old, new = affine_maps(first, frame)
+    position = np.full(int(first.ids.max()) + 1, -1)
+    position[first.ids] = np.arange(len(first.ids))
+    a, b = position[joints.blocks[:, 0]], position[joints.blocks[:, 1]]
+    there = np.flatnonzero((rows[a] >= 0) & (rows[b] >= 0))
+
+    def moved(block):
+        local = joints.lines[there] - old[block, None]
+        return new[block, None] + np.einsum("nij,nkj->nki", matrices[block], local)
+
+    on_a, on_b = moved(a[there]), moved(b[there])
+    lines = 0.5 * (on_a + on_b)
+    tangent = lines[:, 1] - lines[:, 0]
+    tangent /= np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
+    apart = (on_b - on_a).mean(axis=1)
+    # The first block lies to the left of the line, the second one to the right.
+    opening = apart[:, 0] * tangent[:, 1] - apart[:, 1] * tangent[:, 0]
+    return np.stack([on_a, on_b], axis=1), opening, np.einsum("ni,ni->n", apart, tangent), there
+
+
+def strength_laws(result, time):
+    """The laws of a scene as they are at a time, with what stages have set: {name: keys}, keys of default filled in."""
+    laws = {name: dict(keys) for name, keys in result.scene["joint"].items()}
+    stages = result.stages
+    begins = dict(zip(stages["name"], stages["begin"])) if len(stages) else {}
+    for k, stage in enumerate(result.scene.get("stage", [])):
+        begin = begins.get(stage.get("name", f"stage{k}"))
+        if begin is None or begin > time - 1e-9 * max(time, 1.0) and begin > 0.0:
+            continue
+        for path, value in stage.get("set", {}).items():
+            parts = path.split(".")
+            if parts[0] == "joint" and len(parts) >= 3:
+                laws.setdefault(".".join(parts[1:-1]), {})[parts[-1]] = value
+    default = laws.get("default", {})
+    inherited = {key: value for key, value in default.items() if key != "materials"}
+    return {name: inherited | keys for name, keys in laws.items()}
+
+
+def strength_used(frame):
+    """|T|/(N tan phi + c l) of each contact region: 1 where it slips. A bond has its peak strength, every other contact
+    the residual one; 0 where there is neither force nor strength, infinite where a force meets none."""
+    data = frame._contact_data
+    laws = strength_laws(frame.result, frame.time)
+    factor, families = frame.result.weakened
+    along = data["lines"][:, 1] - data["lines"][:, 0]
+    length = np.hypot(*along.T)
+    normal, shear = data["normal_force"], np.abs(data["shear_force"])
+    strength = np.zeros(len(normal))
+    for number, name in enumerate(frame.result.joint_names):
+        law = laws[name]
+        angle, cohesion = law.get("friction_angle_deg", 0.0), law.get("cohesion", 0.0)
+        bonded_law = "tension" in law or "residual_cohesion" in law or "residual_friction_angle_deg" in law
+        for bond in (False, True):
+            of = (data["joint"] == number) & ((data["state"] == 3) == bond)
+            if not of.any():
+                continue
+            phi, c = angle, cohesion
+            if law.get("law") == "barton-bandis":
+                residual = law.get("residual_friction_angle_deg", angle)
+                stress = np.maximum(normal[of], 1e-12) / np.maximum(length[of], 1e-12)
+                phi = np.minimum(residual + law["jrc"] * np.log10(np.maximum(law["jcs"] / stress, 1.0)), 70.0)
+            elif bonded_law and not bond:
+                phi = law.get("residual_friction_angle_deg", angle)
+                c = law.get("residual_cohesion", 0.0)
+            strength[of] = np.maximum(normal[of] * np.tan(np.radians(phi)) + c * length[of], 0.0)
+            strength[of] /= factor if name in families else 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        used = shear / strength
+    used[shear == 0.0] = 0.0
+    return used

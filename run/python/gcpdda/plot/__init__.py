@@ -1,0 +1,172 @@
+"""Pictures of a result folder: `result.plot.field("stress", out="stress.png")`.
+
+Every picture has axes in metres or seconds, units and a scale. Panels and pictures of one call share axes and scales, and the
+scales fit the window that is shown. Without `out` a picture is returned as a matplotlib figure, which a notebook shows.
+"""
+
+import pathlib
+
+import matplotlib.animation
+import matplotlib.pyplot as plt
+import numpy as np
+
+from . import over_time, style
+from .layers import FIELDS, Arrows, Blocks, Bolts, Chains, Crosses, JointLines, JointStates, Layer, Shown
+from .water import Pressure, Water
+
+__all__ = ["Plots", "FIELDS", "JOINTS", "ARROWS", "HISTORIES", "Layer"]
+
+JOINTS = ("state", *JointLines.QUANTITIES)
+ARROWS = tuple(Arrows.QUANTITIES)
+HISTORIES = tuple(over_time.HISTORIES)
+LONGEST = 8.0  # s, an animation if nothing else is asked for
+MOST_FRAMES = 120
+
+
+class Plots:
+    """The pictures of one result. All maps of blocks take these keywords:
+
+    frame       a number, "first", "last", "all", or a list of them: one panel each (default: last)
+    window      (x0, y0, x1, y1) in m: part of the plane to draw
+    scale       draws the motion since the first frame so many times
+    compare     "first" outlines the blocks as they were in the first frame
+    since       the stage from whose beginning permanent displacement counts
+    title, dpi, out     a heading; resolution; file: .png, .pdf, .svg, or .gif, which is animated
+    """
+
+    def __init__(self, result):
+        self.result = result
+
+    def field(self, field="displacement", **options):
+        """Blocks filled by a field: displacement, permanent, velocity, rotation, stress (the largest compressive one),
+        contact_force, kind, or none."""
+        return self.map(field, **options)
+
+    def joints(self, quantity="state", **options):
+        """Joints as coloured lines: state, shear_displacement, opening, slip, normal_force, shear_force, overlap or
+        strength_used."""
+        return self.map(joints=quantity, **options)
+
+    def strength(self, **options):
+        """How much of their strength contacts use: T/(N tan phi + c l), 1 where they slip."""
+        return self.map(joints="strength_used", **options)
+
+    def forces(self, **options):
+        """Forces at contacts as arrows."""
+        return self.map(arrows="force", **options)
+
+    def chains(self, **options):
+        """Force chains: lines from block to block, as wide as the normal force between them."""
+        return self.map(chains=True, **options)
+
+    def crosses(self, **options):
+        """Principal stresses as crosses, tension red."""
+        return self.map(crosses=True, **options)
+
+    def vectors(self, quantity="displacement", **options):
+        """Arrows of the displacement, permanent displacement or velocity of blocks."""
+        return self.map(arrows=quantity, **options)
+
+    def water(self, **options):
+        """Water pressure on the edges of blocks."""
+        return self.map(pressure=True, **options)
+
+    def before_after(self, field="displacement", before="first", after="last", **options):
+        """Two frames side by side."""
+        return self.map(field, frame=[before, after], **options)
+
+    def animate(self, out, field="displacement", seconds=None, fps=None, **options):
+        """A .gif of all frames that lasts at most `seconds` (8), or has `fps` frames a second."""
+        return self.map(field, frame="all", out=out, seconds=seconds, fps=fps, **options)
+
+    def map(self, field=None, *, joints=None, arrows=None, chains=False, crosses=False, pressure=False, frame="last",
+            window=None, scale=1.0, compare=None, since=None, title=None, dpi=160, out=None, seconds=None, fps=None):
+        """Any of these over each other. Blocks are filled by `field`, or left plain where something else is drawn."""
+        plain = joints or arrows or chains or crosses or pressure
+        frames = self._frames(frame)
+        needs_stage = "permanent" in (field, arrows)
+        if needs_stage != (since is not None):
+            raise ValueError("permanent displacement and the stage since which it counts belong together")
+        start = self.result.before(since) if since else None
+        first = Shown(self.result.frame("first"))
+        layers = [Blocks(field or ("none" if plain else "displacement"), start, first if compare else None), Water()]
+        layers += [Pressure()] if pressure else []
+        layers += [JointStates() if joints == "state" else JointLines(_known(joints, JOINTS, "joints"))] if joints else []
+        layers += [Chains()] if chains else []
+        layers += [Crosses()] if crosses else []
+        layers += [Arrows(_known(arrows, ARROWS, "arrows"), start)] if arrows else []
+        layers.append(Bolts(frames))
+        shown = [Shown(one, scale) for one in frames]
+        limits = tuple(np.reshape(np.array(window, dtype=float), (2, 2))) if window is not None else style.view(shown)
+        for layer in layers:
+            layer.prepare(shown, limits)
+        if out is not None and pathlib.Path(out).suffix == ".gif":
+            return _animate(shown, layers, limits, out, title, dpi, seconds, fps)
+        figure, panels = style.map_figure(len(shown), limits, layers, title)
+        for axes, one in zip(panels, shown):
+            _draw(axes, one, layers, limits, f"t = {one.time:.4g} s")
+        return _finished(figure, out, dpi)
+
+    def history(self, quantity="displacement", names=None, *, dpi=160, out=None):
+        """A quantity of monitored blocks and points over time, all of them or some `names`."""
+        return _finished(over_time.draw_history(self.result, _known(quantity, HISTORIES, "history"), names), out, dpi)
+
+    def energy(self, *, dpi=160, out=None):
+        """Where the energy is and where it went, and how far the model is from rest, over time."""
+        return _finished(over_time.draw_energy(self.result), out, dpi)
+
+    def bolts(self, *, dpi=160, out=None):
+        """Tension of bolts over time."""
+        return _finished(over_time.draw_bolts(self.result), out, dpi)
+
+    def rayleigh(self, *, dpi=160, out=None):
+        """Damping ratio over frequency of run.rayleigh."""
+        return _finished(over_time.draw_rayleigh(self.result), out, dpi)
+
+    def _frames(self, which):
+        chosen = []
+        for one in which if isinstance(which, (list, tuple)) else [which]:
+            chosen += self.result.frames if one == "all" else [self.result.frame(one)]
+        if not chosen:
+            raise FileNotFoundError(f"no frames in {self.result.path}")
+        return chosen
+
+
+def _known(name, names, what):
+    if name not in names:
+        raise ValueError(f"no {what} {name}: there are {', '.join(names)}")
+    return name
+
+
+def _draw(axes, shown, layers, window, title):
+    with plt.rc_context(style.PARAMETERS):
+        for layer in layers:
+            layer.draw(axes, shown, window)
+    axes.set(xlim=(window[0][0], window[1][0]), ylim=(window[0][1], window[1][1]))
+    axes.set_title(title, fontsize=9)
+
+
+def _finished(figure, out, dpi):
+    if out is None:
+        return figure
+    pathlib.Path(out).parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(out, dpi=dpi, bbox_inches="tight", pad_inches=0.06)
+    plt.close(figure)
+    return None
+
+
+def _animate(shown, layers, window, out, title, dpi, seconds, fps):
+    every = 1 if fps else -(-len(shown) // MOST_FRAMES)
+    shown = shown[::-every][::-1]  # the last frame is always there
+    fps = fps or float(np.clip(len(shown) / (seconds or LONGEST), 2.0, 25.0))
+    figure, (axes,) = style.map_figure(1, window, layers, title)
+
+    def show(number):
+        for old in [*axes.collections, *axes.lines, *axes.texts, *axes.artists]:
+            old.remove()
+        _draw(axes, shown[number], layers, window, f"t = {shown[number].time:.3f} s")
+
+    movie = matplotlib.animation.FuncAnimation(figure, show, frames=len(shown), init_func=lambda: None)
+    pathlib.Path(out).parent.mkdir(parents=True, exist_ok=True)
+    movie.save(out, writer=matplotlib.animation.PillowWriter(fps=fps), dpi=min(dpi, 110))
+    plt.close(figure)

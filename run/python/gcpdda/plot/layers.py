@@ -1,0 +1,462 @@
+"""What a picture of blocks consists of: layers that are drawn over each other, each with a scale that all its panels share.
+
+A layer has prepare(shown, window), which sees all frames before the first is drawn; draw(axes, shown); explain(figure,
+axes), which adds its colour bar; handles(), its entries of the legend; and says by `bars` and `has_legend` how much room it needs.
+`shown` is a `Shown`: a frame and where its blocks are drawn.
+"""
+
+import functools
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from ..joints import affine_maps, strength_used
+from . import style
+
+KINDS = {1: ("rigid", "#7fa8c9"), 2: ("deformable", "#e0a15a")}
+
+
+def largest_compression(frame):
+    """Minus the smaller principal value of the mean Cauchy stress (tension positive)."""
+    xx, yy, xy = frame.values("stress").T
+    return np.hypot(0.5 * (xx - yy), xy) - 0.5 * (xx + yy)
+
+
+def _size(name):
+    return lambda frame: np.hypot(*frame.values(name)[:, :2].T)
+
+
+# name: (values of a frame, label, unit, signed)
+FIELDS = {
+    "displacement": (_size("displacement"), "displacement", "m", False),
+    "permanent": (None, "displacement since the stage began", "m", False),
+    "velocity": (_size("velocity"), "speed", "m/s", False),
+    "rotation": (lambda frame: np.degrees(frame.values("rotation")), "rotation, counter-clockwise", "°", True),
+    "contact_force": (_size("contact_force"), "resultant of contact forces", "N/m", False),
+    "stress": (largest_compression, "largest compressive stress", "Pa", False),
+    "kind": (None, "", "", False),
+    "none": (None, "", "", False),
+}
+
+
+class Shown:
+    """A frame and where its blocks are drawn: where they are, or with their motion since the first frame magnified."""
+
+    def __init__(self, frame, scale=1.0):
+        self.frame, self.scale = frame, scale
+        self.fixed, self.offsets, self.ids, self.time = frame.fixed, frame.offsets, frame.ids, frame.time
+        self.points = frame.points
+        if scale != 1.0:
+            first = frame.result.frames[0]
+            of_left = np.repeat(np.isin(first.ids, frame.ids), np.diff(first.offsets))
+            start = first.points[of_left]
+            self.points = start + scale * (frame.points - start)
+
+    @functools.cached_property
+    def polygons(self):
+        return np.split(self.points, self.offsets[1:-1])
+
+    @functools.cached_property
+    def centroids(self):
+        from ..frame import polygon_facts
+        return polygon_facts(self.points, self.offsets)[1]
+
+    def of(self, chosen):
+        return [self.polygons[k] for k in np.flatnonzero(chosen)]
+
+    def visible(self, window):
+        """Mobile blocks that lie in the window, all mobile ones if there are none."""
+        inside = ~self.fixed & style.within(self.polygons, window)
+        return inside if inside.any() else ~self.fixed
+
+    def moved(self, lines, block_ids):
+        """Lines on those blocks where the blocks are drawn."""
+        if self.scale == 1.0 or not len(lines):
+            return lines
+        _, matrices, old, new = affine_maps(self.frame, self)
+        row = np.searchsorted(self.ids, block_ids)
+        return new[row, None] + np.einsum("nij,nkj->nki", matrices[row], lines - old[row, None])
+
+
+class Layer:
+    bars = 0
+    has_legend = False
+
+    def prepare(self, shown, window):
+        pass
+
+    def explain(self, figure, axes):
+        pass
+
+    def handles(self):
+        return []
+
+
+class Blocks(Layer):
+    """Blocks filled by a field, fixed ones grey and hatched. `reference` is a Shown whose mobile blocks are outlined."""
+
+    def __init__(self, field="displacement", since=None, reference=None):
+        if field not in FIELDS:
+            raise ValueError(f"no field {field}: there are {', '.join(FIELDS)}")
+        self.field, self.since, self.reference = field, since, reference
+        self.coloured = field not in ("kind", "none")
+        self.bars, self.has_legend = int(self.coloured), field == "kind"
+
+    def values(self, frame):
+        if self.field == "permanent":
+            return np.hypot(*(frame.values("displacement")[:, :2] - start_of(self.since, frame)).T)
+        return FIELDS[self.field][0](frame)
+
+    def prepare(self, shown, window):
+        self.present = set(np.concatenate([s.frame.values("kind") for s in shown]).tolist())
+        if not self.coloured:
+            return
+        _, self.label, unit, signed = FIELDS[self.field]
+        seen = np.concatenate([self.values(s.frame)[s.visible(window)] for s in shown])
+        largest = float(np.abs(seen).max(initial=0.0))
+        self.factor, self.unit = style.unit_prefix(unit, largest)
+        top = largest * self.factor or 1.0
+        # Stress alone may change sign without being `signed`: some blocks are in tension.
+        bottom = -top if signed else min(0.0, float(seen.min(initial=0.0)) * self.factor)
+        everything = np.concatenate([self.values(s.frame)[~s.fixed] for s in shown]) * self.factor
+        over, under = everything.max(initial=top) > 1.001 * top, everything.min(initial=bottom) < bottom - 1e-3 * top
+        self.extend = {(0, 0): "neither", (1, 0): "max", (0, 1): "min", (1, 1): "both"}[int(over), int(under)]
+        self.scale = ScalarMappable(Normalize(bottom, top), style.SIGNED if signed else style.SEQUENTIAL)
+
+    def colours(self, shown):
+        if self.field == "none":
+            return style.PLAIN_FACE
+        if self.field == "kind":
+            return [KINDS.get(int(kind), KINDS[1])[1] for kind in shown.frame.values("kind")[~shown.fixed]]
+        return self.scale.to_rgba(self.values(shown.frame)[~shown.fixed] * self.factor)
+
+    def draw(self, axes, shown, window):
+        in_view = max(int(style.within(shown.polygons, window).sum()), 1)
+        width = float(np.clip(6.0 / np.sqrt(in_view), 0.06, 0.6))
+        axes.add_collection(PolyCollection(shown.of(shown.fixed), facecolors=style.FIXED_FACE, edgecolors=style.FIXED_HATCH,
+                                           hatch="////", linewidths=width))
+        axes.add_collection(PolyCollection(shown.of(~shown.fixed), facecolors=self.colours(shown), edgecolors=style.EDGE,
+                                           linewidths=width))
+        if self.reference is not None:
+            axes.add_collection(PolyCollection(self.reference.of(~self.reference.fixed), facecolors="none",
+                                               edgecolors=style.OUTLINE, linewidths=max(1.2 * width, 0.3),
+                                               linestyles=(0, (4, 3))))
+
+    def explain(self, figure, axes):
+        if self.coloured:
+            style.colour_bar(figure, axes, self.scale, f"{self.label} ({self.unit})", self.extend)
+
+    def handles(self):
+        if self.field != "kind":
+            return []
+        patches = [Patch(fc=colour, ec=style.EDGE, lw=0.5, label=name) for k, (name, colour) in KINDS.items() if k in self.present]
+        if 0 in self.present:
+            patches.append(Patch(fc=style.FIXED_FACE, ec=style.FIXED_HATCH, hatch="////", lw=0.5, label="fixed"))
+        return patches
+
+
+def start_of(reference, frame):
+    """Displacements in a reference frame of the blocks of a frame, which may be fewer."""
+    known = dict(zip(reference.ids.tolist(), reference.values("displacement")[:, :2]))
+    return np.array([known[block] for block in frame.ids.tolist()]).reshape(-1, 2)
+
+
+class Coloured(Layer):
+    """Lines with a colour bar. A subclass says what lines() there are and what their values() mean."""
+
+    bars = 1
+    signed = False
+    colours = style.JOINTS
+    width = 1.6
+    label, unit = "", ""
+    largest = None  # end of the scale, if it does not follow from the values
+
+    def prepare(self, shown, window):
+        seen = []
+        for one in shown:
+            lines, values = self.lines(one)
+            if len(lines):
+                values = values[style.within(lines, window)]
+                seen.append(values[np.isfinite(values)])
+        seen = np.concatenate(seen) if seen else np.empty(0)
+        largest = self.largest or float(np.abs(seen).max(initial=0.0))
+        self.factor, self.shown_unit = style.unit_prefix(self.unit, largest)
+        top = largest * self.factor or 1.0
+        bottom = -top if self.signed and seen.min(initial=0.0) < 0.0 else 0.0
+        self.scale = ScalarMappable(Normalize(bottom, top), style.SIGNED if bottom < 0.0 else self.colours)
+
+    def draw(self, axes, shown, window):
+        lines, values = self.lines(shown)
+        if not len(lines):
+            return
+        inside = style.within(lines, window)
+        lines, values = lines[inside], values[inside]
+        order = np.argsort(np.abs(values), kind="stable")  # the largest on top
+        top = self.scale.norm.vmax
+        share = np.clip(np.abs(values[order]) * self.factor / top, 0.0, 1.0)
+        widths = line_width(self.width, len(lines)) * (0.35 + 0.65 * share)
+        axes.add_collection(LineCollection(lines[order], colors=self.scale.to_rgba(values[order] * self.factor),
+                                           linewidths=widths, zorder=4, capstyle="round"))
+
+    def explain(self, figure, axes):
+        unit = f" ({self.shown_unit})" if self.shown_unit not in ("", "-") else " (-)"
+        style.colour_bar(figure, axes, self.scale, self.label + unit, "max" if self.largest else "neither")
+
+
+def line_width(width, count):
+    """Thinner where there are many lines."""
+    return width * float(np.clip(2.2 - 0.4 * np.log10(max(count, 1)), 0.5, 1.8))
+
+
+class JointLines(Coloured):
+    """Joints coloured by what has happened at them since the first frame, or by the forces that they carry."""
+
+    QUANTITIES = {  # label, unit, signed, from contacts
+        "shear_displacement": ("shear displacement of joints", "m", False, False),
+        "opening": ("opening of joints", "m", False, False),
+        "slip": ("accumulated slip of contacts", "m", False, True),
+        "normal_force": ("normal force of contacts, compression positive", "N/m", True, True),
+        "shear_force": ("shear force of contacts", "N/m", False, True),
+        "overlap": ("overlap of contacts", "m", False, True),
+        "strength_used": ("strength used, T/(N tan φ + c l)", "-", False, True),
+    }
+
+    def __init__(self, quantity):
+        self.quantity = quantity
+        self.label, self.unit, self.signed, self.from_contacts = self.QUANTITIES[quantity]
+        if quantity == "strength_used":
+            self.largest, self.colours = 1.0, style.USED
+
+    def lines(self, shown):
+        frame = shown.frame
+        if self.from_contacts:
+            values = strength_used(frame) if self.quantity == "strength_used" else frame.contacts[self.quantity].to_numpy()
+            values = np.abs(values) if self.quantity == "shear_force" else values
+            return shown.moved(frame.contact_lines, frame.contacts["block_a"].to_numpy()), values
+        table = frame.joints
+        values = table[self.quantity].to_numpy()
+        values = np.maximum(values, 0.0) if self.quantity == "opening" else np.abs(values)
+        return joint_lines(shown), np.tile(values, 2)
+
+
+def joint_lines(shown):
+    """Lines of joints on the edges of their first blocks, then on those of their second blocks."""
+    frame = shown.frame
+    sides = [shown.moved(frame.joint_lines[:, side], frame.joints[name].to_numpy())
+             for side, name in enumerate(("block_a", "block_b"))]
+    return np.concatenate(sides)
+
+
+class JointStates(Layer):
+    """Joints coloured by their state."""
+
+    has_legend = True
+    COLOURS = {"unloaded": "#c3c8cd", "stick": "#7d8894", "slip": "#e08214", "open": "#2b7bba", "bond": "#3a9a4b", "broken": "#c2185b"}
+
+    def prepare(self, shown, window):
+        self.present = [state for state in self.COLOURS if any((s.frame.joints["state"] == state).any() for s in shown)]
+
+    def draw(self, axes, shown, window):
+        table = shown.frame.joints
+        lines = joint_lines(shown)
+        inside = style.within(lines, window) if len(lines) else np.empty(0, dtype=bool)
+        states = np.tile(table["state"].to_numpy(), 2)
+        width = line_width(1.5, int(inside.sum()))
+        for state in self.present:
+            chosen = inside & (states == state)
+            quiet = state in ("unloaded", "stick")
+            axes.add_collection(LineCollection(lines[chosen], colors=self.COLOURS[state],
+                                               linewidths=width * (0.6 if quiet else 1.2),
+                                               zorder=4 if quiet else 5, capstyle="round"))
+
+    def handles(self):
+        return [Line2D([], [], color=self.COLOURS[state], lw=2.0, label=state) for state in self.present]
+
+
+class Chains(Coloured):
+    """Force chains: a line from centroid to centroid through every contact, as wide as its normal force."""
+
+    label, unit, width = "normal force of contacts", "N/m", 2.6
+
+    def lines(self, shown):
+        frame, table = shown.frame, shown.frame.contacts
+        if not len(table):
+            return np.empty((0, 3, 2)), np.empty(0)
+        middle = shown.moved(frame.contact_lines, table["block_a"].to_numpy()).mean(axis=1)
+        ends = []
+        for column in ("block_a", "block_b"):
+            rows = np.searchsorted(shown.ids, table[column].to_numpy())
+            fixed = shown.fixed[rows][:, None]  # the centroid of the ground is far away
+            ends.append(np.where(fixed, middle, shown.centroids[rows]))
+        return np.stack([ends[0], middle, ends[1]], axis=1), np.maximum(table["normal_force"].to_numpy(), 0.0)
+
+    def draw(self, axes, shown, window):
+        lines, values = self.lines(shown)
+        if not len(lines):
+            return
+        inside = style.within(lines, window)
+        lines, values = lines[inside], values[inside]
+        share = np.clip(values * self.factor / self.scale.norm.vmax, 0.0, 1.0)
+        order = np.argsort(share, kind="stable")
+        axes.add_collection(LineCollection(lines[order], colors=self.scale.to_rgba(values[order] * self.factor),
+                                           linewidths=line_width(self.width, len(lines)) * np.maximum(share[order], 0.03),
+                                           zorder=4, capstyle="round"))
+
+
+class Arrows(Layer):
+    """Arrows with a key: displacement, velocity or permanent displacement of blocks, or forces at contacts."""
+
+    QUANTITIES = {"displacement": ("displacement", "m"), "velocity": ("velocity", "m/s"),
+                  "permanent": ("displacement since the stage began", "m"), "force": ("contact force on the upper block", "N/m")}
+    COLOUR = "#8c1d18"
+
+    def __init__(self, quantity, since=None, most=600):
+        self.quantity, self.since, self.most = quantity, since, most
+        self.label, self.unit = self.QUANTITIES[quantity]
+
+    def vectors(self, shown, window):
+        """Where arrows begin and what they are, thinned to the largest in each cell of a grid if there are too many."""
+        frame = shown.frame
+        if self.quantity == "force":
+            at = shown.moved(frame.contact_lines, frame.contacts["block_a"].to_numpy()).mean(axis=1)
+            values = frame.contact_forces
+            rows = [np.searchsorted(shown.ids, frame.contacts[name].to_numpy()) for name in ("block_a", "block_b")]
+            height = [np.where(shown.fixed[row], -np.inf, shown.centroids[row, 1]) for row in rows]
+            values = np.where((height[0] >= height[1])[:, None], values, -values)
+        else:
+            mobile = ~shown.fixed
+            values = frame.values("velocity" if self.quantity == "velocity" else "displacement")[:, :2]
+            if self.quantity == "permanent":
+                values = values - start_of(self.since, frame)
+            at, values = shown.centroids[mobile], values[mobile]
+        inside = ((at >= window[0]) & (at <= window[1])).all(axis=1)
+        return thinned(at[inside], values[inside], window, self.most)
+
+    def prepare(self, shown, window):
+        sizes = [np.hypot(*self.vectors(one, window)[1].T).max(initial=0.0) for one in shown]
+        self.largest = float(max(sizes)) or 1.0
+        self.factor, self.shown_unit = style.unit_prefix(self.unit, self.largest)
+
+    def draw(self, axes, shown, window):
+        at, values = self.vectors(shown, window)
+        extent = float((window[1] - window[0]).max())
+        per_metre = self.largest / (0.09 * extent)  # the largest arrow
+        size = np.hypot(*values.T)
+        keep = size > 1e-3 * self.largest
+        arrows = axes.quiver(*at[keep].T, *values[keep].T, angles="xy", scale_units="xy", scale=per_metre, color=self.COLOUR,
+                             width=0.0026, headwidth=4.0, headlength=5.0, headaxislength=4.5, minlength=0.4, zorder=6)
+        size = nice(0.7 * self.largest * self.factor)
+        axes.quiverkey(arrows, 0.0, 1.03, size / self.factor, f"{size:g} {self.shown_unit}", labelpos="E", coordinates="axes",
+                       fontproperties={"size": 8})
+
+    def handles(self):
+        return [Line2D([], [], color=self.COLOUR, lw=1.5, marker=">", ms=4, label=self.label)]
+
+    has_legend = True
+
+
+def nice(value):
+    """The largest of 1, 2, 5 times a power of ten that is not above a value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(max(m * power for m in (1, 2, 5) if m * power <= value * (1 + 1e-9)))
+
+
+def thinned(at, values, window, most):
+    """The largest vector in each cell of a grid of about `most` cells."""
+    if len(at) <= most:
+        return at, values
+    cell = np.sqrt(np.prod(window[1] - window[0]) / most)
+    cells = np.floor((at - window[0]) / cell).astype(int)
+    order = np.argsort(-np.hypot(*values.T), kind="stable")
+    _, first = np.unique(cells[order], axis=0, return_index=True)
+    return at[order][first], values[order][first]
+
+
+class Crosses(Layer):
+    """Principal stresses as crosses: lines along the two directions, as long as the stresses, tension red. Where there are
+    many blocks a cross is the mean over the blocks of a cell, weighted by area."""
+
+    has_legend = True
+    COMPRESSION, TENSION = "#173f70", "#d01c1c"
+
+    def __init__(self, most=400):
+        self.most = most
+
+    def principal(self, shown, window):
+        """Places, principal stresses (n, 2) and unit directions (n, 2, 2: stress, component)."""
+        chosen = shown.visible(window)
+        at, stress, areas = shown.centroids[chosen], shown.frame.values("stress")[chosen], shown.frame.areas[chosen]
+        inside = ((at >= window[0]) & (at <= window[1])).all(axis=1)
+        at, stress, areas = at[inside], stress[inside], areas[inside]
+        if len(at) > self.most:
+            cell = np.sqrt(np.prod(window[1] - window[0]) / self.most)
+            _, which = np.unique(np.floor((at - window[0]) / cell).astype(int), axis=0, return_inverse=True)
+            weight = np.bincount(which, areas)
+            at, stress = (np.stack([np.bincount(which, areas * column) / weight for column in table.T], axis=1)
+                          for table in (at, stress))
+        tensor = stress[:, [0, 2, 2, 1]].reshape(-1, 2, 2)
+        values, vectors = np.linalg.eigh(tensor)
+        return at, values, np.swapaxes(vectors, 1, 2)
+
+    def prepare(self, shown, window):
+        found = [self.principal(one, window) for one in shown]
+        sizes = np.concatenate([np.abs(values).max(axis=1) for _, values, _ in found])
+        self.largest = float(np.quantile(sizes, 0.9)) if len(sizes) else 0.0  # a few are longer
+        self.largest = self.largest or float(sizes.max(initial=0.0)) or 1.0
+        count = max(len(at) for at, _, _ in found)
+        self.length = 0.9 * np.sqrt(np.prod(window[1] - window[0]) / max(count, 16))
+        self.has_tension = any((values > 0.02 * self.largest).any() for _, values, _ in found)
+        self.factor, self.unit = style.unit_prefix("Pa", self.largest)
+
+    def draw(self, axes, shown, window):
+        at, values, directions = self.principal(shown, window)
+        half = 0.5 * self.length * values[..., None] / self.largest * directions
+        lines = np.stack([at[:, None] - half, at[:, None] + half], axis=2).reshape(-1, 2, 2)
+        tension = values.ravel() > 0.0
+        for chosen, colour in ((~tension, self.COMPRESSION), (tension, self.TENSION)):
+            axes.add_collection(LineCollection(lines[chosen], colors=colour, linewidths=0.9, zorder=5))
+        # The scale, above the axes.
+        size = nice(self.largest * self.factor)
+        share = self.length * size / self.factor / self.largest / (window[1] - window[0])[0]
+        axes.plot([0.0, share], [1.035, 1.035], color=self.COMPRESSION, lw=1.2, transform=axes.transAxes, clip_on=False)
+        axes.text(share + 0.01, 1.035, f"{size:g} {self.unit}", fontsize=8, va="center", transform=axes.transAxes)
+
+    def handles(self):
+        entries = [Line2D([], [], color=self.COMPRESSION, lw=1.2, label="compression")]
+        return entries + ([Line2D([], [], color=self.TENSION, lw=1.2, label="tension")] if self.has_tension else [])
+
+
+class Bolts(Layer):
+    """Bolts in place in each frame, coloured by their tension, with a dot where they have yielded, dashed where broken."""
+
+    def __init__(self, frames):
+        self.bars = int(any(len(frame.bolt_lines) for frame in frames))
+
+    def prepare(self, shown, window):
+        tensions = np.concatenate([one.frame.bolts["axial_force"].to_numpy() if self.bars else np.empty(0) for one in shown])
+        largest = float(np.abs(tensions).max(initial=0.0))
+        self.factor, self.unit = style.unit_prefix("N", largest)
+        low = min(0.0, float(tensions.min(initial=0.0)) * self.factor)
+        self.scale = ScalarMappable(Normalize(low, largest * self.factor or 1.0), style.BOLTS)
+
+    def draw(self, axes, shown, window):
+        lines = shown.frame.bolt_lines
+        if not lines:
+            return
+        table = shown.frame.bolts
+        tension, state = table["axial_force"].to_numpy(), table["state"]
+        styles = [(0, (1.2, 1.0)) if s == "broken" else "-" for s in state]
+        axes.add_collection(LineCollection(lines, colors=style.EDGE, linewidths=2.6, linestyles=styles, zorder=7))
+        axes.add_collection(LineCollection(lines, colors=self.scale.to_rgba(tension * self.factor), linewidths=1.7,
+                                           linestyles=styles, zorder=8))
+        marks = np.array([0.5 * (line[(len(line) - 1) // 2] + line[len(line) // 2])
+                          for line, s in zip(lines, state) if s != "elastic"]).reshape(-1, 2)
+        axes.scatter(*marks.T, s=9.0, c="white", edgecolors=style.EDGE, linewidths=0.7, zorder=9)
+
+    def explain(self, figure, axes):
+        if self.bars:
+            style.colour_bar(figure, axes, self.scale, f"tension of a bolt ({self.unit})")

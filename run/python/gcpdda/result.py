@@ -1,0 +1,267 @@
+"""Result folders as tables. Everything is read when it is asked for, also while the run goes on."""
+
+import functools
+import io
+import json
+import pathlib
+import tomllib
+
+import numpy as np
+
+from .frame import Frame
+from .joints import find_joints
+
+
+def read_csv(path):
+    """A history as a table with the columns of the file. A row that is just being written is left out."""
+    import pandas
+    text = path.read_text()
+    return pandas.read_csv(io.StringIO(text[: text.rfind("\n") + 1]), float_precision="round_trip")
+
+
+class Folder:
+    """What result folders have in common."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+
+    def _json(self, name):
+        path = self.path / name
+        return json.loads(path.read_text()) if path.exists() else None
+
+    def __repr__(self):
+        return f"<{type(self).__name__} {self.path}>"
+
+
+class Result(Folder):
+    """The result folder of a run.
+
+    frames, frame(WHICH)       `Frame`s: a number, "first", "last", or the one at or before a time: at(TIME)
+    times                      of the frames, in s
+    histories, history(NAME)   names of the monitors; the table of one. energy, bolts: tables of the same kind
+    summary                    summary.json as a dictionary, None while the run goes on; verdict, stages come from it
+    scene, log                 the resolved scene as a dictionary; what the program has printed
+    plot                       pictures: result.plot.field("stress", out="stress.png")
+    """
+
+    @functools.cached_property
+    def scene(self):
+        with open(self.path / "scene.toml", "rb") as file:
+            return tomllib.load(file)
+
+    @functools.cached_property
+    def joint_names(self):
+        """Names of the joint laws by their number in the files: default, then the others in the order of the scene."""
+        return ["default"] + [name for name in self.scene["joint"] if name != "default"]
+
+    @property
+    def summary(self):
+        return self._json("summary.json")
+
+    @property
+    def verdict(self):
+        """completed, settled, failed, undecided or stopped; None while the run goes on."""
+        summary = self.summary
+        return summary["verdict"] if summary else None
+
+    @property
+    def log(self):
+        path = self.path / "run.log"
+        return path.read_text() if path.exists() else ""
+
+    @property
+    def stages(self):
+        """One row a stage that has ended: name, kind, verdict, begin and end in s, steps, ... Empty without stages."""
+        import pandas
+        entries = (self.summary or {}).get("stages", [])
+        table = pandas.DataFrame(entries).rename(columns={"time": "end"})
+        if len(table):
+            kinds = {stage.get("name", f"stage{k}"): stage["kind"] for k, stage in enumerate(self.scene.get("stage", []))}
+            table.insert(1, "kind", [kinds.get(name, "") for name in table["name"]])
+            table.insert(3, "begin", [0.0, *table["end"][:-1]])
+        return table
+
+    @property
+    def frames(self):
+        """All frames that are complete. While a run goes on there are more of them each time."""
+        known = self.__dict__.setdefault("_frames", {})
+        for path in (self.path / "frames").glob("frame_*.hdf"):
+            number = int(path.stem.split("_")[1])
+            if number not in known:
+                known[number] = Frame(self, number, path)
+        return [known[number] for number in sorted(known)]
+
+    def frame(self, which="last"):
+        frames = self.frames
+        if not frames:
+            raise FileNotFoundError(f"no frames in {self.path}")
+        if which in ("first", "last"):
+            return frames[0 if which == "first" else -1]
+        if isinstance(which, int) and -len(frames) <= which < 0:
+            return frames[which]
+        by_number = {frame.number: frame for frame in frames}
+        if which not in by_number:
+            raise KeyError(f"no frame {which}: there are {min(by_number)} to {max(by_number)}, first, last, all")
+        return by_number[which]
+
+    def at(self, time):
+        """The last frame that is not later than a time."""
+        return [frame for frame in self.frames if frame.time <= time + 1e-9 * max(time, 1.0)][-1]
+
+    def before(self, stage):
+        """The last frame that is not later than the beginning of a stage."""
+        if self.summary is None:
+            raise FileNotFoundError(f"no {self.path / 'summary.json'}, which tells when stages began: the run goes on, or was killed")
+        stages = self.stages
+        if not len(stages) or stage not in set(stages["name"]):
+            raise KeyError(f"no stage {stage}: there are {', '.join(stages.get('name', [])) or 'none'}")
+        return self.at(float(stages["begin"][stages["name"] == stage].iloc[0]))
+
+    @property
+    def times(self):
+        return np.array([frame.time for frame in self.frames])
+
+    @property
+    def reached(self):
+        """Simulated time of the newest row of the histories in s, 0 before there is one."""
+        path = self.path / "history" / "energy.csv"
+        if not path.exists():
+            return 0.0
+        with open(path, "rb") as file:
+            file.seek(max(0, path.stat().st_size - 4096))
+            rows = file.read().decode(errors="replace").split("\n")[:-1]
+        try:
+            return float(rows[-1].split(",")[0]) if rows else 0.0
+        except ValueError:  # the header
+            return 0.0
+
+    @property
+    def histories(self):
+        """Names of the monitored blocks and points."""
+        names = sorted(path.stem for path in (self.path / "history").glob("*.csv"))
+        return [name for name in names if name not in ("energy", "bolts")]
+
+    def history(self, name):
+        path = self.path / "history" / f"{name}.csv"
+        if not path.exists():
+            raise KeyError(f"no history {name}: there are {', '.join(self.histories) or 'none'}")
+        return read_csv(path)
+
+    @property
+    def energy(self):
+        return self.history("energy")
+
+    @property
+    def bolts(self):
+        """Forces of bolts over time; empty without bolts."""
+        import pandas
+        path = self.path / "history" / "bolts.csv"
+        return read_csv(path) if path.exists() else pandas.DataFrame()
+
+    @functools.cached_property
+    def joint_traces(self):
+        """Joints of the first frame."""
+        return find_joints(self.frames[0])
+
+    @property
+    def weakened(self):
+        """Of a trial of `gcpdda fos`: the factor that divides its strengths, and the joint laws that are weakened."""
+        search = self.path.parent.parent / "fos.json"
+        if self.path.parent.name != "trials" or not search.exists():
+            return 1.0, []
+        return float(self.path.name.removeprefix("F")), json.loads(search.read_text())["families"] or self.joint_names
+
+    @functools.cached_property
+    def _names(self):
+        """Names of inline and generated blocks; those after them are b<number>."""
+        names = [block.get("name", f"b{k}") for k, block in enumerate(self.scene.get("block", []))]
+        for kind in self.scene:  # generators in the order of the file
+            for k, table in enumerate(self.scene[kind] if kind in ("wall", "pyramid") else []):
+                for row in range(table["rows"]):
+                    if kind == "pyramid":
+                        columns = table["rows"] - row
+                    else:
+                        columns = table["columns"] + (row % 2 if table.get("bond", 0.5) > 0 else 0)
+                    names += [f"{table.get('name', f'{kind}{k}')}.{row}.{column}" for column in range(columns)]
+        return names
+
+    def names_of(self, ids):
+        return [self._names[k] if k < len(self._names) else f"b{k}" for k in np.asarray(ids).tolist()]
+
+    @functools.cached_property
+    def plot(self):
+        from .plot import Plots
+        return Plots(self)
+
+
+class Safety(Folder):
+    """The result folder of `gcpdda fos`: factor, holds, fails; trials and blocks as tables."""
+
+    @property
+    def summary(self):
+        return self._json("fos.json")
+
+    @property
+    def factor(self):
+        return self.summary["factor"]
+
+    @property
+    def holds(self):
+        """The largest factor with which the blocks hold."""
+        return self.summary["holds"]
+
+    @property
+    def fails(self):
+        """The smallest factor with which they fail."""
+        return self.summary["fails"]
+
+    @property
+    def trials(self):
+        return read_csv(self.path / "fos_trials.csv")
+
+    @property
+    def blocks(self):
+        """Motion of every block in the trial with the smallest factor that fails."""
+        return read_csv(self.path / "fos_blocks.csv")
+
+    @property
+    def settled(self):
+        return Result(self.path / "settled")
+
+    def trial(self, factor):
+        """The run of the trial with that factor."""
+        return Result(self.path / "trials" / f"F{factor:.10g}")
+
+    @property
+    def mechanism(self):
+        """The run of the trial with the smallest factor that fails, None where no trial fails."""
+        failed = [trial["factor"] for trial in self.summary["trials"] if trial["verdict"] == "failed"]
+        return self.trial(min(failed)) if failed else None
+
+
+class Ensemble(Folder):
+    """The result folder of `gcpdda ensemble`: summary, and a table with a row for each member."""
+
+    @property
+    def summary(self):
+        return self._json("ensemble.json")
+
+    @property
+    def members(self):
+        return read_csv(self.path / "ensemble_members.csv")
+
+    @property
+    def probability_of_failure(self):
+        return self.summary["probability_of_failure"]
+
+
+def open_folder(path):
+    """The `Result`, `Safety` or `Ensemble` in a folder, by what it holds."""
+    path = pathlib.Path(path)
+    if (path / "fos.json").exists():
+        return Safety(path)
+    if (path / "ensemble.json").exists():
+        return Ensemble(path)
+    if (path / "scene.toml").exists() or (path / "frames").is_dir():
+        return Result(path)
+    raise FileNotFoundError(f"{path} is not a result folder: it holds no scene.toml, fos.json or ensemble.json")

@@ -1,0 +1,131 @@
+"""Scenes built in code and written as TOML."""
+
+import copy
+import math
+import numbers
+import pathlib
+import re
+import tomllib
+
+# Keys whose values are paths from the folder of the scene file.
+_PATHS = {("blocks", "file"), ("joint_map", "file"), ("earthquake", "record")}
+
+
+def toml_value(value):
+    """A value as TOML; tables become inline tables."""
+    if hasattr(value, "tolist"):  # numpy
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        value = float(value)
+        return repr(value) if math.isfinite(value) else str(value)
+    if isinstance(value, (str, pathlib.PurePath)):
+        escaped = str(value).replace("\\", "\\\\").replace('"', '\\"')
+        return '"' + re.sub(r"[\x00-\x1f\x7f]", lambda c: f"\\u{ord(c[0]):04x}", escaped) + '"'
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_key(key)} = {toml_value(entry)}" for key, entry in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(toml_value, value)) + "]"
+    raise TypeError(f"a scene holds numbers, texts, booleans, lists and tables, not {type(value).__name__}: {value!r}")
+
+
+def _key(key):
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else toml_value(key)
+
+
+def _is_table_list(value):
+    return isinstance(value, list) and len(value) > 0 and all(isinstance(entry, dict) for entry in value)
+
+
+def _table_text(header, table):
+    return header + "\n" + "".join(f"{_key(key)} = {toml_value(value)}\n" for key, value in table.items())
+
+
+class Scene:
+    """A scene: keys of [run] as arguments, everything else by the methods below, in any order.
+
+        scene = gcpdda.Scene(duration=4.0)
+        scene.material("rock", density=2600)
+        scene.joint("default", normal_stiffness=1e9, friction_angle_deg=25)
+        scene.block("ground", [[-5, -1], [5, -1], [5, 0], [-5, 0]], material="rock", fixed=True)
+        scene.block("cube", [[-1, 0], [1, 0], [1, 2], [-1, 2]], material="rock", velocity=[1, 0, 0])
+        result = gcpdda.run(scene, out="results/cube")
+
+    `tables` holds everything as nested dictionaries, as tomllib would read it. Keys and values are those of
+    run/scene_keys.md; the program checks them, `gcpdda.inspect(scene)` does so without a run.
+    """
+
+    def __init__(self, name="scene", folder=".", **run):
+        self.name, self.folder = name, pathlib.Path(folder)
+        self.tables = {"run": dict(run)}
+
+    @classmethod
+    def read(cls, path):
+        """The scene of a TOML file. Comments are not kept."""
+        path = pathlib.Path(path)
+        scene = cls(path.stem, path.parent)
+        scene.tables = tomllib.loads(path.read_text())
+        return scene
+
+    def copy(self):
+        return copy.deepcopy(self)
+
+    def table(self, name, /, **keys):
+        """Adds keys to the table [name], such as output or region.slope, and returns it."""
+        table = self.tables
+        for part in name.split("."):
+            table = table.setdefault(part, {})
+        table.update(keys)
+        return table
+
+    def add(self, name, /, **keys):
+        """Appends a table [[name]], such as joint_set, wall, opening or bolt, and returns it."""
+        self.tables.setdefault(name, []).append(keys)
+        return keys
+
+    def material(self, name, /, **keys):
+        return self.table(f"material.{name}", **keys)
+
+    def joint(self, name="default", /, **keys):
+        return self.table(f"joint.{name}", **keys)
+
+    def block(self, name, vertices, material, **keys):
+        return self.add("block", name=name, material=material, vertices=vertices, **keys)
+
+    def stage(self, name, kind, /, **keys):
+        return self.add("stage", name=name, kind=kind, **keys)
+
+    def monitor(self, name=None, point=None, block=None):
+        """Records the history of a block, or of a point that follows the block that holds it."""
+        entry = {"name": name, "point": point, "block": block}
+        return self.add("monitor", **{key: value for key, value in entry.items() if value is not None})
+
+    def toml(self):
+        """The scene as text."""
+        parts = []
+        for name, value in self.tables.items():
+            if _is_table_list(value):
+                parts += [_table_text(f"[[{_key(name)}]]", entry) for entry in value]
+            elif isinstance(value, dict) and value and all(isinstance(entry, dict) for entry in value.values()):
+                parts += [_table_text(f"[{_key(name)}.{_key(key)}]", entry) for key, entry in value.items()]
+            elif isinstance(value, dict):
+                parts.append(_table_text(f"[{_key(name)}]", value))
+            else:
+                parts.insert(0, f"{_key(name)} = {toml_value(value)}\n")
+        return "\n".join(parts)
+
+    def write(self, path):
+        """Writes the scene as TOML and returns the path. Files it names are found from the new place, too."""
+        path = pathlib.Path(path)
+        moved = self.copy()
+        for name, key in _PATHS:
+            tables = moved.tables.get(name, [])
+            for table in tables if isinstance(tables, list) else [tables]:
+                if key in table:
+                    table[key] = str((self.folder / table[key]).resolve())
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(moved.toml())
+        return path

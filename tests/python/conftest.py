@@ -1,0 +1,43 @@
+"""Runs that the tests of the Python package share. The program is $GCPDDA, or that of the build folder."""
+
+import pathlib
+import sys
+
+import pytest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / "run" / "python"))
+
+import gcpdda
+
+SCENES = SOURCE / "run" / "scenes"
+
+
+@pytest.fixture(scope="session")
+def opening(tmp_path_factory):
+    """Stages, excavation, contacts that slip and open: bricks fall into an opening."""
+    return gcpdda.run(SCENES / "opening.toml", ranks=1, out=tmp_path_factory.mktemp("runs") / "opening")
+
+
+@pytest.fixture(scope="session")
+def leaning(tmp_path_factory):
+    """Columns that lean on each other and come to rest, with cables between them, water and monitors."""
+    scene = gcpdda.Scene.read(SCENES / "goodman_bray.toml")
+    scene.table("run", duration=6.0)
+    scene.table("support.cable", kind="anchored", axial_stiffness=1e7, pretension=1e5)
+    scene.add("bolt", support="cable", **{"from": [3.83, 3.37], "to": [4.83, 1.63]})
+    scene.table("water.low", phreatic=[[-20.0, 0.0], [140.0, 60.0]])
+    return gcpdda.run(scene, ranks=1, out=tmp_path_factory.mktemp("runs") / "leaning")
+
+
+@pytest.fixture(scope="session")
+def search(tmp_path_factory):
+    """A factor of safety."""
+    return gcpdda.fos(SCENES / "deformable_slope.toml", ranks=1, out=tmp_path_factory.mktemp("runs") / "fos",
+                      from_=1, to=1.5, tolerance=0.05)
+
+
+@pytest.fixture(scope="session")
+def members(tmp_path_factory):
+    """A probability of failure."""
+    return gcpdda.ensemble(SCENES / "plane_failure.toml", ranks=1, count=8, out=tmp_path_factory.mktemp("runs") / "ensemble")

@@ -1,0 +1,209 @@
+"""Pictures: that each is drawn with axes, units and content, and that its scale means what it says."""
+
+import pathlib
+import subprocess
+import sys
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from conftest import SOURCE
+
+from gcpdda.plot import ARROWS, FIELDS, HISTORIES, JOINTS, style
+from gcpdda.plot.layers import Arrows, Blocks, Crosses, JointLines, Shown
+
+
+def texts_of(figure):
+    """Labels of all axes of a figure, colour bars among them."""
+    return [text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel()) if text]
+
+
+def check_map(figure):
+    figure.canvas.draw()
+    texts = texts_of(figure)
+    assert "x (m)" in texts and "y (m)" in texts
+    panels = [axes for axes in figure.axes if axes.get_ylabel() == "y (m)"]
+    assert panels and all(axes.get_title().startswith("t = ") and axes.collections for axes in panels)
+    plt.close(figure)
+    return texts
+
+
+@pytest.mark.parametrize("field", [field for field in FIELDS if field != "permanent"])
+def test_fields(opening, field):
+    texts = check_map(opening.plot.field(field, frame=["first", "last"]))
+    assert any(text.endswith(")") and "(m)" not in text for text in texts) or field in ("kind", "none", "displacement")
+
+
+@pytest.mark.parametrize("quantity", JOINTS)
+def test_joints(opening, quantity):
+    texts = check_map(opening.plot.joints(quantity, frame=["first", 8, "last"]))
+    assert quantity == "state" or len(texts) >= 3
+
+
+@pytest.mark.parametrize("quantity", ARROWS)
+def test_arrows(opening, quantity):
+    check_map(opening.plot.vectors(quantity, since="fall" if quantity == "permanent" else None))
+
+
+def test_other_maps(leaning, opening):
+    for draw in (leaning.plot.chains, leaning.plot.crosses, leaning.plot.water, leaning.plot.forces, leaning.plot.strength):
+        check_map(draw())
+    check_map(opening.plot.field("permanent", since="fall"))
+    check_map(opening.plot.before_after("stress"))
+    assert any("tension of a bolt" in text for text in check_map(leaning.plot.field()))
+
+
+def test_curves(opening, leaning):
+    for quantity in HISTORIES:
+        figure = opening.plot.history(quantity)
+        assert any(text.endswith(")") for text in texts_of(figure)) and "time (s)" in texts_of(figure)
+        plt.close(figure)
+    figure = opening.plot.energy()
+    # The stages are marked: a label above the axes for each, those that begin together share one.
+    labels = [label.get_text() for axes in figure.axes for child in axes.child_axes for label in child.get_xticklabels()]
+    assert "weight" in labels and any("arch" in label for label in labels)
+    plt.close(figure)
+    plt.close(leaning.plot.bolts())
+    with pytest.raises(ValueError, match="no history of bolts"):
+        opening.plot.bolts()
+    with pytest.raises(ValueError, match="run.rayleigh"):
+        opening.plot.rayleigh()
+
+
+def test_energies_balance(opening, leaning):
+    """What is stored, lost and taken by stages is the work from outside and the residual."""
+    from gcpdda.plot.over_time import energy_parts
+    parts = energy_parts(leaning.energy)
+    assert np.abs(parts["taken"]).max() < 1e-9 * np.abs(parts["gravity"]).max()
+    table = opening.energy
+    taken = energy_parts(table)["taken"]
+    begin = opening.stages["begin"][1], opening.stages["begin"][3]
+    assert np.abs(taken[table["time[s]"] <= begin[0]]).max() < 1e-5  # J/m: what still moved
+    changes = np.abs(np.diff(taken)) > 1e-3  # J/m: only when blocks are taken out
+    assert changes.sum() == 2
+    assert table["time[s]"][:-1][changes].to_numpy() == pytest.approx(begin)
+
+
+def test_colours_fit_the_window(opening):
+    shown = [Shown(opening.frame("last"))]
+    whole, part = (np.array([[-1.0, -1.0], [7.0, 4.0]]), np.array([[0.0, 3.0], [2.0, 4.0]]))
+    tops = []
+    for window in (whole, part):
+        layer = Blocks("displacement")
+        layer.prepare(shown, tuple(window))
+        tops.append(layer.scale.norm.vmax / layer.factor)
+    moved = opening.frame("last").blocks
+    assert tops[0] == pytest.approx(moved["displacement"].max())
+    assert tops[1] < 0.5 * tops[0]
+    assert layer.extend == "max"  # the colour bar says that there is more outside
+
+
+def test_dark_joints_are_seen_on_every_colour():
+    """Contrast of block outlines with the darkest colours (WCAG asks 3 for lines): zero is light, the end is not black."""
+    def luminance(colour):
+        c = np.array(plt.matplotlib.colors.to_rgb(colour))
+        c = np.where(c <= 0.03928, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+        return float(c @ [0.2126, 0.7152, 0.0722])
+
+    def contrast(a, b):
+        low, high = sorted((luminance(a), luminance(b)))
+        return (high + 0.05) / (low + 0.05)
+
+    assert contrast(style.SEQUENTIAL(0.0), style.EDGE) > 12
+    assert contrast(style.SEQUENTIAL(1.0), style.EDGE) > 1.5
+    assert contrast(style.SIGNED(0.5), style.EDGE) > 12
+
+
+def test_crosses_are_principal_stresses(leaning):
+    shown = Shown(leaning.frame("last"))
+    window = tuple(np.array([[-100.0, -100.0], [200.0, 200.0]]))
+    at, values, directions = Crosses().principal(shown, window)
+    stress = leaning.frame("last").values("stress")[~shown.fixed]
+    assert len(at) == len(stress)
+    rebuilt = np.einsum("nk,nki,nkj->nij", values, directions, directions)
+    assert rebuilt[:, 0, 0] == pytest.approx(stress[:, 0]) and rebuilt[:, 0, 1] == pytest.approx(stress[:, 2])
+
+
+def test_forces_act_on_the_upper_block(leaning):
+    """Columns on a base that rises to the right: the base pushes every column up."""
+    shown = Shown(leaning.frame("last"))
+    window = tuple(np.array([[-100.0, -100.0], [200.0, 200.0]]))
+    frame = shown.frame
+    _, forces = Arrows("force").vectors(shown, window)
+    on_base = frame.fixed[np.searchsorted(frame.ids, frame.contacts["block_a"])]
+    assert on_base.sum() >= 16 and (forces[on_base][:, 1] > 0.0).all()
+
+
+def test_magnified_motion_moves_contacts_along(leaning):
+    """Lines follow the block they lie on: an edge of a block stays its edge."""
+    frame = leaning.frame("last")
+    shown = Shown(frame, 100.0)
+    edges = np.stack([frame.points[frame.offsets[:-1]], frame.points[frame.offsets[:-1] + 1]], axis=1)
+    drawn = np.stack([shown.points[frame.offsets[:-1]], shown.points[frame.offsets[:-1] + 1]], axis=1)
+    assert np.abs(drawn - edges).max() > 0.1
+    assert shown.moved(edges, frame.ids) == pytest.approx(drawn, abs=1e-9)
+    lines, _ = JointLines("normal_force").lines(shown)
+    plain, _ = JointLines("normal_force").lines(Shown(frame))
+    assert np.abs(lines - plain).max() > 0.1
+
+
+def test_animations_last_as_long_as_asked(leaning, tmp_path):
+    from PIL import Image
+    for name, options, frames, length in (("all.gif", {}, len(leaning.frames), 8.0), ("quick.gif", {"fps": 20}, len(leaning.frames), None)):
+        leaning.plot.animate(tmp_path / name, dpi=40, **options)
+        movie = Image.open(tmp_path / name)
+        seconds = 0.0
+        for number in range(movie.n_frames):
+            movie.seek(number)
+            seconds += movie.info["duration"] / 1000.0
+        assert seconds == pytest.approx(length or frames / 20, rel=0.15)
+
+
+def test_command_line(opening, tmp_path):
+    def plot(*words):
+        return subprocess.run([str(SOURCE / "run" / "plot.py"), str(opening.path), *words, "--out", str(tmp_path / "picture.png")],
+                              capture_output=True, text=True)
+
+    for words in (["--frame", "0,last", "--field", "stress", "--scale", "3", "--compare", "first"], ["--joints", "state"],
+                  ["--field", "permanent", "--since", "fall"], ["--crosses", "--arrows", "velocity", "--window=0,0,6,4"],
+                  ["--history", "speed", "--monitors", "w.4.6"], ["--energy"]):
+        done = plot(*words)
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / "picture.png").stat().st_size > 10_000
+        (tmp_path / "picture.png").unlink()
+    for words, reason in ((["--frame", "77"], "no frame 77"), (["--field", "permanent"], "belong together"),
+                          (["--since", "x", "--field", "permanent"], "no stage x"), (["--window=1,2"], "four numbers"),
+                          (["--bolts"], "no history of bolts"), (["--joints", "colour"], "invalid choice")):
+        done = plot(*words)
+        assert done.returncode != 0 and reason in done.stderr, done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_paraview_script_draws_blocks_and_bolts(leaning, tmp_path):
+    """With a ParaView that only notes what is asked of it; CTest draws with the real one where it is installed."""
+    fake = tmp_path / "paraview"
+    fake.mkdir()
+    (fake / "__init__.py").write_text("")
+    (fake / "simple.py").write_text("""
+import unittest.mock
+source = unittest.mock.MagicMock(TimestepValues=[0.0, 1.0])
+source.GetDataInformation().GetNumberOfCells.return_value = 1
+opened = []
+def OpenDataFile(path):
+    print("opens", path)
+    return source
+def SaveScreenshot(path, view):
+    print("saves", path)
+ColorBy = CreateView = ExtractSurface = GetColorTransferFunction = GetScalarBar = Render = Show = Triangulate = source
+""")
+    done = subprocess.run([sys.executable, str(SOURCE / "run" / "paraview.py"), str(leaning.path), "picture.png"],
+                          env={"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert f"opens {leaning.path / 'run.hdf.series'}" in done.stdout
+    assert f"opens {leaning.path / 'bolts.hdf.series'}" in done.stdout and "1 lines of bolts" in done.stdout
+    assert "saves picture.png" in done.stdout
+
+
+def test_every_file_says_what_it_is_for():
+    for path in pathlib.Path(SOURCE / "run" / "python" / "gcpdda").rglob("*.py"):
+        assert path.read_text().startswith('"""'), path

@@ -1,0 +1,148 @@
+"""gcpdda.run, sweep and Scene: what reaches the program, and what its exit codes become."""
+
+import tomllib
+
+import numpy as np
+import pytest
+from conftest import SCENES, SOURCE
+
+import gcpdda
+
+
+def sliding_block(**run):
+    """A block on a plane of 30 degrees that it slides down without friction."""
+    scene = gcpdda.Scene(name="slider", **({"duration": 0.2} | run))
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=np.float64(0.0))
+    c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+    turn = np.array([[c, s], [-s, c]])
+    scene.block("plane", np.array([[-5, -1], [5, -1], [5, 0], [-5, 0]]) @ turn, material="rock", fixed=True)
+    scene.block("slider", np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) @ turn, material="rock")
+    scene.monitor(block="slider")
+    return scene
+
+
+def test_a_scene_built_in_code_runs(tmp_path):
+    result = gcpdda.run(sliding_block(), ranks=1, out=tmp_path / "slide")
+    assert result.verdict == "completed"
+    assert (tmp_path / "slide.toml").exists()
+    history = result.history("slider")
+    time = history["time[s]"].iloc[-1]
+    moved = np.hypot(history["x[m]"] - history["x[m]"][0], history["y[m]"] - history["y[m]"][0]).iloc[-1]
+    assert time == 0.2
+    # g sin 30 t^2/2; at first the block sinks in by its weight over k_n, 2e-5 m, across the plane.
+    assert moved == pytest.approx(0.5 * 9.81 * 0.5 * time**2, abs=1e-4)
+
+
+def test_ranks_give_the_same_frames(tmp_path):
+    one = gcpdda.run(SCENES / "opening.toml", ranks=1, out=tmp_path / "one")
+    two = gcpdda.run(SCENES / "opening.toml", ranks=2, out=tmp_path / "two")
+    assert two.summary["ranks"] == 2
+    assert one.frame("last").blocks.equals(two.frame("last").blocks)
+
+
+def test_toml_holds_what_was_put_in():
+    scene = gcpdda.Scene(duration=1, gravity=(0, -9.81))
+    scene.material('a "b"', density=1e3)
+    scene.table("region", material="rock", polygon=np.eye(3, 2))
+    scene.table("region.slope", toe_length=2.5)
+    scene.add("joint_set", dip_deg=35, spacing_scatter={"kind": "normal", "deviation": 0.2})
+    scene.stage("weak", "settle", limit=5, set={"joint.default.friction_angle_deg": 25.0, "water.low.active": True})
+    read = tomllib.loads(scene.toml())
+    assert read["run"] == {"duration": 1, "gravity": [0, -9.81]}
+    assert read["material"] == {'a "b"': {"density": 1000.0}}
+    assert read["region"] == {"material": "rock", "polygon": [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], "slope": {"toe_length": 2.5}}
+    assert read["joint_set"] == [{"dip_deg": 35, "spacing_scatter": {"kind": "normal", "deviation": 0.2}}]
+    assert read["stage"][0]["set"] == {"joint.default.friction_angle_deg": 25.0, "water.low.active": True}
+
+
+@pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
+def test_shipped_scenes_survive_reading_and_writing(path, tmp_path):
+    written = gcpdda.Scene.read(path).write(tmp_path / "copy.toml")
+    before, after = tomllib.loads(path.read_text()), tomllib.loads(written.read_text())
+    for scene in (before, after):  # paths of files become absolute
+        scene.get("earthquake", {}).pop("record", None)
+        for table in scene.get("joint_map", []):
+            table.pop("file")
+    assert before == after
+
+
+def test_files_of_a_scene_are_found_from_its_new_place(tmp_path):
+    scene = gcpdda.Scene.read(SCENES / "seismic_slope.toml")
+    gcpdda.inspect(scene)
+    written = tomllib.loads(scene.write(tmp_path / "copy.toml").read_text())
+    assert written["earthquake"]["record"] == str(SCENES / "seismic_slope.csv")
+
+
+def test_faults_of_a_scene_are_an_exception_with_their_lines(tmp_path):
+    scene = sliding_block()
+    scene.joint("default", friction_angle_deg=95.0)
+    scene.table("output", intervall=0.1)
+    with pytest.raises(gcpdda.SceneError) as caught:
+        gcpdda.run(scene, ranks=2, out=tmp_path / "faulty")
+    assert caught.value.exit_code == 3
+    assert len(caught.value.faults) == 2
+    lines = (tmp_path / "faulty.toml").read_text().splitlines()
+    assert {lines[fault.line - 1].split(" ")[0] for fault in caught.value.faults} == {"friction_angle_deg", "intervall"}
+    assert "friction_angle_deg" in str(caught.value)
+    assert not (tmp_path / "faulty").exists()
+
+
+def test_exit_codes_are_exceptions(tmp_path):
+    scene = sliding_block()
+    gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    with pytest.raises(gcpdda.FileError, match="overwrite"):
+        gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    gcpdda.run(scene, ranks=1, out=tmp_path / "run", overwrite=True)
+
+    scene.stage("rest", "settle", limit=0.001)
+    del scene.tables["run"]["duration"]
+    with pytest.raises(gcpdda.Undecided) as caught:
+        gcpdda.run(scene, ranks=1, out=tmp_path / "undecided")
+    assert gcpdda.Result(caught.value.path).verdict == "undecided"
+
+    with pytest.raises(gcpdda.FileError):
+        gcpdda.run(tmp_path / "missing.toml", ranks=1, out=tmp_path / "missing")
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        gcpdda.run(scene, ranks=1, program=tmp_path / "nowhere")
+
+
+def test_progress_is_told(tmp_path):
+    told = []
+    gcpdda.run(SCENES / "opening.toml", ranks=1, out=tmp_path / "run", progress=lambda time, line: told.append((time, line)))
+    lines = [line for _, line in told if line is not None]
+    assert any("stage 'weight' settled" in line for line in lines)
+    assert all(later >= earlier for (earlier, _), (later, _) in zip(told, told[1:]))
+
+
+def test_a_sweep_has_a_row_for_every_combination(tmp_path):
+    table = gcpdda.sweep(sliding_block(), {"joint.default.friction_angle_deg": [10.0, 40.0, 95.0], "run.gravity_ramp": [0.0, 0.05]},
+                         ranks=1, out=tmp_path / "sweep")
+    assert list(table["joint.default.friction_angle_deg"]) == [10.0, 10.0, 40.0, 40.0, 95.0, 95.0]
+    assert list(table["exit_code"]) == [0, 0, 0, 0, 3, 3]
+    assert "friction_angle_deg" in table["message"][4]
+    # tan 10 < tan 30 < tan 40: the first slides, the third stays but for the closing of the joint.
+    assert table["largest_displacement"][0] > 0.05 > 1e-3 > table["largest_displacement"][2]
+    assert table["result"][1].summary["time"] == 0.2
+
+
+def test_the_installed_package_is_found(tmp_path):
+    import subprocess
+    import sys
+    packages = tmp_path / "lib" / "python3" / "dist-packages"
+    install = (SOURCE / "CMakeLists.txt").read_text()
+    assert "run/python/gcpdda DESTINATION lib/python3/dist-packages" in install
+    packages.mkdir(parents=True)
+    (packages / "gcpdda").symlink_to(SOURCE / "run" / "python" / "gcpdda")
+    said = subprocess.run([sys.executable, "-c", "import gcpdda; print(gcpdda.__file__)"], env={"PYTHONPATH": str(packages)},
+                          capture_output=True, text=True, check=True).stdout
+    assert said.startswith(str(packages))
+
+
+def test_importing_is_quick():
+    import subprocess
+    import sys
+    code = "import sys, gcpdda; print(any(name in sys.modules for name in ('pandas', 'matplotlib', 'h5py')))"
+    said = subprocess.run([sys.executable, "-c", code], env={"PYTHONPATH": str(SOURCE / "run" / "python")},
+                          capture_output=True, text=True, check=True).stdout
+    assert said.strip() == "False"

@@ -1,0 +1,141 @@
+"""gcpdda.Result: files as tables and arrays."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import gcpdda
+from gcpdda.joints import strength_used
+
+
+def test_frames_and_tables(opening):
+    assert opening.verdict == "failed"
+    assert opening.times[0] == 0.0 and opening.times[-1] == opening.summary["time"]
+    assert list(opening.stages["name"]) == ["weight", "opening", "arch", "too_wide", "fall"]
+    assert list(opening.stages["kind"]) == ["settle", "excavate", "settle", "excavate", "run"]
+    first, last = opening.frame("first"), opening.frame("last")
+    assert len(first.blocks) - len(last.blocks) == opening.stages["removed"].sum() == 20
+    assert len(last.blocks) == opening.summary["blocks"] + opening.summary["fixed_blocks"]
+    assert opening.before("opening").time == opening.stages["end"][0]
+    with pytest.raises(KeyError, match="weight, opening"):
+        opening.before("nothing")
+    with pytest.raises(KeyError, match="there are 0 to"):
+        opening.frame(999)
+
+
+def test_names_areas_and_centroids(opening):
+    blocks = opening.frame("first").blocks
+    assert blocks["name"][0] == "floor" and blocks["kind"][0] == "fixed"
+    # 14 rows of 12 bricks of 0.5 x 0.25 m, every second row with halves at its ends: 13 bricks.
+    assert list(blocks["name"].iloc[[1, 12, 13, 25, 26]]) == ["w.0.0", "w.0.11", "w.1.0", "w.1.12", "w.2.0"]
+    assert blocks.loc[blocks["name"] == "w.4.6", ["x", "y", "area"]].values[0] == pytest.approx([3.25, 1.125, 0.125])
+    assert blocks["area"][1:].sum() == pytest.approx(6.0 * 3.5)
+    monitored = opening.history("w.4.6")
+    last = opening.frame("last").blocks
+    row = last[last["name"] == "w.4.6"].iloc[0]
+    assert monitored["x[m]"].iloc[-1] == pytest.approx(row["x"], abs=1e-9)
+    assert monitored["y[m]"].iloc[-1] == pytest.approx(row["y"], abs=1e-9)
+
+
+def test_contact_forces_add_up_to_those_of_blocks(leaning):
+    """Directions and signs: at rest, without dashpot forces, the contacts of a block give its contact_force."""
+    frame = leaning.frame("last")
+    sums = np.zeros((len(frame.ids), 2))
+    np.add.at(sums, frame.contacts["block_a"], frame.contact_forces)
+    np.add.at(sums, frame.contacts["block_b"], -frame.contact_forces)
+    expected = frame.blocks[["fx", "fy"]].to_numpy()
+    largest = np.abs(expected).max()
+    assert largest > 1e6
+    # What still moves: the dashpots' share is in contact_force alone.
+    assert sums[~frame.fixed] == pytest.approx(expected[~frame.fixed], abs=1e-4 * largest)
+
+
+def test_joints_open_and_shear_as_their_blocks_move(opening):
+    first, last = opening.frame("first"), opening.frame("last")
+    joints = first.joints
+    # 13 beds with 24 half bricks each, the bed on the floor with 12 bricks, 11 or 12 heads in a row.
+    assert len(joints) == 13 * 24 + 12 + 7 * 11 + 7 * 12
+    assert np.abs(joints["opening"]).max() < 1e-12 and np.abs(joints["shear_displacement"]).max() < 1e-12
+    assert set(joints["state"]) == {"unloaded"}
+
+    names = last.blocks["name"]
+    joints = last.joints
+    a, b = last.blocks.loc[joints["block_a"]], last.blocks.loc[joints["block_b"]]
+    # Between blocks that have hardly turned the opening is the difference of their motion across the joint.
+    along = joints[["x1", "y1"]].to_numpy() - joints[["x0", "y0"]].to_numpy()
+    along /= np.hypot(*along.T)[:, None]
+    apart = b[["ux", "uy"]].to_numpy() - a[["ux", "uy"]].to_numpy()
+    straight = (np.abs(a["rotation"].to_numpy()) < 1e-3) & (np.abs(b["rotation"].to_numpy()) < 1e-3)
+    assert straight.sum() > 100
+    across = apart[:, 0] * along[:, 1] - apart[:, 1] * along[:, 0]
+    assert joints["opening"][straight].to_numpy() == pytest.approx(across[straight], abs=1e-3)
+    assert joints["shear_displacement"][straight].to_numpy() == pytest.approx(np.sum(apart * along, axis=1)[straight], abs=1e-3)
+    assert joints["opening"].max() > 0.1 and set(joints["state"]) == {"stick", "slip", "open"}
+    assert not set(names[joints["block_a"]]) & {"w.0.4", "w.0.5"}  # excavated
+
+
+def test_strength_used_is_one_where_contacts_slip(opening):
+    frame = opening.at(float(opening.stages["end"][2]))  # at rest: no dashpots
+    used, state = strength_used(frame), frame.contacts["state"]
+    assert used.max() <= 1.0 + 1e-9
+    assert (used[state == "slip"] > 0.9).all()
+    assert used[state == "stick"].mean() < 0.6
+
+
+def test_strength_follows_the_stages_and_the_trial(opening, search):
+    from gcpdda.joints import strength_laws
+    scene = dict(opening.scene)
+    scene["stage"] = [dict(stage) for stage in scene["stage"]]
+    scene["stage"][2]["set"] = {"joint.default.friction_angle_deg": 10.0}
+    copy = gcpdda.Result(opening.path)
+    copy.__dict__["scene"] = scene
+    assert strength_laws(copy, float(opening.stages["begin"][2]))["default"]["friction_angle_deg"] == 35.0
+    assert strength_laws(copy, opening.summary["time"])["default"]["friction_angle_deg"] == 10.0
+    failing = search.mechanism
+    assert failing.weakened == (search.fails, ["bedding"])
+    used = strength_used(failing.frame("last"))
+    # Bedding slips with its strength divided; without the division it would seem to use 1/factor at most.
+    bedding = (failing.frame("last").contacts["joint"] == "bedding").to_numpy()
+    assert used[bedding].max() == pytest.approx(1.0, abs=0.05)
+
+
+def test_bolts(leaning):
+    frame = leaning.frame("last")
+    assert list(frame.bolts["support"]) == ["cable"] and list(frame.bolts["state"]) == ["elastic"]
+    assert frame.bolts["axial_force"][0] == pytest.approx(leaning.bolts["axial[N]"].iloc[-1])
+
+
+def test_results_are_read_while_a_run_goes_on(opening, tmp_path):
+    """What a folder holds in the middle of a run: no summary, fewer frames, and a row that is being written."""
+    folder = tmp_path / "running"
+    shutil.copytree(opening.path, folder)
+    (folder / "summary.json").unlink()
+    for path in sorted((folder / "frames").glob("*_00001*.hdf")):
+        path.rename(tmp_path / path.name)
+    energy = folder / "history" / "energy.csv"
+    rows = energy.read_text().splitlines(keepends=True)
+    energy.write_text("".join(rows[:5]) + rows[5][:40])
+
+    result = gcpdda.Result(folder)
+    assert result.verdict is None and not len(result.stages)
+    assert len(result.frames) == 10
+    assert len(result.energy) == 4 and result.reached == result.energy["time[s]"].iloc[-1]
+    result.plot.joints("state", out=tmp_path / "running.png")
+    for path in tmp_path.glob("*_00001*.hdf"):
+        path.rename(folder / "frames" / path.name)
+    assert len(result.frames) == len(opening.frames)
+    assert gcpdda.Result(tmp_path / "empty").reached == 0.0
+
+
+def test_fos_and_ensemble(search, members):
+    assert search.holds < search.factor < search.fails
+    assert search.mechanism.verdict == "failed"
+    assert len(search.trials) == len(search.summary["trials"])
+    assert search.blocks["moves"].sum() == len(search.summary["moving"])
+    assert len(members.members) == 8 == members.summary["done"]
+    assert isinstance(gcpdda.open_folder(search.path), gcpdda.Safety)
+    assert isinstance(gcpdda.open_folder(members.path), gcpdda.Ensemble)
+    assert isinstance(gcpdda.open_folder(search.path / "settled"), gcpdda.Result)
+    with pytest.raises(FileNotFoundError, match="not a result folder"):
+        gcpdda.open_folder(members.path / "members")
