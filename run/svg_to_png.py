@@ -48,7 +48,9 @@ def main(svg, png, dpi):
             axes.text(float(element.get("x")), float(element.get("y")), element.text, fontsize=9, zorder=5,
                       ha="center" if element.get("text-anchor") == "middle" else "left",
                       color=colour(element.get("fill", "black")))
-    axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors="#555555", linewidths=strokes))
+    # Outlines of very many blocks would cover their colours: these blocks are outlined by their own colour.
+    edges = ["#555555" if stroke * dpi / 100 > 0.1 else fill for fill, stroke in zip(fills, strokes)]
+    axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors=edges, linewidths=strokes))
     axes.add_collection(LineCollection(lines, colors=colours, linewidths=0.9))
     figure.savefig(png, dpi=dpi)
 

@@ -143,8 +143,8 @@ def draw(ax, points, radial, hoop, k0, half):
     for values, colour, label in ((hoop, "#b5482f", "hoop"), (radial, "#2f6db5", "radial")):
         for angle, marker, where in ((0.0, "o", "beside"), (0.5 * np.pi, "^", "above and below")):
             along = np.abs(np.sin(np.arctan2(points[:, 1], points[:, 0]) - angle)) < np.sin(np.radians(12.0))
-            ax.plot(r[along] / RADIUS, values[along] / VERTICAL, marker, color=colour, ms=3, alpha=0.5, mew=0,
-                    fillstyle="full", label=f"{label}, {where}")
+            ax.plot(r[along] / RADIUS, values[along] / VERTICAL, marker, color=colour, ms=5, mew=1.0,
+                    mfc=colour if angle == 0.0 else "white", label=f"{label}, {where}")
             line = np.linspace(RADIUS, half, 200)
             exact = kirsch(np.outer(line, (np.cos(angle), np.sin(angle))), k0)[0 if label == "radial" else 1]
             ax.plot(line / RADIUS, exact / VERTICAL, "-" if angle == 0.0 else "--", color=colour, lw=1.2)
@@ -176,9 +176,9 @@ def deformable(gcpdda, out, quick):
         draw(ax, points, radial, hoop, k0, half)
         ax.set_title(f"$K_0$ = {k0:g}, {summary['blocks']} deformable blocks left")
     axes[0].set_ylabel("compressive stress over $\\sigma_v$")
-    axes[0].legend(fontsize=8, title="points: blocks, lines: Kirsch, endless plate")
+    axes[0].legend(fontsize=8, title="markers: blocks; lines: Kirsch, endless plate,\nsolid beside, dashed above and below")
     figure.tight_layout()
-    figure.savefig(os.path.join(out, "kirsch_deformable.png"), dpi=130)
+    figure.savefig(os.path.join(out, "kirsch_deformable.png"), dpi=100)
     with open(os.path.join(out, "kirsch_deformable.csv"), "w") as file:
         file.write("k0,L/a,blocks,verdict,rms radial,rms hoop\n")
         for row in rows:
@@ -227,9 +227,9 @@ def main():
         draw(ax, points, radial, hoop, k0, half)
         ax.set_title(f"$K_0$ = {k0:g}, {summary['blocks']} blocks left")
     axes[0].set_ylabel("compressive stress over $\\sigma_v$")
-    axes[0].legend(fontsize=8, title="points: blocks, lines: Kirsch")
+    axes[0].legend(fontsize=8, title="markers: blocks; lines: Kirsch,\nsolid beside, dashed above and below")
     figure.tight_layout()
-    figure.savefig(os.path.join(out, "kirsch.png"), dpi=130)
+    figure.savefig(os.path.join(out, "kirsch.png"), dpi=100)
     with open(os.path.join(out, "kirsch.csv"), "w") as file:
         file.write("k0,r/a from,blocks,mean radial,mean hoop,rms radial,rms hoop\n")
         for row in rows:

@@ -4,6 +4,7 @@ Every picture has axes in metres or seconds, units and a scale. Panels and pictu
 scales fit the window that is shown. Without `out` a picture is returned as a matplotlib figure, which a notebook shows.
 """
 
+import io
 import pathlib
 
 import matplotlib.animation
@@ -149,10 +150,24 @@ def _draw(axes, shown, layers, window, title):
 def _finished(figure, out, dpi):
     if out is None:
         return figure
-    pathlib.Path(out).parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=dpi, bbox_inches="tight", pad_inches=0.06)
-    plt.close(figure)
+    out = pathlib.Path(out)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    if out.suffix == ".png":
+        out.write_bytes(png(figure, dpi))
+    else:
+        figure.savefig(out, dpi=dpi, bbox_inches="tight", pad_inches=0.06)
+        plt.close(figure)
     return None
+
+
+def png(figure, dpi):
+    """A figure as PNG with 256 colours, which has a third of the bytes and looks the same. Closes the figure."""
+    from PIL import Image
+    true_colours, few_colours = io.BytesIO(), io.BytesIO()
+    figure.savefig(true_colours, format="png", dpi=dpi, bbox_inches="tight", pad_inches=0.06)
+    plt.close(figure)
+    Image.open(true_colours).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(few_colours, "PNG", optimize=True)
+    return few_colours.getvalue()
 
 
 def _animate(shown, layers, window, out, title, dpi, seconds, fps):
