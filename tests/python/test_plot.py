@@ -114,6 +114,21 @@ def test_dark_joints_are_seen_on_every_colour():
     assert contrast(style.SIGNED(0.5), style.EDGE) > 12
 
 
+def test_pictures_keep_their_colours(leaning):
+    """256 colours are enough: also those of a few pixels, such as a short line in a legend, stay what they are."""
+    import io
+
+    from PIL import Image
+
+    from gcpdda.plot import png
+    figure = leaning.plot.joints("state")
+    exact = io.BytesIO()
+    figure.savefig(exact, format="png", dpi=100, bbox_inches="tight", pad_inches=0.06)
+    few = np.asarray(Image.open(io.BytesIO(png(figure, 100))).convert("RGB")).astype(int)
+    assert np.abs(few - np.asarray(Image.open(exact).convert("RGB"))).max() < 32  # of 255
+    plt.close(figure)
+
+
 def test_crosses_are_principal_stresses(leaning):
     shown = Shown(leaning.frame("last"))
     window = tuple(np.array([[-100.0, -100.0], [200.0, 200.0]]))

@@ -5,7 +5,7 @@ import sys
 
 from . import command_line
 
-COMMANDS = {"plot": command_line.plot}
+COMMANDS = {"plot": command_line.plot, "report": command_line.report}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, prog="python3 -m gcpdda", add_help=len(sys.argv) < 3)

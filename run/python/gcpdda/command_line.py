@@ -88,3 +88,28 @@ def _draw(result, chosen):
         plots.map(chosen.field, joints=chosen.joints, arrows=chosen.arrows, chains=chosen.chains, crosses=chosen.crosses,
                   pressure=chosen.pressure, frame=frames, window=chosen.window, scale=chosen.scale, compare=chosen.compare,
                   since=chosen.since, title=chosen.title, seconds=chosen.seconds, fps=chosen.fps, **file)
+
+
+REPORT = """One HTML file about the result folder of a run, of `gcpdda fos` or of `gcpdda ensemble`, which opens without a network:
+scene, stages with verdicts, pictures, histories, energy, warnings, bolts, factor of safety and its mechanism, speed.
+
+    run/report.py results/wall
+    run/report.py results/goodman_bray_fos --out goodman_bray.html
+"""
+
+
+def report(words=None):
+    """Writes the report that the words of a command line ask for; returns an exit code."""
+    parser = argparse.ArgumentParser(prog="report.py", description=REPORT, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("directory", type=pathlib.Path, metavar="DIR", help="result folder")
+    parser.add_argument("--out", type=pathlib.Path, help="FILE.html (default: DIR/report.html)")
+    parser.add_argument("--title", help="heading (default: the name of the folder)")
+    parser.add_argument("--frames", type=int, default=40, help="most frames of the player, 0 for none (default: 40)")
+    chosen = parser.parse_args(words)
+    from .reports import report as write
+    try:
+        out = write(chosen.directory, chosen.out, title=chosen.title, frames=chosen.frames)
+    except (FileNotFoundError, ValueError) as error:
+        sys.exit(f"report.py: {error}")
+    print(f"{out}, {out.stat().st_size / 1e6:.2f} MB")
+    return 0

@@ -80,13 +80,24 @@ class Plots:
         """A .gif of all frames that lasts at most `seconds` (8), or has `fps` frames a second."""
         return self.map(field, frame="all", out=out, seconds=seconds, fps=fps, **options)
 
+    def stills(self, field="displacement", most=40, dpi=90, window=None):
+        """Times and PNG images of at most so many frames, all of one size and with one scale: what a player shows."""
+        every = -(-len(self.result.frames) // most)
+        frames = self.result.frames[::-every][::-1]
+        shown, layers, limits = self._prepared(frames, [Blocks(field), Water(), Bolts(frames)], 1.0, window)
+        figure, (axes,) = style.map_figure(1, limits, layers)
+        for one in shown:
+            _clear(axes)
+            _draw(axes, one, layers, limits, f"t = {one.time:.4g} s")
+            yield one.time, png(figure, dpi, tight=False)
+        plt.close(figure)
+
     def map(self, field=None, *, joints=None, arrows=None, chains=False, crosses=False, pressure=False, frame="last",
             window=None, scale=1.0, compare=None, since=None, title=None, dpi=160, out=None, seconds=None, fps=None):
         """Any of these over each other. Blocks are filled by `field`, or left plain where something else is drawn."""
         plain = joints or arrows or chains or crosses or pressure
         frames = self._frames(frame)
-        needs_stage = "permanent" in (field, arrows)
-        if needs_stage != (since is not None):
+        if ("permanent" in (field, arrows)) != (since is not None):
             raise ValueError("permanent displacement and the stage since which it counts belong together")
         start = self.result.before(since) if since else None
         first = Shown(self.result.frame("first"))
@@ -97,16 +108,21 @@ class Plots:
         layers += [Crosses()] if crosses else []
         layers += [Arrows(_known(arrows, ARROWS, "arrows"), start)] if arrows else []
         layers.append(Bolts(frames))
-        shown = [Shown(one, scale) for one in frames]
-        limits = tuple(np.reshape(np.array(window, dtype=float), (2, 2))) if window is not None else style.view(shown)
-        for layer in layers:
-            layer.prepare(shown, limits)
+        shown, layers, limits = self._prepared(frames, layers, scale, window)
         if out is not None and pathlib.Path(out).suffix == ".gif":
             return _animate(shown, layers, limits, out, title, dpi, seconds, fps)
         figure, panels = style.map_figure(len(shown), limits, layers, title)
         for axes, one in zip(panels, shown):
             _draw(axes, one, layers, limits, f"t = {one.time:.4g} s")
         return _finished(figure, out, dpi)
+
+    @staticmethod
+    def _prepared(frames, layers, scale, window):
+        shown = [Shown(one, scale) for one in frames]
+        limits = tuple(np.reshape(np.array(window, dtype=float), (2, 2))) if window is not None else style.view(shown)
+        for layer in layers:
+            layer.prepare(shown, limits)
+        return shown, layers, limits
 
     def history(self, quantity="displacement", names=None, *, dpi=160, out=None):
         """A quantity of monitored blocks and points over time, all of them or some `names`."""
@@ -139,6 +155,11 @@ def _known(name, names, what):
     return name
 
 
+def _clear(axes):
+    for old in [*axes.collections, *axes.lines, *axes.texts, *axes.artists]:
+        old.remove()
+
+
 def _draw(axes, shown, layers, window, title):
     with plt.rc_context(style.PARAMETERS):
         for layer in layers:
@@ -156,17 +177,17 @@ def _finished(figure, out, dpi):
         out.write_bytes(png(figure, dpi))
     else:
         figure.savefig(out, dpi=dpi, bbox_inches="tight", pad_inches=0.06)
-        plt.close(figure)
+    plt.close(figure)
     return None
 
 
-def png(figure, dpi):
-    """A figure as PNG with 256 colours, which has a third of the bytes and looks the same. Closes the figure."""
+def png(figure, dpi, tight=True):
+    """A figure as PNG with 256 colours, which has a third of the bytes and looks the same."""
     from PIL import Image
     true_colours, few_colours = io.BytesIO(), io.BytesIO()
-    figure.savefig(true_colours, format="png", dpi=dpi, bbox_inches="tight", pad_inches=0.06)
-    plt.close(figure)
-    Image.open(true_colours).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(few_colours, "PNG", optimize=True)
+    figure.savefig(true_colours, format="png", dpi=dpi, **({"bbox_inches": "tight", "pad_inches": 0.06} if tight else {}))
+    few = Image.open(true_colours).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=2, dither=Image.Dither.NONE)
+    few.save(few_colours, "PNG", optimize=True)
     return few_colours.getvalue()
 
 
@@ -177,8 +198,7 @@ def _animate(shown, layers, window, out, title, dpi, seconds, fps):
     figure, (axes,) = style.map_figure(1, window, layers, title)
 
     def show(number):
-        for old in [*axes.collections, *axes.lines, *axes.texts, *axes.artists]:
-            old.remove()
+        _clear(axes)
         _draw(axes, shown[number], layers, window, f"t = {shown[number].time:.3f} s")
 
     movie = matplotlib.animation.FuncAnimation(figure, show, frames=len(shown), init_func=lambda: None)

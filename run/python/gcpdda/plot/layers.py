@@ -258,7 +258,12 @@ class JointStates(Layer):
     COLOURS = {"unloaded": "#c3c8cd", "stick": "#7d8894", "slip": "#e08214", "open": "#2b7bba", "bond": "#3a9a4b", "broken": "#c2185b"}
 
     def prepare(self, shown, window):
-        self.present = [state for state in self.COLOURS if any((s.frame.joints["state"] == state).any() for s in shown)]
+        seen = set()
+        for one in shown:
+            lines = joint_lines(one)
+            if len(lines):
+                seen |= set(np.tile(one.frame.joints["state"].to_numpy(), 2)[style.within(lines, window)])
+        self.present = [state for state in self.COLOURS if state in seen]
 
     def draw(self, axes, shown, window):
         table = shown.frame.joints
@@ -338,11 +343,14 @@ class Arrows(Layer):
 
     def prepare(self, shown, window):
         sizes = [np.hypot(*self.vectors(one, window)[1].T).max(initial=0.0) for one in shown]
-        self.largest = float(max(sizes)) or 1.0
+        self.largest = float(max(sizes))
         self.factor, self.shown_unit = style.unit_prefix(self.unit, self.largest)
 
     def draw(self, axes, shown, window):
         at, values = self.vectors(shown, window)
+        if self.largest == 0.0:
+            axes.text(0.0, 1.03, "all are zero", fontsize=8, transform=axes.transAxes)
+            return
         extent = float((window[1] - window[0]).max())
         per_metre = self.largest / (0.09 * extent)  # the largest arrow
         size = np.hypot(*values.T)

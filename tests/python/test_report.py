@@ -1,0 +1,159 @@
+"""Reports: that they hold what they promise, in one file without links to elsewhere, and that a browser shows them."""
+
+import base64
+import html.parser
+import io
+import json
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from conftest import SCENES, SOURCE
+from PIL import Image
+
+import gcpdda
+from gcpdda.reports.page import Page, text_of
+from gcpdda.reports.run import residual_share
+
+
+class Reader(html.parser.HTMLParser):
+    """Links, anchors, pictures, players and headings of a page; that its elements are closed in order."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.anchors, self.images, self.players, self.headings, self.open = [], set(), [], [], [], []
+        self.feed(text)
+        assert not self.open
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.links += [attributes[name] for name in ("href", "src") if name in attributes]
+        self.anchors |= {attributes["id"]} if "id" in attributes else set()
+        if tag == "img" and "src" in attributes:
+            self.images.append(base64.b64decode(attributes["src"].split(",", 1)[1]))
+        if tag not in ("meta", "link", "img", "input"):
+            self.open.append((tag, attributes))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop()[0] == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1][0] == "h2":
+            self.headings.append(data)
+        if self.open and self.open[-1][1].get("type") == "application/json":
+            self.players.append(json.loads(data))
+
+
+def check(path):
+    """What holds for every report; returns its headings, the frames of its players and its text."""
+    text = path.read_text()
+    reader = Reader(text)
+    for link in reader.links:
+        assert link.startswith("data:") or link.startswith("#") and link[1:] in reader.anchors, link[:80]
+    without_images = re.sub(r"[A-Za-z0-9+/=]{100,}", "", text)
+    assert not re.search(r"https?:|//cdn|@import|url\(", without_images)
+    frames = [frame for player in reader.players for frame in player]
+    images = reader.images + [base64.b64decode(frame["image"]) for frame in frames]
+    assert images
+    for image in images:
+        pixels = np.asarray(Image.open(io.BytesIO(image)).convert("L"))
+        assert pixels.shape[0] > 100 and pixels.std() > 2.0  # not blank
+    for player in reader.players:
+        assert len({Image.open(io.BytesIO(base64.b64decode(frame["image"]))).size for frame in player}) == 1
+    assert path.stat().st_size < 10_000_000
+    return reader.headings, frames, text
+
+
+def test_of_a_run_in_stages(opening, tmp_path):
+    headings, frames, text = check(gcpdda.report(opening.path, tmp_path / "opening.html", frames=8))
+    assert headings == ["Motion", "Warnings", "Geometry", "Materials and laws", "Stages", "State at the end", "Histories", "Energy",
+                        "Speed", "Provenance"]
+    assert 2 <= len(frames) <= 8 and float(frames[-1]["time"]) == pytest.approx(opening.summary["time"], rel=1e-3)
+    assert "has failed at t" in text and "Stage arch: settled" in text
+    import hashlib
+    assert hashlib.sha256((opening.path / "scene.toml").read_bytes()).hexdigest() in text
+
+
+def test_of_a_run_with_bolts_and_water(leaning, tmp_path):
+    headings, _, text = check(gcpdda.report(leaning.path, tmp_path / "leaning.html", frames=4))
+    assert "Bolts" in headings and "cable" in text and "Water pressure" in text
+
+
+def test_of_a_search(search, tmp_path):
+    headings, _, text = check(gcpdda.report(search.path, tmp_path / "fos.html", frames=4))
+    assert headings[:2] == ["Trials", "Mechanism"] and "Factor of safety" in text
+    assert f"{len(search.summary['moving'])} blocks move" in text
+
+
+def test_of_an_ensemble(members, tmp_path):
+    headings, _, text = check(gcpdda.report(members.path, tmp_path / "ensemble.html"))
+    assert headings[0] == "Members" and "Probability of failure" in text
+
+
+def test_of_a_run_that_goes_on(opening, tmp_path):
+    folder = tmp_path / "running"
+    shutil.copytree(opening.path, folder)
+    (folder / "summary.json").unlink()
+    _, _, text = check(gcpdda.report(folder, frames=2))
+    assert "The run goes on, or was killed" in text
+
+
+def test_of_a_run_without_contacts_and_histories(tmp_path):
+    result = gcpdda.run(SCENES / "incline.toml", ranks=1, out=tmp_path / "run", set={"output.contacts": False, "monitor": []})
+    headings, _, text = check(gcpdda.report(result.path, frames=2))
+    assert "Histories" not in headings and "output.contacts = false" in text
+
+
+def test_the_residual_is_judged(opening, tmp_path):
+    """A ledger that does not balance is reported, one that does is not."""
+    assert residual_share(opening) < 0.01
+    folder = tmp_path / "unbalanced"
+    shutil.copytree(opening.path, folder)
+    path = folder / "history" / "energy.csv"
+    header, *rows = path.read_text().splitlines()
+    column = header.split(",").index("residual[J/m]")
+    changed = [row.split(",") for row in rows]
+    changed[-1][column] = "1000"
+    path.write_text("\n".join([header, *(",".join(row) for row in changed)]) + "\n")
+    text = gcpdda.report(folder, frames=0).read_text()
+    assert "the energy residual is" in text and "That is large" in text
+
+
+def test_text_of_users_is_escaped(tmp_path):
+    page = Page("<b>title</b> & more")
+    page.section("A <i>section</i>")
+    page.table([{"name": "</script><script>alert(1)</script>", "value": 0.5}])
+    text = page.html()
+    assert "<b>title" not in text and "alert(1)</script>" not in text and "&lt;/script&gt;" in text
+
+
+def test_numbers_are_short():
+    assert [text_of(value) for value in (0.0, 2.0, 1 / 3, 123456.7, 2.5e9, 1e-7, True, None, float("nan"), 7)] == [
+        "0", "2", "0.3333", "123,457", "2.5e+09", "1e-07", "yes", "", "", "7"]
+    assert text_of([[0, 1], [2.5, 3]]) == "(0, 1), (2.5, 3)"
+
+
+def test_command_line(search, tmp_path):
+    out = tmp_path / "report.html"
+    done = subprocess.run([str(SOURCE / "run" / "report.py"), str(search.path), "--out", str(out), "--title", "My slope", "--frames", "0"],
+                          capture_output=True, text=True)
+    assert done.returncode == 0 and str(out) in done.stdout, done.stderr
+    assert "<title>My slope</title>" in out.read_text()
+    done = subprocess.run([str(SOURCE / "run" / "report.py"), str(tmp_path)], capture_output=True, text=True)
+    assert done.returncode == 1 and "not a result folder" in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="Debian's chromium is not installed")
+def test_in_a_browser(opening, tmp_path):
+    """Chromium runs the script without an error and shows the last frame; nothing is fetched."""
+    page = gcpdda.report(opening.path, tmp_path / "opening.html", frames=5)
+    picture = tmp_path / "page.png"
+    common = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}", "--enable-logging=stderr",
+              "--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=3000", "--window-size=1100,3000"]
+    done = subprocess.run([*common, "--dump-dom", f"file://{page}"], capture_output=True, text=True, timeout=120)
+    assert "CONSOLE" not in done.stderr, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+    assert f"<output>t = {opening.summary['time']:.4g} s</output>" in done.stdout
+    subprocess.run([*common, f"--screenshot={picture}", f"file://{page}"], capture_output=True, timeout=120)
+    assert np.asarray(Image.open(picture).convert("L")).std() > 10.0
