@@ -1,5 +1,8 @@
 """gcpdda.run, sweep and Scene: what reaches the program, and what its exit codes become."""
 
+import pathlib
+import subprocess
+import sys
 import tomllib
 
 import numpy as np
@@ -86,6 +89,10 @@ def test_faults_of_a_scene_are_an_exception_with_their_lines(tmp_path):
     assert {lines[fault.line - 1].split(" ")[0] for fault in caught.value.faults} == {"friction_angle_deg", "intervall"}
     assert "friction_angle_deg" in str(caught.value)
     assert not (tmp_path / "faulty").exists()
+    with pytest.raises(gcpdda.SceneError) as caught:
+        gcpdda.inspect(sliding_block(), set={"joint.default.friction_angle_deg": 95})
+    assert [fault.line for fault in caught.value.faults] == [None]
+    assert "below 90" in caught.value.faults[0].message
 
 
 def test_exit_codes_are_exceptions(tmp_path):
@@ -126,22 +133,18 @@ def test_a_sweep_has_a_row_for_every_combination(tmp_path):
     assert table["result"][1].summary["time"] == 0.2
 
 
-def test_the_installed_package_is_found(tmp_path):
-    import subprocess
-    import sys
+def test_the_installed_package_finds_the_installed_program(tmp_path):
+    build = pathlib.Path(gcpdda.program()).parent
+    if not (build / "cmake_install.cmake").exists():
+        pytest.skip("the program is not in a build folder")
+    subprocess.run(["cmake", "--install", str(build), "--prefix", str(tmp_path)], check=True, capture_output=True)
     packages = tmp_path / "lib" / "python3" / "dist-packages"
-    install = (SOURCE / "CMakeLists.txt").read_text()
-    assert "run/python/gcpdda DESTINATION lib/python3/dist-packages" in install
-    packages.mkdir(parents=True)
-    (packages / "gcpdda").symlink_to(SOURCE / "run" / "python" / "gcpdda")
-    said = subprocess.run([sys.executable, "-c", "import gcpdda; print(gcpdda.__file__)"], env={"PYTHONPATH": str(packages)},
-                          capture_output=True, text=True, check=True).stdout
-    assert said.startswith(str(packages))
+    said = subprocess.run([sys.executable, "-c", "import gcpdda; print(gcpdda.__file__); print(gcpdda.program())"], cwd=tmp_path,
+                          env={"PYTHONPATH": str(packages)}, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert said == [str(packages / "gcpdda" / "__init__.py"), str(tmp_path / "bin" / "gcpdda")]
 
 
 def test_importing_is_quick():
-    import subprocess
-    import sys
     code = "import sys, gcpdda; print(any(name in sys.modules for name in ('pandas', 'matplotlib', 'h5py')))"
     said = subprocess.run([sys.executable, "-c", code], env={"PYTHONPATH": str(SOURCE / "run" / "python")},
                           capture_output=True, text=True, check=True).stdout

@@ -137,8 +137,8 @@ def test_numbers_are_short():
 
 def test_command_line(search, tmp_path):
     out = tmp_path / "report.html"
-    done = subprocess.run([str(SOURCE / "run" / "report.py"), str(search.path), "--out", str(out), "--title", "My slope", "--frames", "0"],
-                          capture_output=True, text=True)
+    done = subprocess.run([str(SOURCE / "run" / "report.py"), str(search.path), "--out", str(out), "--title", "My slope",
+                           "--frames", "0"], capture_output=True, text=True)
     assert done.returncode == 0 and str(out) in done.stdout, done.stderr
     assert "<title>My slope</title>" in out.read_text()
     done = subprocess.run([str(SOURCE / "run" / "report.py"), str(tmp_path)], capture_output=True, text=True)
@@ -150,7 +150,8 @@ def test_in_a_browser(opening, tmp_path):
     """Chromium runs the script without an error and shows the last frame; nothing is fetched."""
     page = gcpdda.report(opening.path, tmp_path / "opening.html", frames=5)
     picture = tmp_path / "page.png"
-    common = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}", "--enable-logging=stderr",
+    common = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}",
+              "--enable-logging=stderr",
               "--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=3000", "--window-size=1100,3000"]
     done = subprocess.run([*common, "--dump-dom", f"file://{page}"], capture_output=True, text=True, timeout=120)
     assert "CONSOLE" not in done.stderr, [line for line in done.stderr.splitlines() if "CONSOLE" in line]

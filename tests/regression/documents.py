@@ -34,7 +34,7 @@ import tomllib
 import urllib.parse
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-RUN = re.compile(r"(build/gcpdda|mpirun|cp|cat|head|tail|grep|cut|run/\w+\.py)$")
+RUN = re.compile(r"(build/gcpdda|mpirun|python3|cp|cat|head|tail|grep|cut|run/\w+\.py)$")
 SCRIPT = re.compile(r"(run|tests)/[\w./]+$")
 LARGEST_PICTURE = 150_000  # bytes, of the users' guide
 PATIENCE = 600  # s for one command: far more than a slow machine needs
@@ -235,7 +235,9 @@ class Page:
         scratch = self.folder / "mpi"  # starts of Open MPI that share one disturb each other
         scratch.mkdir(exist_ok=True)
         environment = os.environ | {"OMPI_MCA_orte_tmpdir_base": str(scratch),
-                                    "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}
+                                    "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+                                    # python3 is the one that runs this script: it has the packages of run/packages.txt.
+                                    "PATH": os.path.dirname(sys.executable) + os.pathsep + os.environ["PATH"]}
         try:
             done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=environment, text=True, timeout=PATIENCE,
                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 
 class Fault(NamedTuple):
-    """One fault of a scene, as the program reports it."""
+    """One fault of a scene, as the program reports it. Faults of values that `set` replaces have no line and column."""
 
     file: str
-    line: int
-    column: int
+    line: int | None
+    column: int | None
     message: str
 
 
@@ -38,8 +38,8 @@ class SceneError(GcpddaError):
 
     @property
     def faults(self):
-        pattern = re.compile(r"^(.*?):(\d+):(\d+): error: (.*)$", re.M)
-        return [Fault(file, int(line), int(column), message)
+        pattern = re.compile(r"^(.*?)(?::(\d+):(\d+))?: error: (.*)$", re.M)
+        return [Fault(file, int(line) if line else None, int(column) if column else None, message)
                 for file, line, column, message in pattern.findall(self.output)]
 
 

@@ -29,7 +29,7 @@ def ensemble_page(ensemble, title):
     page.section("Members")
     if summary["measure"] == "factor" and summary["factors"]:
         page.pictures((picture(draw_factors(members)), "Factors of safety of the members."))
-        page.table([{"mean": summary["mean"], "deviation": summary["deviation"], "skewness": summary["skewness"], "least": summary["least"], "most": summary["most"]}])
+        page.table([{name: summary[name] for name in ("mean", "deviation", "skewness", "least", "most")}])
     page.pictures(*((picture(draw_values(members, key)), f"Values of {key} that members drew, by outcome.") for key in summary["keys"]))
     if len(summary["keys"]) >= 2:
         page.pictures((picture(draw_pair(members, *summary["keys"][:2])), "Members over the first two values that vary."))

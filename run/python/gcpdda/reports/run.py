@@ -14,7 +14,7 @@ from .scene_tables import add_provenance, add_scene
 DPI = 100
 PLAYER_BYTES = 4_000_000  # of images, a third less than their text
 KINDS = {"completed": "good", "settled": "good", "failed": "bad", "undecided": "open", "stopped": "open"}
-MANY_BLOCKS = 20_000  # beyond this many, joints are not drawn: finding them takes long
+MANY_BLOCKS = 20_000  # joints of more blocks than this are not drawn: they would be finer than a pixel
 
 
 def picture(figure):
@@ -120,8 +120,9 @@ def _stages(page, result):
     if not len(stages):
         return
     page.section("Stages")
-    page.table(stages, {"name": "stage", "kind": "kind", "verdict": "verdict", "begin": "begin (s)", "end": "end (s)", "steps": "steps",
-                        "unbalanced_ratio": "unbalanced ratio (-)", "moved": "largest motion (block sizes)", "removed": "blocks removed"})
+    page.table(stages, {"name": "stage", "kind": "kind", "verdict": "verdict", "begin": "begin (s)", "end": "end (s)",
+                        "steps": "steps", "unbalanced_ratio": "unbalanced ratio (-)",
+                        "moved": "largest motion (block sizes)", "removed": "blocks removed"})
     page.text("The unbalanced ratio is the largest net force over the largest force in the model; the motion is that within the stage. "
               "Settled: blocks have come to rest. Failed: a block moves on. Undecided: neither, when the stage ended.", "note")
     shown = [row for row in stages.to_dict("records") if row["steps"] > 0 and row["end"] > row["begin"]]
@@ -164,7 +165,8 @@ def _end(page, result):
     plots, part = result.plot, {"window": close_up(result)}
     if part["window"]:
         page.text("The pictures show the part of the model that has moved most.", "note")
-    page.pictures((picture(plots.field("stress", **part)), "Largest compressive stress, the mean of each block. Negative where a block is in tension."),
+    page.pictures((picture(plots.field("stress", **part)),
+                   "Largest compressive stress, the mean of each block. Negative where a block is in tension."),
                   (picture(plots.crosses(**part)), "Principal stresses: crosses are as long as the stresses, tension is red."))
     if not result.frame("last").has_contacts:
         page.text("The scene has output.contacts = false: joints and contact forces are not drawn.", "note")
@@ -213,7 +215,8 @@ def residual_share(result):
 
 
 MEANINGS = {
-    "kinetic": "energy of motion", "strain": "elastic energy in deformable blocks", "contact": "elastic energy in contacts, normal and shear",
+    "kinetic": "energy of motion", "strain": "elastic energy in deformable blocks",
+    "contact": "elastic energy in contacts, normal and shear",
     "gravity": "potential energy: falls when blocks sink", "support": "elastic energy in bolts",
     "friction_loss": "work that slipping joints have taken", "damping_loss": "work that dashpots and numerical damping have taken",
     "support_loss": "work that yielding bolts have taken",
@@ -229,7 +232,9 @@ def _energy(page, result):
     page.section("Energy")
     page.pictures((picture(result.plot.energy()), "Above: changes of energy since the start. Below: how far the model is from rest."))
     parts = energy_parts(table)
-    page.table([{"part": name.replace("_", " "), "change": float(values.iloc[-1]), "meaning": MEANINGS[name]} for name, values in parts.items()],
+    rows = [{"part": name.replace("_", " "), "change": float(values.iloc[-1]), "meaning": MEANINGS[name]}
+            for name, values in parts.items()]
+    page.table(rows,
                {"part": "part", "change": "change since the start (J/m)", "meaning": "meaning"})
     share = residual_share(result)
     if share < 0.01:
@@ -237,7 +242,8 @@ def _energy(page, result):
     elif share < 0.05:
         words = "That is noticeable: check that the answer stays the same with run.safety half as large."
     else:
-        words = "That is large: impacts or steps are not resolved, and speeds and run-out cannot be trusted. Halve run.safety and compare."
+        words = ("That is large: impacts or steps are not resolved, and speeds and run-out cannot be trusted. Halve run.safety "
+                 "and compare.")
     page.text(f"The largest residual is {100 * share:.2g} % of the energy turned over. {words}")
 
 
@@ -248,8 +254,9 @@ def _bolts(page, result):
     page.section("Bolts")
     if len(result.bolts):
         page.pictures((picture(result.plot.bolts()), "Tension of each bolt, where it crosses the joint that pulls most."))
-    page.table(bolts, {"name": "bolt", "support": "type", "installed": "installed (s)", "in_place": "in place", "axial": "tension (N)",
-                       "largest_axial": "largest tension (N)", "shear": "shear (N)", "largest_shear": "largest shear (N)",
+    page.table(bolts, {"name": "bolt", "support": "type", "installed": "installed (s)", "in_place": "in place",
+                       "axial": "tension (N)", "largest_axial": "largest tension (N)", "shear": "shear (N)",
+                       "largest_shear": "largest shear (N)",
                        "extension": "extension (m)", "joints": "joints", "yielded": "yielded", "broken": "broken"})
 
 

@@ -15,8 +15,8 @@ def safety_page(search, title, frames):
     page = Page(title)
     summary = search.summary
     if summary["found"]:
-        page.verdict(f"Factor of safety {summary['factor']:.4g}: the blocks hold when strengths are divided by {summary['holds']:.5g} and fail at "
-                     f"{summary['fails']:.5g}.", "good" if summary["factor"] >= 1.0 else "bad")
+        page.verdict(f"Factor of safety {summary['factor']:.4g}: the blocks hold when strengths are divided by "
+                     f"{summary['holds']:.5g} and fail at {summary['fails']:.5g}.", "good" if summary["factor"] >= 1.0 else "bad")
     else:
         page.verdict("The factor of safety has not been found: no bracket between a trial that holds and one that fails.", "open")
     mechanism = search.mechanism
@@ -31,7 +31,8 @@ def safety_page(search, title, frames):
     page.section("Settled state")
     if settled.frames:
         most, name, _ = moved_most(settled.frame("last"))
-        page.text(f"Trials begin from this state, in which the blocks rest with their full strength. {name} has moved most, by {length(most)}.")
+        page.text("Trials begin from this state, in which the blocks rest with their full strength. "
+                  f"{name} has moved most, by {length(most)}.")
         page.pictures((picture(settled.plot.field("displacement")), "Displacement while settling."),
                       (picture(settled.plot.crosses()), "Principal stresses before strengths are lowered."))
     add_provenance(page, search, settled.path / "scene.toml", facts(settled), "fos")
@@ -40,10 +41,11 @@ def safety_page(search, title, frames):
 
 def _trials(page, search):
     page.section("Trials")
-    page.pictures((picture(draw_trials(search)), "Largest motion in each trial in sizes of a block, over the factor that divides the strengths. "
-                   "The factor of safety lies in the grey band."))
-    page.table(search.trials, {"factor[-]": "factor", "verdict": "verdict", "time[s]": "time (s)", "steps": "steps", "moved[-]": "largest motion (block sizes)",
-                               "unbalanced_ratio[-]": "unbalanced ratio (-)", "cpu[s]": "CPU time (s)"})
+    page.pictures((picture(draw_trials(search)), "Largest motion in each trial in sizes of a block, over the factor that divides the "
+                   "strengths. The factor of safety lies in the grey band."))
+    page.table(search.trials, {"factor[-]": "factor", "verdict": "verdict", "time[s]": "time (s)", "steps": "steps",
+                               "moved[-]": "largest motion (block sizes)", "unbalanced_ratio[-]": "unbalanced ratio (-)",
+                               "cpu[s]": "CPU time (s)"})
     if search.summary["undecided"]:
         page.text("Trials without a verdict at their limit stay in the bracket; a longer fos.limit may decide them.", "note")
 
@@ -55,7 +57,8 @@ def draw_trials(search):
     if summary["found"]:
         axes.axvspan(summary["holds"], summary["fails"], color="#d9dde2", lw=0)
     for verdict, rows in trials.groupby("verdict"):
-        axes.semilogy(rows["factor[-]"], np.maximum(rows["moved[-]"], 1e-12), "o", ms=6, color=COLOURS.get(verdict, "#a66a00"), label=verdict)
+        axes.semilogy(rows["factor[-]"], np.maximum(rows["moved[-]"], 1e-12), "o", ms=6, color=COLOURS.get(verdict, "#a66a00"),
+                      label=verdict)
     axes.set(xlabel="factor that divides the strengths (-)", ylabel="largest motion (block sizes)")
     axes.grid(axis="y", color="#e8e8e8", lw=0.5)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=8)
@@ -70,8 +73,8 @@ def _mechanism(page, search, mechanism, frames):
         x, y = np.mean([entry["x"] for entry in moving]), np.mean([entry["y"] for entry in moving])
         turn = np.degrees(np.mean([abs(entry["rotation"]) for entry in moving]))
         angle = np.degrees(np.arctan2(y, x))
-        page.text(f"{len(moving)} blocks move in the trial with the smallest factor that fails, {search.fails or 0:.5g}: on average in the direction "
-                  f"of {angle:.0f} degrees from the x axis, counter-clockwise, and they turn by {turn:.2g} degrees.")
+        page.text(f"{len(moving)} blocks move in the trial with the smallest factor that fails, {search.fails or 0:.5g}: on average "
+                  f"in the direction of {angle:.0f} degrees from the x axis, counter-clockwise, and they turn by {turn:.2g} degrees.")
     stills = limited(mechanism, frames)
     if stills:
         page.player(stills, "Displacement of blocks in that trial.")
