@@ -58,7 +58,8 @@ def main():
     arguments.add_argument("--rows", type=int, default=100)
     arguments.add_argument("--columns", type=int, default=100)
     arguments.add_argument("--size", type=float, nargs=2, default=(1.0, 0.5), help="of a brick, m")
-    arguments.add_argument("--overlap", type=float, default=0.0, help="of neighbouring bricks, m: joints under pressure")
+    arguments.add_argument("--overlap", type=float, default=0.0,
+                           help="of neighbouring bricks, m: joints under pressure")
     wanted = arguments.parse_args()
     if min(wanted.rows, wanted.columns) < 1:
         arguments.error(f"{wanted.rows} rows of {wanted.columns} blocks are none: --rows and --columns are at least 1")

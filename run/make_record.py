@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A ground motion like that of an earthquake, as CSV for [earthquake]: sines of random phases with a peak at one frequency, under
-a rise and a decay, without velocity or displacement at the end. The same seed makes the same record.
+"""A ground motion like that of an earthquake, as CSV for [earthquake]: sines of random phases with a peak at one
+frequency, under a rise and a decay, without velocity or displacement at the end. The same seed makes the same record.
 
     run/make_record.py --duration 8 --peak 0.25 --frequency 1.5 --out record.csv
 """

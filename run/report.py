@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""One HTML file about the result folder of a run, of `gcpdda fos` or of `gcpdda ensemble`, which opens without a network."""
+"""One HTML file about the result folder of a run, of `gcpdda fos` or of `gcpdda ensemble`, which opens without a
+network."""
 
 import pathlib
 import sys

@@ -40,4 +40,5 @@ def search(tmp_path_factory):
 @pytest.fixture(scope="session")
 def members(tmp_path_factory):
     """A probability of failure."""
-    return gcpdda.ensemble(SCENES / "plane_failure.toml", ranks=1, count=8, out=tmp_path_factory.mktemp("runs") / "ensemble")
+    return gcpdda.ensemble(SCENES / "plane_failure.toml", ranks=1, count=8,
+                           out=tmp_path_factory.mktemp("runs") / "ensemble")

@@ -46,7 +46,8 @@ def test_arrows(opening, quantity):
 
 
 def test_other_maps(leaning, opening):
-    for draw in (leaning.plot.chains, leaning.plot.crosses, leaning.plot.water, leaning.plot.forces, leaning.plot.strength):
+    for draw in (leaning.plot.chains, leaning.plot.crosses, leaning.plot.water, leaning.plot.forces,
+                 leaning.plot.strength):
         check_map(draw())
     check_map(opening.plot.field("permanent", since="fall"))
     check_map(opening.plot.before_after("stress"))
@@ -60,7 +61,8 @@ def test_curves(opening, leaning):
         plt.close(figure)
     figure = opening.plot.energy()
     # The stages are marked: a label above the axes for each, those that begin together share one.
-    labels = [label.get_text() for axes in figure.axes for child in axes.child_axes for label in child.get_xticklabels()]
+    labels = [label.get_text() for axes in figure.axes for child in axes.child_axes
+              for label in child.get_xticklabels()]
     assert "weight" in labels and any("arch" in label for label in labels)
     plt.close(figure)
     plt.close(leaning.plot.bolts())
@@ -99,7 +101,8 @@ def test_colours_fit_the_window(opening):
 
 
 def test_dark_joints_are_seen_on_every_colour():
-    """Contrast of block outlines with the darkest colours (WCAG asks 3 for lines): zero is light, the end is not black."""
+    """Contrast of block outlines with the darkest colours (WCAG asks 3 for lines): zero is light, the end is not
+    black."""
     def luminance(colour):
         c = np.array(plt.matplotlib.colors.to_rgb(colour))
         c = np.where(c <= 0.03928, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
@@ -177,11 +180,12 @@ def test_animations_last_as_long_as_asked(leaning, tmp_path):
 
 def test_command_line(opening, tmp_path):
     def plot(*words):
-        return subprocess.run([str(SOURCE / "run" / "plot.py"), str(opening.path), *words, "--out", str(tmp_path / "picture.png")],
-                              capture_output=True, text=True)
+        return subprocess.run([str(SOURCE / "run" / "plot.py"), str(opening.path), *words, "--out",
+                               str(tmp_path / "picture.png")], capture_output=True, text=True)
 
-    for words in (["--frame", "0,last", "--field", "stress", "--scale", "3", "--compare", "first"], ["--joints", "state"],
-                  ["--field", "permanent", "--since", "fall"], ["--crosses", "--arrows", "velocity", "--window=0,0,6,4"],
+    for words in (["--frame", "0,last", "--field", "stress", "--scale", "3", "--compare", "first"],
+                  ["--joints", "state"], ["--field", "permanent", "--since", "fall"],
+                  ["--crosses", "--arrows", "velocity", "--window=0,0,6,4"],
                   ["--history", "speed", "--monitors", "w.4.6"], ["--energy"]):
         done = plot(*words)
         assert done.returncode == 0, done.stderr

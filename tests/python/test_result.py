@@ -70,7 +70,8 @@ def test_joints_open_and_shear_as_their_blocks_move(opening):
     assert straight.sum() > 100
     across = apart[:, 0] * along[:, 1] - apart[:, 1] * along[:, 0]
     assert joints["opening"][straight].to_numpy() == pytest.approx(across[straight], abs=1e-3)
-    assert joints["shear_displacement"][straight].to_numpy() == pytest.approx(np.sum(apart * along, axis=1)[straight], abs=1e-3)
+    assert joints["shear_displacement"][straight].to_numpy() == pytest.approx(np.sum(apart * along, axis=1)[straight],
+                                                                              abs=1e-3)
     assert joints["opening"].max() > 0.1 and set(joints["state"]) == {"stick", "slip", "open"}
     assert not set(names[joints["block_a"]]) & {"w.0.4", "w.0.5"}  # excavated
 

@@ -72,5 +72,31 @@ TEST(Scripts, HelpIsPrintedAndNothingElseHappens) {
   EXPECT_EQ(testing::listing(folder.path()), std::vector<std::string>());
 }
 
+std::size_t characters_of(const std::string &line) { // UTF-8: bytes that begin a character
+  return static_cast<std::size_t>(
+      std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+TEST(Scripts, LinesOfPythonHaveAtMost120Characters) {
+  std::vector<std::string> files;
+  for (const char *folder : {"run/python", "tests/python"}) {
+    const std::vector<std::string> found = scripts_below(folder, ".py");
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  for (const std::string &script : scripts_below("run", ".py")) {
+    if (fs::path(script).parent_path() == source / "run") {
+      files.push_back(script);
+    }
+  }
+  EXPECT_GE(files.size(), 30U);
+  for (const std::string &file : files) {
+    std::size_t number = 0;
+    for (const std::string &line : testing::lines_of(file_text(file))) {
+      ++number;
+      EXPECT_LE(characters_of(line), 120U) << file << ':' << number;
+    }
+  }
+}
+
 } // namespace
 } // namespace gcpdda::scripts_test

@@ -8,8 +8,8 @@
     gcpdda.report(result.path)
 
 The package is plain Python (3.11 or later) with numpy, h5py, pandas and matplotlib. It needs no installation: put
-the folder run/python on PYTHONPATH, or install gcpdda with `cmake --install`. pandas and matplotlib are imported when they
-are first used, so that a script that only runs scenes starts quickly.
+the folder run/python on PYTHONPATH, or install gcpdda with `cmake --install`. pandas and matplotlib are imported when
+they are first used, so that a script that only runs scenes starts quickly.
 """
 
 from .errors import (FileError, GcpddaError, InternalError, NumericalError, SceneError, Stopped, Undecided,

@@ -6,7 +6,7 @@ import sys
 
 from .result import Result
 
-PLOT = """Pictures and animations of a run: blocks filled and coloured by a field, joints, forces, stresses, arrows, curves.
+PLOT = """Pictures and animations of a run: blocks coloured by a field, joints, forces, stresses, arrows, curves.
 
     run/plot.py results/wall --frame last --field displacement --out wall.png
     run/plot.py results/wall --frame 0,last --field stress --out before_after.png
@@ -29,20 +29,24 @@ def _frame(word):
 
 def _plot_parser():
     from .plot import ARROWS, FIELDS, HISTORIES, JOINTS
-    parser = argparse.ArgumentParser(prog="plot.py", description=PLOT, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="plot.py", description=PLOT,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", type=pathlib.Path, metavar="DIR", help="result folder of a run")
     parser.add_argument("--frame", default="last", help="N, first, last, all, or several: 0,last (default: last)")
-    parser.add_argument("--field", choices=FIELDS, help="what fills the blocks (default: displacement, or none with another layer)")
+    parser.add_argument("--field", choices=FIELDS,
+                        help="what fills the blocks (default: displacement, or none with another layer)")
     parser.add_argument("--joints", choices=JOINTS, help="colour joints")
     parser.add_argument("--arrows", choices=ARROWS, help="draw arrows of blocks, or of forces at contacts")
     parser.add_argument("--chains", action="store_true", help="draw force chains")
     parser.add_argument("--crosses", action="store_true", help="draw principal stresses, tension red")
     parser.add_argument("--pressure", action="store_true", help="draw the water pressure on the edges of blocks")
-    parser.add_argument("--history", choices=HISTORIES, help="draw a quantity of the monitors over time instead of blocks")
+    parser.add_argument("--history", choices=HISTORIES,
+                        help="draw a quantity of the monitors over time instead of blocks")
     parser.add_argument("--monitors", help="names of the monitors to draw: crest,toe (default: all)")
     parser.add_argument("--energy", action="store_true", help="draw energies over time instead of blocks")
     parser.add_argument("--bolts", action="store_true", help="draw the tension of bolts over time instead of blocks")
-    parser.add_argument("--rayleigh", action="store_true", help="draw the damping ratio of run.rayleigh instead of blocks")
+    parser.add_argument("--rayleigh", action="store_true",
+                        help="draw the damping ratio of run.rayleigh instead of blocks")
     parser.add_argument("--out", required=True, type=pathlib.Path, help="FILE.png, .pdf, .svg; FILE.gif is animated")
     parser.add_argument("--scale", type=float, default=1.0, help="draw the motion since the first frame so many times")
     parser.add_argument("--compare", choices=["first"], help="outline the blocks as they were in the first frame")
@@ -85,13 +89,15 @@ def _draw(result, chosen):
         frames = [_frame(word) for word in chosen.frame.split(",")]
         if chosen.out.suffix != ".gif" and frames == ["all"] and len(result.frames) > 30:
             raise ValueError(f"{len(result.frames)} panels cannot be read: choose some with --frame, or write a .gif")
-        plots.map(chosen.field, joints=chosen.joints, arrows=chosen.arrows, chains=chosen.chains, crosses=chosen.crosses,
-                  pressure=chosen.pressure, frame=frames, window=chosen.window, scale=chosen.scale, compare=chosen.compare,
-                  since=chosen.since, title=chosen.title, seconds=chosen.seconds, fps=chosen.fps, **file)
+        plots.map(chosen.field, joints=chosen.joints, arrows=chosen.arrows, chains=chosen.chains,
+                  crosses=chosen.crosses, pressure=chosen.pressure, frame=frames, window=chosen.window,
+                  scale=chosen.scale, compare=chosen.compare, since=chosen.since, title=chosen.title,
+                  seconds=chosen.seconds, fps=chosen.fps, **file)
 
 
-REPORT = """One HTML file about the result folder of a run, of `gcpdda fos` or of `gcpdda ensemble`, which opens without a network:
-scene, stages with verdicts, pictures, histories, energy, warnings, bolts, factor of safety and its mechanism, speed.
+REPORT = """One HTML file about the result folder of a run, of `gcpdda fos` or of `gcpdda ensemble`, which opens without
+a network: scene, stages with verdicts, pictures, histories, energy, warnings, bolts, factor of safety and its
+mechanism, speed.
 
     run/report.py results/wall
     run/report.py results/goodman_bray_fos --out goodman_bray.html
@@ -100,7 +106,8 @@ scene, stages with verdicts, pictures, histories, energy, warnings, bolts, facto
 
 def report(words=None):
     """Writes the report that the words of a command line ask for; returns an exit code."""
-    parser = argparse.ArgumentParser(prog="report.py", description=REPORT, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="report.py", description=REPORT,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", type=pathlib.Path, metavar="DIR", help="result folder")
     parser.add_argument("--out", type=pathlib.Path, help="FILE.html (default: DIR/report.html)")
     parser.add_argument("--title", help="heading (default: the name of the folder)")

@@ -29,7 +29,8 @@ class Frame:
     number, time    of the frame; time in s
     ids             numbers of the blocks, in the order of all arrays; excavated blocks are missing
     points, offsets corners in m: block k has points[offsets[k]:offsets[k + 1]]
-    values(NAME)    a dataset of the frame by name: displacement, rotation, velocity, stress, contact_force, kind, material
+    values(NAME)    a dataset of the frame by name: displacement, rotation, velocity, stress, contact_force, kind,
+                    material
     blocks, contacts, bolts, joints     tables, one row each
     """
 
@@ -105,7 +106,8 @@ class Frame:
         import h5py
         path = self.path.with_name(self.path.name.replace("frame_", "contacts_"))
         if not path.exists():
-            raise FileNotFoundError(f"{path} does not exist: contacts are written unless the scene has output.contacts = false")
+            raise FileNotFoundError(f"{path} does not exist: contacts are written unless the scene has "
+                                    "output.contacts = false")
         with h5py.File(path, "r") as file:
             cells = file["VTKHDF/CellData"]
             data = {name: cells[name][:] for name in cells}
@@ -156,19 +158,20 @@ class Frame:
 
     @property
     def joint_lines(self):
-        """Lines of each joint of `joints` on the edges of its two blocks, (n, 2, 2, 2) in m: joint, block, end, x and y."""
+        """Lines of each joint of `joints` on the edges of its two blocks, (n, 2, 2, 2) in m: joint, block, end,
+        coordinate."""
         return self._tracked[0]
 
     @functools.cached_property
     def joints(self):
-        """One row a joint of the first frame, that is where edges of two blocks lay on each other: the blocks, the ends of
-        its middle line in m, opening and shear displacement since then in m, and with contacts the state: stick, slip or
-        bond; broken where a bond was; unloaded where edges lie on each other without force; else open."""
+        """One row a joint of the first frame, that is where edges of two blocks lay on each other: the blocks, the ends
+        of its middle line in m, opening and shear displacement since then in m, and with contacts the state: stick,
+        slip or bond; broken where a bond was; unloaded where edges lie on each other without force; else open."""
         import pandas
         lines, opening, shear, there = self._tracked
         blocks, middle = self.result.joint_traces.blocks[there], lines.mean(axis=1)
-        table = pandas.DataFrame({"block_a": blocks[:, 0], "block_b": blocks[:, 1],
-                                  "x0": middle[:, 0, 0], "y0": middle[:, 0, 1], "x1": middle[:, 1, 0], "y1": middle[:, 1, 1],
+        table = pandas.DataFrame({"block_a": blocks[:, 0], "block_b": blocks[:, 1], "x0": middle[:, 0, 0],
+                                  "y0": middle[:, 0, 1], "x1": middle[:, 1, 0], "y1": middle[:, 1, 1],
                                   "opening": opening, "shear_displacement": shear})
         if self.has_contacts:
             table["state"] = self._joint_states(table)
@@ -214,7 +217,8 @@ class Frame:
 
     @functools.cached_property
     def bolts(self):
-        """One row for each line of `bolt_lines`: bolt, support, state, forces of one bolt in N, extension and slide in m."""
+        """One row for each line of `bolt_lines`: bolt, support, state, forces of one bolt in N, extension and slide
+        in m."""
         import pandas
         table = pandas.DataFrame(self._bolt_data[1])
         table["support"] = [list(self.result.scene["support"])[k] for k in table["support"]]

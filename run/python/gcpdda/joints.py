@@ -69,8 +69,9 @@ def _signed_areas(p, q, offsets):
 
 
 def affine_maps(old, new):
-    """Affine maps of blocks from one frame to another, which vertices give exactly: blocks are rigid or have one strain.
-    Returns rows in `new` (-1 for a block that is missing there) by row in `old`, matrices, centres in `old`, centres in `new`."""
+    """Affine maps of blocks from one frame to another, which vertices give exactly: blocks are rigid or have one
+    strain. Returns rows in `new` (-1 for a block that is missing there) by row in `old`, matrices, centres in `old`,
+    centres in `new`."""
     row_of = {block: row for row, block in enumerate(new.ids.tolist())}
     rows = np.array([row_of.get(block, -1) for block in old.ids.tolist()])
     there = np.flatnonzero(rows >= 0)

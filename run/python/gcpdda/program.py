@@ -17,7 +17,8 @@ _HERE = pathlib.Path(__file__).resolve().parent
 
 
 def program(path=None):
-    """Path of the program: `path`, $GCPDDA, the build folder of this tree, the installation of this package, or PATH."""
+    """Path of the program: `path`, $GCPDDA, the build folder of this tree, the installation of this package, or
+    PATH."""
     tree = _HERE.parents[2]  # of run/python/gcpdda
     candidates = [path, os.environ.get("GCPDDA"), tree / "build" / "gcpdda"]
     candidates += [folder / "bin" / "gcpdda" for folder in _HERE.parents[2:6]]
@@ -28,8 +29,8 @@ def program(path=None):
         if candidate and candidate is path:
             break
     raise FileNotFoundError(f"the program gcpdda is not at {path}" if path else
-                            "the program gcpdda is not found: build it (cmake --build build), put it on PATH, or set the "
-                            "environment variable GCPDDA to its path")
+                            "the program gcpdda is not found: build it (cmake --build build), put it on PATH, or set "
+                            "the environment variable GCPDDA to its path")
 
 
 def run(scene, ranks=2, set=None, out=None, *, overwrite=False, progress=False, program=None):
@@ -42,8 +43,8 @@ def run(scene, ranks=2, set=None, out=None, *, overwrite=False, progress=False, 
                 progress(time, line) with the simulated time in s and a line of the program, or None as time goes on
     program     path of the program, where it is not found by itself
 
-    An exit code other than 0 raises the exception of gcpdda.errors that stands for it. A run whose blocks fail has exit code 0:
-    its verdict is "failed".
+    An exit code other than 0 raises the exception of gcpdda.errors that stands for it. A run whose blocks fail has exit
+    code 0: its verdict is "failed".
     """
     out = _folder(scene, out, "")
     _execute("run", scene, ranks, set, out, overwrite, progress, program, ())
@@ -95,8 +96,8 @@ def sweep(scene, values, ranks=2, set=None, out=None, *, overwrite=False, progre
     out = _folder(scene, out, "_sweep")
     rows = []
     for number, combination in enumerate(itertools.product(*values.values())):
-        row = dict(zip(values, combination)) | {"verdict": None, "time": None, "largest_displacement": None, "exit_code": 0,
-                                                "message": "", "result": None}
+        row = dict(zip(values, combination)) | {"verdict": None, "time": None, "largest_displacement": None,
+                                                "exit_code": 0, "message": "", "result": None}
         folder = out / f"{number:03d}"
         try:
             row["result"] = run(scene, ranks, (set or {}) | dict(zip(values, combination)), folder,
@@ -120,7 +121,8 @@ def _folder(scene, out, ending):
 
 def _environment(ranks):
     """What run/set_up.sh sets: containers run as root, forbid single-copy messages, and have few cores."""
-    settings = {"OMPI_MCA_btl_vader_single_copy_mechanism": "none", "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1"}
+    settings = {"OMPI_MCA_btl_vader_single_copy_mechanism": "none", "OMPI_MCA_mpi_yield_when_idle": "1",
+                "OMP_NUM_THREADS": "1"}
     if os.geteuid() == 0:
         settings |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     if ranks > len(os.sched_getaffinity(0)):

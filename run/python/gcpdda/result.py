@@ -76,7 +76,8 @@ class Result(Folder):
         entries = (self.summary or {}).get("stages", [])
         table = pandas.DataFrame(entries).rename(columns={"time": "end"})
         if len(table):
-            kinds = {stage.get("name", f"stage{k}"): stage["kind"] for k, stage in enumerate(self.scene.get("stage", []))}
+            kinds = {stage.get("name", f"stage{k}"): stage["kind"]
+                     for k, stage in enumerate(self.scene.get("stage", []))}
             table.insert(1, "kind", [kinds.get(name, "") for name in table["name"]])
             table.insert(3, "begin", [0.0, *table["end"][:-1]])
         return table
@@ -111,7 +112,8 @@ class Result(Folder):
     def before(self, stage):
         """The last frame that is not later than the beginning of a stage."""
         if self.summary is None:
-            raise FileNotFoundError(f"no {self.path / 'summary.json'}, which tells when stages began: the run goes on, or was killed")
+            raise FileNotFoundError(f"no {self.path / 'summary.json'}, which tells when stages began: the run goes "
+                                    "on, or was killed")
         stages = self.stages
         if not len(stages) or stage not in set(stages["name"]):
             raise KeyError(f"no stage {stage}: there are {', '.join(stages.get('name', [])) or 'none'}")

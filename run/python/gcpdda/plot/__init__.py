@@ -1,7 +1,8 @@
 """Pictures of a result folder: `result.plot.field("stress", out="stress.png")`.
 
-Every picture has axes in metres or seconds, units and a scale. Panels and pictures of one call share axes and scales, and the
-scales fit the window that is shown. Without `out` a picture is returned as a matplotlib figure, which a notebook shows.
+Every picture has axes in metres or seconds, units and a scale. Panels and pictures of one call share axes and scales,
+and the scales fit the window that is shown. Without `out` a picture is returned as a matplotlib figure, which a
+notebook shows.
 """
 
 import io
@@ -103,7 +104,8 @@ class Plots:
         first = Shown(self.result.frame("first"))
         layers = [Blocks(field or ("none" if plain else "displacement"), start, first if compare else None), Water()]
         layers += [Pressure()] if pressure else []
-        layers += [JointStates() if joints == "state" else JointLines(_known(joints, JOINTS, "joints"))] if joints else []
+        if joints:
+            layers.append(JointStates() if joints == "state" else JointLines(_known(joints, JOINTS, "joints")))
         layers += [Chains()] if chains else []
         layers += [Crosses()] if crosses else []
         layers += [Arrows(_known(arrows, ARROWS, "arrows"), start)] if arrows else []
@@ -185,8 +187,10 @@ def png(figure, dpi, tight=True):
     """A figure as PNG with 256 colours, which has a third of the bytes and looks the same."""
     from PIL import Image
     true_colours, few_colours = io.BytesIO(), io.BytesIO()
-    figure.savefig(true_colours, format="png", dpi=dpi, **({"bbox_inches": "tight", "pad_inches": 0.06} if tight else {}))
-    few = Image.open(true_colours).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=2, dither=Image.Dither.NONE)
+    margins = {"bbox_inches": "tight", "pad_inches": 0.06} if tight else {}
+    figure.savefig(true_colours, format="png", dpi=dpi, **margins)
+    few = Image.open(true_colours).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=2,
+                                                           dither=Image.Dither.NONE)
     few.save(few_colours, "PNG", optimize=True)
     return few_colours.getvalue()
 

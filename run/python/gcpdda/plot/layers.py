@@ -1,8 +1,9 @@
-"""What a picture of blocks consists of: layers that are drawn over each other, each with a scale that all its panels share.
+"""What a picture of blocks consists of: layers that are drawn over each other, each with a scale that all its panels
+share.
 
 A layer has prepare(shown, window), which sees all frames before the first is drawn; draw(axes, shown); explain(figure,
-axes), which adds its colour bar; handles(), its entries of the legend; and says by `bars` and `has_legend` how much room it needs.
-`shown` is a `Shown`: a frame and where its blocks are drawn.
+axes), which adds its colour bar; handles(), its entries of the legend; and says by `bars` and `has_legend` how much
+room it needs. `shown` is a `Shown`: a frame and where its blocks are drawn.
 """
 
 import functools
@@ -97,7 +98,8 @@ class Layer:
 
 
 class Blocks(Layer):
-    """Blocks filled by a field, fixed ones grey and hatched. `reference` is a Shown whose mobile blocks are outlined."""
+    """Blocks filled by a field, fixed ones grey and hatched. `reference` is a Shown whose mobile blocks are
+    outlined."""
 
     def __init__(self, field="displacement", since=None, reference=None):
         if field not in FIELDS:
@@ -137,10 +139,10 @@ class Blocks(Layer):
     def draw(self, axes, shown, window):
         in_view = max(int(style.within(shown.polygons, window).sum()), 1)
         width = float(np.clip(6.0 / np.sqrt(in_view), 0.06, 0.6))
-        axes.add_collection(PolyCollection(shown.of(shown.fixed), facecolors=style.FIXED_FACE, edgecolors=style.FIXED_HATCH,
-                                           hatch="////", linewidths=width))
-        axes.add_collection(PolyCollection(shown.of(~shown.fixed), facecolors=self.colours(shown), edgecolors=style.EDGE,
-                                           linewidths=width))
+        axes.add_collection(PolyCollection(shown.of(shown.fixed), facecolors=style.FIXED_FACE,
+                                           edgecolors=style.FIXED_HATCH, hatch="////", linewidths=width))
+        axes.add_collection(PolyCollection(shown.of(~shown.fixed), facecolors=self.colours(shown),
+                                           edgecolors=style.EDGE, linewidths=width))
         if self.reference is not None:
             axes.add_collection(PolyCollection(self.reference.of(~self.reference.fixed), facecolors="none",
                                                edgecolors=style.OUTLINE, linewidths=max(1.2 * width, 0.3),
@@ -153,7 +155,8 @@ class Blocks(Layer):
     def handles(self):
         if self.field != "kind":
             return []
-        patches = [Patch(fc=colour, ec=style.EDGE, lw=0.5, label=name) for k, (name, colour) in KINDS.items() if k in self.present]
+        patches = [Patch(fc=colour, ec=style.EDGE, lw=0.5, label=name) for k, (name, colour) in KINDS.items()
+                   if k in self.present]
         if 0 in self.present:
             patches.append(Patch(fc=style.FIXED_FACE, ec=style.FIXED_HATCH, hatch="////", lw=0.5, label="fixed"))
         return patches
@@ -234,7 +237,8 @@ class JointLines(Coloured):
     def lines(self, shown):
         frame = shown.frame
         if self.from_contacts:
-            values = strength_used(frame) if self.quantity == "strength_used" else frame.contacts[self.quantity].to_numpy()
+            values = (strength_used(frame) if self.quantity == "strength_used"
+                      else frame.contacts[self.quantity].to_numpy())
             values = np.abs(values) if self.quantity == "shear_force" else values
             return shown.moved(frame.contact_lines, frame.contacts["block_a"].to_numpy()), values
         table = frame.joints
@@ -255,7 +259,8 @@ class JointStates(Layer):
     """Joints coloured by their state."""
 
     has_legend = True
-    COLOURS = {"unloaded": "#c3c8cd", "stick": "#7d8894", "slip": "#e08214", "open": "#2b7bba", "bond": "#3a9a4b", "broken": "#c2185b"}
+    COLOURS = {"unloaded": "#c3c8cd", "stick": "#7d8894", "slip": "#e08214", "open": "#2b7bba", "bond": "#3a9a4b",
+               "broken": "#c2185b"}
 
     def prepare(self, shown, window):
         seen = set()
@@ -308,7 +313,8 @@ class Chains(Coloured):
         share = np.clip(values * self.factor / self.scale.norm.vmax, 0.0, 1.0)
         order = np.argsort(share, kind="stable")
         axes.add_collection(LineCollection(lines[order], colors=self.scale.to_rgba(values[order] * self.factor),
-                                           linewidths=line_width(self.width, len(lines)) * np.maximum(share[order], 0.03),
+                                           linewidths=(line_width(self.width, len(lines))
+                                                       * np.maximum(share[order], 0.03)),
                                            zorder=4, capstyle="round"))
 
 
@@ -316,7 +322,8 @@ class Arrows(Layer):
     """Arrows with a key: displacement, velocity or permanent displacement of blocks, or forces at contacts."""
 
     QUANTITIES = {"displacement": ("displacement", "m"), "velocity": ("velocity", "m/s"),
-                  "permanent": ("displacement since the stage began", "m"), "force": ("contact force on the upper block", "N/m")}
+                  "permanent": ("displacement since the stage began", "m"),
+                  "force": ("contact force on the upper block", "N/m")}
     COLOUR = "#8c1d18"
 
     def __init__(self, quantity, since=None, most=600):
@@ -355,11 +362,12 @@ class Arrows(Layer):
         per_metre = self.largest / (0.09 * extent)  # the largest arrow
         size = np.hypot(*values.T)
         keep = size > 1e-3 * self.largest
-        arrows = axes.quiver(*at[keep].T, *values[keep].T, angles="xy", scale_units="xy", scale=per_metre, color=self.COLOUR,
-                             width=0.0026, headwidth=4.0, headlength=5.0, headaxislength=4.5, minlength=0.4, zorder=6)
+        arrows = axes.quiver(*at[keep].T, *values[keep].T, angles="xy", scale_units="xy", scale=per_metre,
+                             color=self.COLOUR, width=0.0026, headwidth=4.0, headlength=5.0, headaxislength=4.5,
+                             minlength=0.4, zorder=6)
         size = nice(0.7 * self.largest * self.factor)
-        axes.quiverkey(arrows, 0.0, 1.03, size / self.factor, f"{size:g} {self.shown_unit}", labelpos="E", coordinates="axes",
-                       fontproperties={"size": 8})
+        axes.quiverkey(arrows, 0.0, 1.03, size / self.factor, f"{size:g} {self.shown_unit}", labelpos="E",
+                       coordinates="axes", fontproperties={"size": 8})
 
     def handles(self):
         return [Line2D([], [], color=self.COLOUR, lw=1.5, marker=">", ms=4, label=self.label)]
@@ -385,8 +393,8 @@ def thinned(at, values, window, most):
 
 
 class Crosses(Layer):
-    """Principal stresses as crosses: lines along the two directions, as long as the stresses, tension red. Where there are
-    many blocks a cross is the mean over the blocks of a cell, weighted by area."""
+    """Principal stresses as crosses: lines along the two directions, as long as the stresses, tension red. Where there
+    are many blocks a cross is the mean over the blocks of a cell, weighted by area."""
 
     has_legend = True
     COMPRESSION, TENSION = "#173f70", "#d01c1c"
@@ -439,13 +447,15 @@ class Crosses(Layer):
 
 
 class Bolts(Layer):
-    """Bolts in place in each frame, coloured by their tension, with a dot where they have yielded, dashed where broken."""
+    """Bolts in place in each frame, coloured by their tension, with a dot where they have yielded, dashed where
+    broken."""
 
     def __init__(self, frames):
         self.bars = int(any(len(frame.bolt_lines) for frame in frames))
 
     def prepare(self, shown, window):
-        tensions = np.concatenate([one.frame.bolts["axial_force"].to_numpy() if self.bars else np.empty(0) for one in shown])
+        tensions = np.concatenate([one.frame.bolts["axial_force"].to_numpy() if self.bars else np.empty(0)
+                                   for one in shown])
         largest = float(np.abs(tensions).max(initial=0.0))
         self.factor, self.unit = style.unit_prefix("N", largest)
         low = min(0.0, float(tensions.min(initial=0.0)) * self.factor)

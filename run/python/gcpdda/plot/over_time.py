@@ -26,15 +26,16 @@ def mark_stages(axes, result, labels=True):
     if not labels:
         return
     top = axes.secondary_xaxis("top")
-    top.set_xticks([begin for begin, _ in places], [",\n".join(names) for _, names in places], rotation=30, ha="left", fontsize=7,
-                   linespacing=0.95)
+    top.set_xticks([begin for begin, _ in places], [",\n".join(names) for _, names in places], rotation=30, ha="left",
+                   fontsize=7, linespacing=0.95)
     top.tick_params(length=2, pad=1)
     top.spines["top"].set_visible(False)
 
 
 def curve_figure(rows=1, height=2.6):
     with plt.rc_context(style.PARAMETERS):
-        figure, axes = plt.subplots(rows, 1, squeeze=False, figsize=(7.2, rows * height + 0.5), sharex=True, layout="constrained")
+        figure, axes = plt.subplots(rows, 1, squeeze=False, figsize=(7.2, rows * height + 0.5), sharex=True,
+                                    layout="constrained")
     axes[-1, 0].set_xlabel("time (s)")
     return figure, list(axes[:, 0])
 
@@ -45,7 +46,8 @@ def legend_beside(axes):
 
 # name: (label, unit, values of a history)
 HISTORIES = {
-    "displacement": ("displacement", "m", lambda t: np.hypot(t["x[m]"] - t["x[m]"].iloc[0], t["y[m]"] - t["y[m]"].iloc[0])),
+    "displacement": ("displacement", "m",
+                     lambda t: np.hypot(t["x[m]"] - t["x[m]"].iloc[0], t["y[m]"] - t["y[m]"].iloc[0])),
     "x": ("displacement in x", "m", lambda t: t["x[m]"] - t["x[m]"].iloc[0]),
     "y": ("displacement in y", "m", lambda t: t["y[m]"] - t["y[m]"].iloc[0]),
     "rotation": ("rotation", "°", lambda t: np.degrees(t["rotation[rad]"])),
@@ -69,8 +71,8 @@ def draw_history(result, quantity, names=None):
         except KeyError:
             pass  # a point has position and velocity alone
     if not curves:
-        raise ValueError(f"no history of {quantity}: monitored are {', '.join(names) or 'nothing'}; points have no rotation, stress "
-                         "or force")
+        raise ValueError(f"no history of {quantity}: monitored are {', '.join(names) or 'nothing'}; points have no "
+                         "rotation, stress or force")
     largest = max(float(np.abs(values).max()) for _, values in curves.values())
     factor, unit = style.unit_prefix(unit, largest)
     figure, (axes,) = curve_figure()
@@ -87,15 +89,17 @@ def draw_history(result, quantity, names=None):
 # column without unit: (label, sign, colour); what is stored or taken up adds to what the first row has
 ENERGIES = {
     "kinetic": ("kinetic", "#d9822b"), "strain": ("strain of blocks", "#7b5aa6"), "contact": ("contacts", "#1f6f9f"),
-    "gravity": ("gravity", "#8c6d31"), "support": ("bolts", "#d45087"), "friction_loss": ("lost in friction", "#b0332a"),
+    "gravity": ("gravity", "#8c6d31"), "support": ("bolts", "#d45087"),
+    "friction_loss": ("lost in friction", "#b0332a"),
     "damping_loss": ("lost in damping", "#e39a94"), "support_loss": ("lost in bolts", "#e8a8c4"),
-    "taken": ("taken by stages", "#9ec7de"), "boundary_work": ("work from outside", "#3a9a4b"), "residual": ("residual", "#20242a"),
+    "taken": ("taken by stages", "#9ec7de"), "boundary_work": ("work from outside", "#3a9a4b"),
+    "residual": ("residual", "#20242a"),
 }
 
 
 def energy_parts(table):
-    """Columns of energy.csv without units, the two of contacts together, each as its change since the first row; and what
-    stages have taken, with the blocks that they remove and the motion that they stop, so that
+    """Columns of energy.csv without units, the two of contacts together, each as its change since the first row; and
+    what stages have taken, with the blocks that they remove and the motion that they stop, so that
     residual = stored + lost + taken - work from outside."""
     parts = {column.split("[")[0]: table[column] for column in table.columns if column.endswith("[J/m]")}
     parts["contact"] = parts.pop("contact_normal") + parts.pop("contact_stick")
@@ -109,12 +113,14 @@ def draw_energy(result):
     time = table["time[s]"]
     parts = energy_parts(table)
     largest = max(float(np.abs(values).max()) for values in parts.values())
-    parts = {name: values for name, values in parts.items() if name == "residual" or np.abs(values).max() > 1e-6 * largest}
+    parts = {name: values for name, values in parts.items() if name == "residual"
+             or np.abs(values).max() > 1e-6 * largest}
     factor, unit = style.unit_prefix("J/m", largest)
     figure, (upper, lower) = curve_figure(2, 2.5)
     for name, values in parts.items():
         label, colour = ENERGIES[name]
-        upper.plot(time, values * factor, color=colour, lw=1.2, ls=(0, (4, 2)) if name == "residual" else "-", label=label)
+        upper.plot(time, values * factor, color=colour, lw=1.2, ls=(0, (4, 2)) if name == "residual" else "-",
+                   label=label)
     upper.set_ylabel(f"change of energy ({unit})")
     upper.axhline(0.0, color="#d8d8d8", lw=0.6, zorder=0)
     for column, label, colour in (("unbalanced_ratio[-]", "unbalanced ratio (-)", "#1f6f9f"),
@@ -139,7 +145,8 @@ def draw_bolts(result):
     factor, unit = style.unit_prefix("N", float(table["axial[N]"].abs().max()))
     figure, (axes,) = curve_figure()
     bolts = list(table.groupby("bolt", sort=False))
-    colours = COLOURS if len(bolts) <= len(COLOURS) else [plt.get_cmap("turbo")(x) for x in np.linspace(0.05, 0.95, len(bolts))]
+    colours = COLOURS if len(bolts) <= len(COLOURS) else [plt.get_cmap("turbo")(x)
+                                                          for x in np.linspace(0.05, 0.95, len(bolts))]
     for colour, (name, rows) in zip(colours, bolts):
         axes.plot(rows["time[s]"], rows["axial[N]"] * factor, color=colour, lw=1.0, label=name)
     axes.set_ylabel(f"tension ({unit})")
@@ -166,6 +173,7 @@ def draw_rayleigh(result):
     axes.plot([least], [ratio], "o", color=style.EDGE, ms=4)
     axes.annotate(f"{ratio:g} at {least:g} Hz", (least, ratio), xytext=(0, 8), textcoords="offset points", ha="center")
     axes.set(xscale="log", xlabel="frequency (Hz)", ylabel="damping ratio", xlim=(f[0], f[-1]), ylim=(0.0, None))
-    axes.set_title(f"alpha = {2.0 * np.pi * least * ratio:.4g} 1/s, beta = {ratio / (2.0 * np.pi * least):.4g} s", fontsize=9)
+    axes.set_title(f"alpha = {2.0 * np.pi * least * ratio:.4g} 1/s, beta = {ratio / (2.0 * np.pi * least):.4g} s",
+                   fontsize=9)
     axes.legend(frameon=False)
     return figure

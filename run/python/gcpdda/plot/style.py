@@ -13,7 +13,8 @@ PLAIN_FACE = "#f1efea"
 WATER = "#1f5fae"
 OUTLINE = "#b0332a"
 PARAMETERS = {"font.size": 9, "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6,
-              "axes.spines.top": False, "axes.spines.right": False, "hatch.linewidth": 0.5, "axes.formatter.useoffset": False}
+              "axes.spines.top": False, "axes.spines.right": False, "hatch.linewidth": 0.5,
+              "axes.formatter.useoffset": False}
 
 
 def _part(name, low, high):
@@ -104,7 +105,8 @@ def map_figure(number, window, layers, title=None):
 
 
 def colour_bar(figure, axes, scale, label, extend="neither"):
-    bar = figure.colorbar(scale, ax=axes, shrink=0.85, aspect=28 * axes[0].get_gridspec().nrows, pad=0.02, extend=extend)
+    bar = figure.colorbar(scale, ax=axes, shrink=0.85, aspect=28 * axes[0].get_gridspec().nrows, pad=0.02,
+                          extend=extend)
     bar.set_label(label)
     bar.outline.set_linewidth(0.5)
     return bar

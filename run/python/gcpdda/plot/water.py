@@ -26,7 +26,8 @@ def waters(result, time):
 
 
 class Water(Layer):
-    """Phreatic lines, level beyond their ends: dashed where there is water at the time of the frame, faint where not."""
+    """Phreatic lines, level beyond their ends: dashed where there is water at the time of the frame, faint where
+    not."""
 
     def draw(self, axes, shown, window):
         left, right = window[0][0], window[1][0]
@@ -50,7 +51,8 @@ class Pressure(Coloured):
         gravity = float(np.hypot(*frame.result.scene["run"].get("gravity", [0.0, -9.81])))
         following = np.arange(1, len(shown.points) + 1)
         following[shown.offsets[1:] - 1] = shown.offsets[:-1]
-        edges = np.stack([shown.points, shown.points[following]], axis=1)[~np.repeat(frame.fixed, np.diff(shown.offsets))]
+        mobile = ~np.repeat(frame.fixed, np.diff(shown.offsets))
+        edges = np.stack([shown.points, shown.points[following]], axis=1)[mobile]
         lines, values = [np.empty((0, 2, 2))], [np.empty(0)]
         for table in waters(frame.result, frame.time).values():
             if not table.get("active", True):

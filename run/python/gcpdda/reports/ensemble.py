@@ -21,18 +21,22 @@ def ensemble_page(ensemble, title):
     if probability is None:
         page.verdict("No member has a verdict yet.", "open")
     else:
-        page.verdict(f"Probability of failure {probability:.3g}: {summary['fails']} of {summary['done']} members fail; with "
-                     f"{100 * summary['confidence']:.0f} % confidence it lies between {summary['low']:.3g} and {summary['high']:.3g}.",
+        page.verdict(f"Probability of failure {probability:.3g}: {summary['fails']} of {summary['done']} members fail; "
+                     f"with {100 * summary['confidence']:.0f} % confidence it lies between {summary['low']:.3g} and "
+                     f"{summary['high']:.3g}.",
                      "open" if summary["undecided"] else "good" if summary["fails"] == 0 else "bad")
-    page.cards({"members": f"{summary['done']} of {summary['count']}", "hold": str(summary["holds"]), "fail": str(summary["fails"]),
-                "undecided": str(summary["undecided"]), "cannot run": str(summary["cannot_run"])})
+    page.cards({"members": f"{summary['done']} of {summary['count']}", "hold": str(summary["holds"]),
+                "fail": str(summary["fails"]), "undecided": str(summary["undecided"]),
+                "cannot run": str(summary["cannot_run"])})
     page.section("Members")
     if summary["measure"] == "factor" and summary["factors"]:
         page.pictures((picture(draw_factors(members)), "Factors of safety of the members."))
         page.table([{name: summary[name] for name in ("mean", "deviation", "skewness", "least", "most")}])
-    page.pictures(*((picture(draw_values(members, key)), f"Values of {key} that members drew, by outcome.") for key in summary["keys"]))
+    page.pictures(*((picture(draw_values(members, key)), f"Values of {key} that members drew, by outcome.")
+                    for key in summary["keys"]))
     if len(summary["keys"]) >= 2:
-        page.pictures((picture(draw_pair(members, *summary["keys"][:2])), "Members over the first two values that vary."))
+        page.pictures((picture(draw_pair(members, *summary["keys"][:2])),
+                       "Members over the first two values that vary."))
     page.text("The interval is that of Clopper and Pearson; undecided members widen it to both sides.", "note")
     page.table(members.head(MOST_ROWS))
     if len(members) > MOST_ROWS:
@@ -65,7 +69,8 @@ def draw_values(members, key):
     figure, axes = _axes()
     groups = [(outcome, rows[key].dropna()) for outcome, rows in members.groupby("outcome")]
     edges = np.histogram_bin_edges(members[key].dropna(), bins=min(20, max(5, len(members) // 5)))
-    axes.hist([values for _, values in groups], edges, stacked=True, color=[COLOURS.get(outcome, "#a66a00") for outcome, _ in groups],
+    axes.hist([values for _, values in groups], edges, stacked=True,
+              color=[COLOURS.get(outcome, "#a66a00") for outcome, _ in groups],
               label=[outcome for outcome, _ in groups], edgecolor="white", linewidth=0.5)
     axes.set(xlabel=key, ylabel="members")
     _legend(axes)
@@ -75,7 +80,8 @@ def draw_values(members, key):
 def draw_pair(members, x, y):
     figure, axes = _axes()
     for outcome, rows in members.groupby("outcome"):
-        axes.plot(rows[x], rows[y], "o" if outcome == "holds" else "X", ms=5, color=COLOURS.get(outcome, "#a66a00"), label=outcome)
+        axes.plot(rows[x], rows[y], "o" if outcome == "holds" else "X", ms=5, color=COLOURS.get(outcome, "#a66a00"),
+                  label=outcome)
     axes.set(xlabel=x, ylabel=y)
     _legend(axes)
     return figure

@@ -5,33 +5,47 @@ import html
 import math
 
 STYLE = """
-:root { --ink: #20242a; --quiet: #5d6672; --line: #dfe3e8; --blue: #1f6f9f; --good: #2e7d4f; --bad: #b0332a; --open: #a66a00 }
+:root { --ink: #20242a; --quiet: #5d6672; --line: #dfe3e8; --blue: #1f6f9f;
+  --good: #2e7d4f; --bad: #b0332a; --open: #a66a00 }
 * { box-sizing: border-box }
 body { margin: 0; color: var(--ink); background: #fff; font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif }
 header, main, nav { max-width: 1060px; margin: 0 auto; padding: 0 24px }
 header { padding-top: 28px }
-h1 { font-size: 27px; margin: 0 } h2 { font-size: 20px; margin: 40px 0 8px; padding-top: 8px; border-top: 1px solid var(--line) }
+h1 { font-size: 27px; margin: 0 }
+h2 { font-size: 20px; margin: 40px 0 8px; padding-top: 8px; border-top: 1px solid var(--line) }
 h3 { font-size: 16px; margin: 24px 0 6px }
-nav { position: sticky; top: 0; background: #fffffff2; border-bottom: 1px solid var(--line); padding-top: 8px; padding-bottom: 8px; z-index: 2 }
-nav a { margin-right: 14px; color: var(--blue); text-decoration: none; white-space: nowrap } nav a:hover { text-decoration: underline }
+nav { position: sticky; top: 0; background: #fffffff2; border-bottom: 1px solid var(--line);
+  padding-top: 8px; padding-bottom: 8px; z-index: 2 }
+nav a { margin-right: 14px; color: var(--blue); text-decoration: none; white-space: nowrap }
+nav a:hover { text-decoration: underline }
 section { scroll-margin-top: 60px }
-.verdict { font-size: 17px; margin: 10px 0 4px; padding: 10px 14px; border-left: 5px solid var(--quiet); background: #f5f7f9 }
+.verdict { font-size: 17px; margin: 10px 0 4px; padding: 10px 14px; border-left: 5px solid var(--quiet);
+  background: #f5f7f9 }
 .good { border-color: var(--good) } .bad { border-color: var(--bad) } .open { border-color: var(--open) }
 .cards { display: flex; flex-wrap: wrap; gap: 10px; margin: 14px 0 }
 .card { border: 1px solid var(--line); border-radius: 6px; padding: 8px 14px; min-width: 120px }
 .card b { display: block; font-size: 18px } .card span { color: var(--quiet); font-size: 13px }
 .scroll { overflow-x: auto } table { border-collapse: collapse; margin: 8px 0; font-size: 14px }
 th, td { border-bottom: 1px solid var(--line); padding: 4px 12px 4px 0; text-align: left; vertical-align: top }
-th { color: var(--quiet); font-weight: 600 } td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
+th { color: var(--quiet); font-weight: 600 }
+td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
 figure { margin: 14px 0 } figure img, .player img { max-width: 100%; height: auto; display: block }
 figcaption, .note { color: var(--quiet); font-size: 14px; max-width: 80ch }
 .pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(430px, 1fr)); gap: 0 20px }
-.player { border: 1px solid var(--line); border-radius: 6px; padding: 12px; margin: 14px 0; display: inline-block; max-width: 100% }
-.player .controls { display: flex; gap: 10px; align-items: center; margin-top: 8px } .player input { flex: 1; min-width: 60px }
-.player button { font: inherit; min-width: 70px; padding: 2px 10px } .player output { min-width: 110px; text-align: right }
+.player { border: 1px solid var(--line); border-radius: 6px; padding: 12px; margin: 14px 0;
+  display: inline-block; max-width: 100% }
+.player .controls { display: flex; gap: 10px; align-items: center; margin-top: 8px }
+.player input { flex: 1; min-width: 60px }
+.player button { font: inherit; min-width: 70px; padding: 2px 10px }
+.player output { min-width: 110px; text-align: right }
 pre { background: #f5f7f9; padding: 10px 14px; overflow-x: auto; font-size: 13px; line-height: 1.4; max-height: 520px }
-code { font-size: 13px; overflow-wrap: anywhere } ul { padding-left: 20px } footer { color: var(--quiet); margin: 40px 0 28px; font-size: 13px }
-@media print { nav, .player .controls { display: none } pre { max-height: none } h2 { break-after: avoid } figure { break-inside: avoid } }
+code { font-size: 13px; overflow-wrap: anywhere }
+ul { padding-left: 20px }
+footer { color: var(--quiet); margin: 40px 0 28px; font-size: 13px }
+@media print {
+  nav, .player .controls { display: none }
+  pre { max-height: none } h2 { break-after: avoid } figure { break-inside: avoid }
+}
 """
 
 SCRIPT = """
@@ -77,7 +91,8 @@ def text_of(value):
     if isinstance(value, (list, tuple)):
         if len(value) > 12:
             return f"{len(value)} entries"
-        return ", ".join(f"({text_of(entry)})" if isinstance(entry, (list, tuple, dict)) else text_of(entry) for entry in value)
+        return ", ".join(f"({text_of(entry)})" if isinstance(entry, (list, tuple, dict)) else text_of(entry)
+                         for entry in value)
     return str(value)
 
 
@@ -96,7 +111,8 @@ class Page:
         self.parts.append(f"<h3>{html.escape(text)}</h3>")
 
     def text(self, text, kind="p"):
-        self.parts.append(f"<{kind}>{html.escape(text)}</{kind}>" if kind != "note" else f'<p class="note">{html.escape(text)}</p>')
+        self.parts.append(f"<{kind}>{html.escape(text)}</{kind}>" if kind != "note"
+                          else f'<p class="note">{html.escape(text)}</p>')
 
     def verdict(self, text, kind):
         """The sentence at the top; kind is good, bad or open."""
@@ -122,7 +138,8 @@ class Page:
                 number = isinstance(value, (int, float)) and not isinstance(value, bool)
                 cells += f'<td{" class=number" if number else ""}>{html.escape(text_of(value))}</td>'
             body += f"<tr>{cells}</tr>"
-        self.parts.append(f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>')
+        self.parts.append(f'<div class="scroll"><table><thead><tr>{head}</tr></thead>'
+                          f'<tbody>{body}</tbody></table></div>')
 
     def keys(self, table):
         """A table of a scene as two columns."""
@@ -136,7 +153,8 @@ class Page:
 
     def pictures(self, *pictures):
         """Pictures beside each other where there is room: pairs of PNG bytes and a caption."""
-        figures = "".join(f'<figure><img alt="{html.escape(caption, quote=True)}" src="data:image/png;base64,{_base64(image)}">'
+        figures = "".join(f'<figure><img alt="{html.escape(caption, quote=True)}" '
+                          f'src="data:image/png;base64,{_base64(image)}">'
                           f"<figcaption>{html.escape(caption)}</figcaption></figure>" for image, caption in pictures)
         self.parts.append(f'<div class="pair">{figures}</div>' if len(pictures) > 1 else figures)
 
@@ -145,7 +163,8 @@ class Page:
         frames = ",".join(f'{{"time":"{time:.4g}","image":"{_base64(image)}"}}' for time, image in stills)
         last = len(stills) - 1
         self.parts.append(
-            f'<div class="player"><img alt="{html.escape(caption, quote=True)}"><div class="controls"><button type="button">Play</button>'
+            f'<div class="player"><img alt="{html.escape(caption, quote=True)}">'
+            '<div class="controls"><button type="button">Play</button>'
             f'<input type="range" min="0" max="{last}" value="{last}" aria-label="frame"><output></output></div>'
             f'<script type="application/json">[{frames}]</script></div><p class="note">{html.escape(caption)}</p>')
 
@@ -155,7 +174,8 @@ class Page:
                 '<meta name="viewport" content="width=device-width, initial-scale=1">'
                 f"<title>{html.escape(self.title)}</title><style>{STYLE}</style></head>\n<body>"
                 f"<header><h1>{html.escape(self.title)}</h1>{''.join(self.head)}</header>\n<nav>{places}</nav>\n<main>"
-                + "\n".join(self.parts) + "\n<footer>Written by gcpdda.report. Units are SI; the model is 1 m thick.</footer></main>\n"
+                + "\n".join(self.parts)
+                + "\n<footer>Written by gcpdda.report. Units are SI; the model is 1 m thick.</footer></main>\n"
                 f"<script>{SCRIPT}</script></body></html>\n")
 
 

@@ -89,7 +89,8 @@ def _motion(page, result, frames):
     page.section("Motion")
     stills = limited(result, frames)
     if stills:
-        page.player(stills, f"Displacement of blocks in {len(stills)} of {len(result.frames)} frames. One scale for all of them.")
+        page.player(stills, f"Displacement of blocks in {len(stills)} of {len(result.frames)} frames. One scale for "
+                            "all of them.")
     page.pictures((picture(result.plot.before_after("displacement")), "Displacement in the first and the last frame."))
 
 
@@ -123,8 +124,9 @@ def _stages(page, result):
     page.table(stages, {"name": "stage", "kind": "kind", "verdict": "verdict", "begin": "begin (s)", "end": "end (s)",
                         "steps": "steps", "unbalanced_ratio": "unbalanced ratio (-)",
                         "moved": "largest motion (block sizes)", "removed": "blocks removed"})
-    page.text("The unbalanced ratio is the largest net force over the largest force in the model; the motion is that within the stage. "
-              "Settled: blocks have come to rest. Failed: a block moves on. Undecided: neither, when the stage ended.", "note")
+    page.text("The unbalanced ratio is the largest net force over the largest force in the model; the motion is that "
+              "within the stage. Settled: blocks have come to rest. Failed: a block moves on. Undecided: neither, when "
+              "the stage ended.", "note")
     shown = [row for row in stages.to_dict("records") if row["steps"] > 0 and row["end"] > row["begin"]]
     settings = {stage.get("name", f"stage{k}"): stage for k, stage in enumerate(result.scene.get("stage", []))}
     for row in shown[:12]:
@@ -142,7 +144,8 @@ def _stages(page, result):
 
 
 def draws_joints(result):
-    return result.frame("last").has_contacts and result.frame("first").has_contacts and len(result.frame("first").ids) <= MANY_BLOCKS
+    first, last = result.frame("first"), result.frame("last")
+    return first.has_contacts and last.has_contacts and len(first.ids) <= MANY_BLOCKS
 
 
 def close_up(result):
@@ -167,13 +170,15 @@ def _end(page, result):
         page.text("The pictures show the part of the model that has moved most.", "note")
     page.pictures((picture(plots.field("stress", **part)),
                    "Largest compressive stress, the mean of each block. Negative where a block is in tension."),
-                  (picture(plots.crosses(**part)), "Principal stresses: crosses are as long as the stresses, tension is red."))
+                  (picture(plots.crosses(**part)),
+                   "Principal stresses: crosses are as long as the stresses, tension is red."))
     if not result.frame("last").has_contacts:
         page.text("The scene has output.contacts = false: joints and contact forces are not drawn.", "note")
         return
     if draws_joints(result):
         page.pictures((picture(plots.joints("state", **part)), "State of the joints of the first frame."),
-                      (picture(plots.joints("shear_displacement", **part)), "Shear displacement of joints since the first frame."))
+                      (picture(plots.joints("shear_displacement", **part)),
+                       "Shear displacement of joints since the first frame."))
     page.pictures((picture(plots.strength(**part)), "Strength that contacts use: 1 where they slip."),
                   (picture(plots.chains(**part)), "Force chains: normal forces of contacts from block to block."))
     if result.scene.get("water"):
@@ -188,7 +193,8 @@ def _histories(page, result):
     if not result.histories:
         return
     page.section("Histories")
-    page.pictures((picture(result.plot.history("displacement")), "Displacement of monitored blocks and points; stages are marked."))
+    page.pictures((picture(result.plot.history("displacement")),
+                   "Displacement of monitored blocks and points; stages are marked."))
     columns = [column for name in result.histories for column in result.history(name).columns]
     page.pictures((picture(result.plot.history("speed")), "Their speed."))
     if "sxx[Pa]" in columns:
@@ -196,7 +202,8 @@ def _histories(page, result):
     rows = []
     for name in result.histories:
         table = result.history(name)
-        last = {"monitor": name, "rows": len(table)} | {column: float(table[column].iloc[-1]) for column in table.columns}
+        last = {"monitor": name, "rows": len(table)} | {column: float(table[column].iloc[-1])
+                                                        for column in table.columns}
         rows.append(last)
     page.table(rows)
     page.text("The last row of each history.", "note")
@@ -218,7 +225,8 @@ MEANINGS = {
     "kinetic": "energy of motion", "strain": "elastic energy in deformable blocks",
     "contact": "elastic energy in contacts, normal and shear",
     "gravity": "potential energy: falls when blocks sink", "support": "elastic energy in bolts",
-    "friction_loss": "work that slipping joints have taken", "damping_loss": "work that dashpots and numerical damping have taken",
+    "friction_loss": "work that slipping joints have taken",
+    "damping_loss": "work that dashpots and numerical damping have taken",
     "support_loss": "work that yielding bolts have taken",
     "taken": "what stages took with the blocks that they removed and the motion that they stopped",
     "boundary_work": "work of loads, driven blocks and excavated ones on the model",
@@ -230,7 +238,8 @@ def _energy(page, result):
     if len(table) < 2:
         return
     page.section("Energy")
-    page.pictures((picture(result.plot.energy()), "Above: changes of energy since the start. Below: how far the model is from rest."))
+    page.pictures((picture(result.plot.energy()),
+                   "Above: changes of energy since the start. Below: how far the model is from rest."))
     parts = energy_parts(table)
     rows = [{"part": name.replace("_", " "), "change": float(values.iloc[-1]), "meaning": MEANINGS[name]}
             for name, values in parts.items()]
@@ -242,8 +251,8 @@ def _energy(page, result):
     elif share < 0.05:
         words = "That is noticeable: check that the answer stays the same with run.safety half as large."
     else:
-        words = ("That is large: impacts or steps are not resolved, and speeds and run-out cannot be trusted. Halve run.safety "
-                 "and compare.")
+        words = ("That is large: impacts or steps are not resolved, and speeds and run-out cannot be trusted. Halve "
+                 "run.safety and compare.")
     page.text(f"The largest residual is {100 * share:.2g} % of the energy turned over. {words}")
 
 
@@ -253,7 +262,8 @@ def _bolts(page, result):
         return
     page.section("Bolts")
     if len(result.bolts):
-        page.pictures((picture(result.plot.bolts()), "Tension of each bolt, where it crosses the joint that pulls most."))
+        page.pictures((picture(result.plot.bolts()),
+                       "Tension of each bolt, where it crosses the joint that pulls most."))
     page.table(bolts, {"name": "bolt", "support": "type", "installed": "installed (s)", "in_place": "in place",
                        "axial": "tension (N)", "largest_axial": "largest tension (N)", "shear": "shear (N)",
                        "largest_shear": "largest shear (N)",
@@ -268,7 +278,8 @@ def _speed(page, result):
     contacts = summary["contact_steps"] / max(summary["steps"], 1)
     cost = 1e9 * summary["cpu_s"] / max(summary["contact_steps"], 1)
     page.table([{"what": name, "value": value} for name, value in {
-        "ranks": str(summary["ranks"]), "steps": f"{summary['steps']:,}", "last time step": f"{summary['time_step']:.4g} s",
+        "ranks": str(summary["ranks"]), "steps": f"{summary['steps']:,}",
+        "last time step": f"{summary['time_step']:.4g} s",
         "touching pairs, mean over steps": f"{contacts:,.0f}", "step loop": f"{summary['wall_s']:.4g} s wall time",
         "CPU time of the step loop": f"{summary['cpu_s']:.4g} s over all ranks",
         "CPU time of a touching pair and step": f"{cost:.3g} ns", "set-up": f"{summary['setup_wall_s']:.3g} s",

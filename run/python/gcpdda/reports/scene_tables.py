@@ -7,19 +7,21 @@ import subprocess
 
 import numpy as np
 
-GEOMETRY = ("region", "joint_set", "fault", "joint_map", "opening", "layer", "voronoi", "bricks", "wall", "pyramid", "blocks")
+GEOMETRY = ("region", "joint_set", "fault", "joint_map", "opening", "layer", "voronoi", "bricks", "wall", "pyramid",
+            "blocks")
 LOADS = ("water", "in_situ", "earthquake", "support", "bolt", "bolt_pattern")
-NAMES = {"region": "Region", "joint_set": "Joint sets", "fault": "Faults", "joint_map": "Mapped traces", "opening": "Openings",
-         "layer": "Layers", "voronoi": "Voronoi polygons", "bricks": "Masonry", "wall": "Walls", "pyramid": "Pyramids",
-         "blocks": "Block file", "water": "Water", "in_situ": "In-situ stress", "earthquake": "Earthquake",
-         "support": "Types of bolts", "bolt": "Bolts", "bolt_pattern": "Patterns of bolts"}
-UNITS = {"density": "kg/m3", "youngs_modulus": "Pa", "normal_stiffness": "Pa/m", "friction_angle_deg": "°", "cohesion": "Pa",
-         "tension": "Pa", "residual_friction_angle_deg": "°", "residual_cohesion": "Pa", "dilation_angle_deg": "°",
-         "dilation_limit": "m", "jcs": "Pa", "dip_deg": "°", "spacing": "m", "trace_length": "m", "gap": "m",
-         "axial_stiffness": "N/m", "axial_rigidity": "N", "axial_yield": "N", "shear_stiffness": "N/m", "shear_yield": "N",
-         "pretension": "N", "active_length": "m", "bond_strength": "N/m", "width": "m", "height": "m", "length": "m",
-         "vertical_stress": "Pa", "level": "m", "duration": "s", "gravity": "m/s2", "gravity_ramp": "s", "limit": "s",
-         "p_wave_speed": "m/s", "s_wave_speed": "m/s", "min_width": "m", "fixed_thickness": "m", "relax": "s"}
+NAMES = {"region": "Region", "joint_set": "Joint sets", "fault": "Faults", "joint_map": "Mapped traces",
+         "opening": "Openings", "layer": "Layers", "voronoi": "Voronoi polygons", "bricks": "Masonry", "wall": "Walls",
+         "pyramid": "Pyramids", "blocks": "Block file", "water": "Water", "in_situ": "In-situ stress",
+         "earthquake": "Earthquake", "support": "Types of bolts", "bolt": "Bolts", "bolt_pattern": "Patterns of bolts"}
+UNITS = {"density": "kg/m3", "youngs_modulus": "Pa", "normal_stiffness": "Pa/m", "friction_angle_deg": "°",
+         "cohesion": "Pa", "tension": "Pa", "residual_friction_angle_deg": "°", "residual_cohesion": "Pa",
+         "dilation_angle_deg": "°", "dilation_limit": "m", "jcs": "Pa", "dip_deg": "°", "spacing": "m",
+         "trace_length": "m", "gap": "m", "axial_stiffness": "N/m", "axial_rigidity": "N", "axial_yield": "N",
+         "shear_stiffness": "N/m", "shear_yield": "N", "pretension": "N", "active_length": "m", "bond_strength": "N/m",
+         "width": "m", "height": "m", "length": "m", "vertical_stress": "Pa", "level": "m", "duration": "s",
+         "gravity": "m/s2", "gravity_ramp": "s", "limit": "s", "p_wave_speed": "m/s", "s_wave_speed": "m/s",
+         "min_width": "m", "fixed_thickness": "m", "relax": "s"}
 
 
 MOST_BLOCKS = 20
@@ -42,8 +44,9 @@ def add_scene(page, scene, result=None):
         page.table([{"part": name, "value": value} for name, value in sizes(result).items()])
     if scene.get("block"):
         page.heading("Single blocks")
-        page.table([{"name": block.get("name", f"b{k}"), "material": block["material"], "fixed": block.get("fixed", False),
-                     "corners": len(block["vertices"])} for k, block in enumerate(scene["block"][:MOST_BLOCKS])])
+        page.table([{"name": block.get("name", f"b{k}"), "material": block["material"],
+                     "fixed": block.get("fixed", False), "corners": len(block["vertices"])}
+                    for k, block in enumerate(scene["block"][:MOST_BLOCKS])])
         if len(scene["block"]) > MOST_BLOCKS:
             page.text(f"The first {MOST_BLOCKS} of {len(scene['block'])}; the scene below has all.", "note")
     for name in GEOMETRY:
@@ -55,7 +58,8 @@ def add_scene(page, scene, result=None):
     page.heading("Joint laws")
     rows = named(scene.get("joint", {}))
     page.table(rows, with_units(rows))
-    page.text("A law takes the keys that it does not have from default. Other defaults are those of the list of keys.", "note")
+    page.text("A law takes the keys that it does not have from default. Other defaults are those of the list of keys.",
+              "note")
     for name in LOADS:
         _tables(page, scene, name)
     page.heading("Run")
@@ -83,7 +87,8 @@ def sizes(result):
     size = np.sqrt(frame.areas[mobile]) if mobile.any() else np.zeros(1)
     kinds = frame.values("kind")
     return {"extent": f"x {low[0]:.4g} to {high[0]:.4g} m, y {low[1]:.4g} to {high[1]:.4g} m",
-            "blocks": f"{int((kinds == 1).sum())} rigid, {int((kinds == 2).sum())} deformable, {int(frame.fixed.sum())} fixed",
+            "blocks": f"{int((kinds == 1).sum())} rigid, {int((kinds == 2).sum())} deformable, "
+                      f"{int(frame.fixed.sum())} fixed",
             "joints": f"{len(result.joint_traces.lines)}, where edges of two blocks lie on each other at the start",
             "block size (root of the area)": f"{size.min():.3g} to {size.max():.3g} m, median {np.median(size):.3g} m",
             "area of mobile blocks": f"{frame.areas[mobile].sum():.4g} m2"}
@@ -99,7 +104,8 @@ def add_provenance(page, folder, scene_file, facts, task="run"):
     for path in [scene_file, *_inputs(scene_file)]:
         rows.append({"what": f"SHA-256 of {path.name}", "value": hashlib.sha256(path.read_bytes()).hexdigest()})
     page.table(rows)
-    page.text("The program does not record its own version and command line; the scene below holds all values that were used. "
+    page.text("The program does not record its own version and command line; the scene below holds all values that "
+              "were used. "
               f"Compute it again with: gcpdda {task} {scene_file.name}", "note")
     page.details(f"The scene ({scene_file.name})", scene_file.read_text())
 
@@ -118,7 +124,8 @@ def version():
     """`git describe` of the tree that holds this package, or that it is installed."""
     here = pathlib.Path(__file__).resolve().parent
     try:
-        done = subprocess.run(["git", "-C", str(here), "describe", "--always", "--dirty"], capture_output=True, text=True)
+        done = subprocess.run(["git", "-C", str(here), "describe", "--always", "--dirty"], capture_output=True,
+                              text=True)
     except OSError:
         return "unknown"
     return done.stdout.strip() or "installed, without a repository"
