@@ -59,7 +59,8 @@ class Undecided(GcpddaError):
     """Exit code 7: a stage or search has reached its limit without a verdict; `path` holds the results."""
 
 
-_CLASSES = {2: UsageError, 3: SceneError, 4: FileError, 5: NumericalError, 6: Stopped, 7: Undecided}
+_CLASSES = {1: InternalError, 2: UsageError, 3: SceneError, 4: FileError, 5: NumericalError, 6: Stopped,
+            7: Undecided}
 
 
 def error_of(exit_code, output, path):
