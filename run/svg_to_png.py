@@ -11,6 +11,8 @@ import matplotlib.pyplot as plt
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import hsv_to_rgb
 
+POINTS = 0.72  # of a pixel of the SVG, which has 100 pixels to an inch
+
 
 def colour(text):
     """'#rrggbb', a name, or hsl(h,s%,l%)."""
@@ -30,7 +32,7 @@ def main(svg, png, dpi):
     axes.set(xlim=(0, width), ylim=(height, 0))
     axes.axis("off")
     polygons, fills, strokes = [], [], []
-    lines, colours = [], []
+    lines, colours, widths = [], [], []
     for element in root:
         kind = element.tag.split("}")[-1]
         if kind == "polygon":
@@ -41,17 +43,22 @@ def main(svg, png, dpi):
             numbers = list(map(float, re.findall(r"[-\d.]+", element.get("d"))))
             lines.append([numbers[:2], numbers[2:]])
             colours.append(colour(element.get("stroke")))
+            widths.append(POINTS * float(element.get("stroke-width")))
+        elif kind == "rect" and element.get("x"):
+            x, y, wide, high = (float(element.get(name)) for name in ("x", "y", "width", "height"))
+            axes.add_patch(plt.Rectangle((x, y), wide, high, color=colour(element.get("fill")), lw=0))
         elif kind == "circle":
             axes.add_patch(plt.Circle((float(element.get("cx")), float(element.get("cy"))), float(element.get("r")),
                                       fill=False, color=element.get("stroke"), lw=1.5, zorder=4))
         elif kind == "text":
-            axes.text(float(element.get("x")), float(element.get("y")), element.text, fontsize=9, zorder=5,
-                      ha="center" if element.get("text-anchor") == "middle" else "left",
+            axes.text(float(element.get("x")), float(element.get("y")), element.text, zorder=5,
+                      fontsize=POINTS * float(element.get("font-size", root.get("font-size", 14))),
+                      ha={"middle": "center", "end": "right"}.get(element.get("text-anchor"), "left"),
                       color=colour(element.get("fill", "black")))
     # Outlines of very many blocks would cover their colours: these blocks are outlined by their own colour.
     edges = ["#555555" if stroke * dpi / 100 > 0.1 else fill for fill, stroke in zip(fills, strokes)]
     axes.add_collection(PolyCollection(polygons, facecolors=fills, edgecolors=edges, linewidths=strokes))
-    axes.add_collection(LineCollection(lines, colors=colours, linewidths=0.9))
+    axes.add_collection(LineCollection(lines, colors=colours, linewidths=widths))
     figure.savefig(png, dpi=dpi)
 
 

@@ -1,7 +1,5 @@
 #include "blockgen/drawing.hpp"
 
-#include "geometry/aabb.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +11,6 @@ namespace gcpdda {
 namespace {
 
 constexpr double longest_side = 1600.0; // pixels
-constexpr double margin = 20.0;
-constexpr double line_of_text = 20.0;
 
 std::string fill_of(const SceneBlock &block) {
   if (block.fixed) {
@@ -33,49 +29,33 @@ std::string colour_of_joint(std::int32_t joint) {
                    : fmt::format("hsl({:.0f},75%,38%)", std::fmod(210.0 + 137.508 * joint, 360.0));
 }
 
+/// The region with what is fixed along its sides.
+Aabb drawn_part(const Scene &scene) {
+  const Aabb box = bounding_box(scene.region.outline);
+  const auto &fixed = scene.region.fixed;
+  const bool any_fixed = std::find(fixed.begin(), fixed.end(), true) != fixed.end();
+  return any_fixed ? box.inflated(scene.region.fixed_thickness) : box;
+}
+
 } // namespace
 
-RegionDrawing::RegionDrawing(const Scene &scene) : scene_(&scene) {
-  Aabb box = bounding_box(scene.region.outline);
-  const auto &fixed = scene.region.fixed;
-  if (std::find(fixed.begin(), fixed.end(), true) != fixed.end()) {
-    box = box.inflated(scene.region.fixed_thickness);
-  }
-  low_ = box.low;
-  high_ = box.high;
-  scale_ = longest_side / std::max(box.extent().x, box.extent().y);
-}
-
-double RegionDrawing::x(double world) const {
-  return margin + scale_ * (world - low_.x);
-}
-
-double RegionDrawing::y(double world) const {
-  return margin + scale_ * (high_.y - world);
-}
+RegionDrawing::RegionDrawing(const Scene &scene)
+    : scene_(&scene), page_(drawn_part(scene), longest_side, 1) {}
 
 std::string RegionDrawing::head() const {
-  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\">\n"
-                     "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-                     2.0 * margin + scale_ * (high_.x - low_.x),
-                     3.0 * margin + scale_ * (high_.y - low_.y) + line_of_text);
+  return page_.head();
 }
 
 std::string RegionDrawing::blocks(std::span<const SceneBlock> blocks) const {
   std::string text;
   for (const SceneBlock &block : blocks) {
-    text +=
-        fmt::format("<polygon fill=\"{}\" stroke=\"#555555\" stroke-width=\"0.5\" points=\"", fill_of(block));
-    for (const Vec2 p : block.vertices) {
-      text += fmt::format("{:.2f},{:.2f} ", x(p.x), y(p.y));
-    }
-    text += "\"/>\n";
+    text += page_.polygon(block.vertices, fill_of(block), "#555555", 0.5);
     for (std::size_t k = 0; k < block.edge_joint.size(); ++k) {
       const Vec2 from = block.vertices[k];
       const Vec2 to = block.vertices[(k + 1) % block.vertices.size()];
       if (block.edge_joint[k] >= 0) {
-        text += fmt::format("<path stroke=\"{}\" stroke-width=\"1\" d=\"M{:.2f} {:.2f}L{:.2f} {:.2f}\"/>\n",
-                            colour_of_joint(block.edge_joint[k]), x(from.x), y(from.y), x(to.x), y(to.y));
+        text += svg_line(page_.x(from.x), page_.y(from.y), page_.x(to.x), page_.y(to.y),
+                         colour_of_joint(block.edge_joint[k]), 1.0);
       }
     }
   }
@@ -86,10 +66,12 @@ std::string RegionDrawing::end(std::span<const PoorBlock> sharpest,
                                std::span<const PoorBlock> narrowest) const {
   std::string text;
   const auto mark = [&](const PoorBlock &block, const std::string &what) {
-    text += fmt::format("<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"7\" fill=\"none\" stroke=\"#d00000\" "
-                        "stroke-width=\"2\"/>\n<text x=\"{2:.1f}\" y=\"{1:.1f}\" font-family=\"sans-serif\" "
-                        "font-size=\"13\" fill=\"#d00000\">b{3}: {4}</text>\n",
-                        x(block.centroid.x), y(block.centroid.y), x(block.centroid.x) + 10.0, block.id, what);
+    const double x = page_.x(block.centroid.x);
+    const double y = page_.y(block.centroid.y);
+    text += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"7\" fill=\"none\" stroke=\"#d00000\" "
+                        "stroke-width=\"2\"/>\n",
+                        x, y);
+    text += svg_text(x + 10.0, y, "start", 14.0, fmt::format("b{}: {}", block.id, what), "#d00000");
   };
   for (const PoorBlock &block : sharpest) {
     if (block.value < BlockQuality::needle_angle) {
@@ -101,17 +83,16 @@ std::string RegionDrawing::end(std::span<const PoorBlock> sharpest,
       mark(block, fmt::format("width {:.2g} of size", block.value));
     }
   }
-  double at = margin;
-  const double line = y(low_.y) + 2.0 * margin;
+  text += page_.axes();
+  double at = PlanDrawing::left;
   for (std::size_t k = 0; k < scene_->joints.laws.size(); ++k) {
     const std::string &name = scene_->joints.laws[k].name;
-    text += fmt::format("<text x=\"{:.0f}\" y=\"{:.0f}\" font-family=\"sans-serif\" font-size=\"14\" "
-                        "fill=\"{}\">{}</text>\n",
-                        at, line, colour_of_joint(static_cast<std::int32_t>(k)), name);
-    constexpr double letter = 9.0;
-    at += letter * static_cast<double>(name.size()) + margin;
+    text += page_.text_below(0, at, name, colour_of_joint(static_cast<std::int32_t>(k)));
+    constexpr double letter = 11.0;
+    constexpr double gap = 20.0;
+    at += letter * static_cast<double>(name.size()) + gap;
   }
-  return text + "</svg>\n";
+  return text + PlanDrawing::end();
 }
 
 } // namespace gcpdda

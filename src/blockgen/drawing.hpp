@@ -4,6 +4,7 @@
 
 #include "blockgen/quality.hpp"
 #include "gcpdda/model/scene.hpp"
+#include "geometry/plan_drawing.hpp"
 
 #include <span>
 #include <string>
@@ -12,8 +13,8 @@
 namespace gcpdda {
 
 /// Picture of the blocks of a region: filled by material, those in openings darker, fixed ones grey; edges
-/// in the colour of their joint law; the worst blocks in red with their names. Made of parts, so that every
-/// rank can draw its own blocks: head, blocks of the ranks in their order, marks and legend.
+/// in the colour of their joint law; the worst blocks in red with their names; axes in metres. Made of parts,
+/// so that every rank can draw its own blocks: head, blocks of the ranks in their order, marks and legend.
 class RegionDrawing {
 public:
   static constexpr std::int64_t most_blocks = 200'000;
@@ -26,13 +27,8 @@ public:
                                 std::span<const PoorBlock> narrowest) const;
 
 private:
-  [[nodiscard]] double x(double world) const;
-  [[nodiscard]] double y(double world) const;
-
   const Scene *scene_;
-  Vec2 low_;
-  Vec2 high_;
-  double scale_ = 1.0; ///< pixels per m
+  PlanDrawing page_;
 };
 
 } // namespace gcpdda

@@ -1,5 +1,7 @@
 #include "driver/histogram.hpp"
 
+#include "base/round_numbers.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -7,18 +9,6 @@
 namespace gcpdda {
 
 namespace {
-
-/// The round number nearest to x, by ratio.
-double round_number(double x) {
-  const double power = std::pow(10.0, std::floor(std::log10(x)));
-  for (const auto &[limit, number] :
-       {std::pair(std::sqrt(2.0), 1.0), std::pair(std::sqrt(10.0), 2.0), std::pair(std::sqrt(50.0), 5.0)}) {
-    if (x < limit * power) {
-      return number * power;
-    }
-  }
-  return 10.0 * power;
-}
 
 constexpr const char *mean_colour = "#2a7f3f";
 
@@ -59,13 +49,23 @@ public:
     line(x_of(value), top - 12.0, x_of(value), top + height, colour);
   }
 
-  void axis(const std::string &title) {
-    line(margin, top + height, margin + width, top + height, "#333");
+  /// Below the bars their edges, on the left how many members they have.
+  void axes(const std::string &title) {
+    const double base = top + height;
+    line(margin, base, margin + width, base, "#333");
+    line(margin, top, margin, base, "#333");
     const std::size_t every = bars_.counts.size() / 12 + 1;
     for (std::size_t k = 0; k <= bars_.counts.size(); k += every) {
-      write(x_of(edge(k)), top + height + 18.0, "middle", fmt::format("{:.4g}", edge(k)));
+      line(x_of(edge(k)), base, x_of(edge(k)), base + 5.0, "#333");
+      write(x_of(edge(k)), base + 20.0, "middle", fmt::format("{:.4g}", edge(k)));
     }
-    write(margin + 0.5 * width, top + height + 40.0, "middle", title);
+    write(margin + 0.5 * width, base + 42.0, "middle", title);
+    for (const double count : round_ticks(0.0, highest_, std::min(5, static_cast<int>(highest_)))) {
+      const double y = base - height * count / highest_;
+      line(margin - 5.0, y, margin, y, "#333");
+      write(margin - 9.0, y + 5.0, "end", fmt::format("{:.4g}", count));
+    }
+    write(margin, top - 14.0, "middle", "members");
   }
 
   [[nodiscard]] double edge(std::size_t k) const {
@@ -73,10 +73,10 @@ public:
   }
   [[nodiscard]] std::string whole() const { return text_ + "</svg>\n"; }
 
-  static constexpr double margin = 40.0; // pixels, as all lengths here
+  static constexpr double margin = 60.0; // pixels, as all lengths here
   static constexpr double width = 800.0;
   static constexpr double height = 320.0;
-  static constexpr double top = 84.0;
+  static constexpr double top = 104.0;
   static constexpr double bottom = 56.0;
 
 private:
@@ -122,7 +122,7 @@ std::string draw_histogram(const EnsembleReport &report) {
     const bool below = chart.edge(k) + 0.5 * bars.width < 1.0;
     chart.bar(k, below ? "#d1583f" : "#8aa9c8");
   }
-  chart.axis("factor of safety");
+  chart.axes("factor of safety");
   const auto is_inside = [&](double x) { return chart.edge(0) <= x && x <= chart.edge(bars.counts.size()); };
   if (is_inside(1.0)) {
     chart.upright(1.0, "black");

@@ -17,10 +17,10 @@ struct DrawnBlock {
   bool deformable = false;
 };
 
-/// Picture of blocks coloured by subdomain: fixed ones grey, deformable ones with a thick outline.
+/// Picture of blocks coloured by subdomain, with axes: fixed ones grey, deformable ones with a thick outline.
 std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains);
 
-/// Picture of how the blocks fail: white to red with the motion, fixed ones grey.
+/// Picture of how the blocks fail, with axes and a colour bar: white to red with the motion, fixed ones grey.
 std::string draw_mechanism(const SafetyReport &report);
 
 } // namespace gcpdda
