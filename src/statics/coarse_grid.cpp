@@ -59,10 +59,11 @@ CoarseGrid::~CoarseGrid() = default;
 CoarseGrid::CoarseGrid(CoarseGrid &&) noexcept = default;
 CoarseGrid &CoarseGrid::operator=(CoarseGrid &&) noexcept = default;
 
-void CoarseGrid::lay(const BlockSystem &system) {
+// The least centroid of all ranks, the mean size of a block, and how many columns there are.
+bool CoarseGrid::lay_cells(const BlockSystem &system) {
   constexpr double none = -std::numeric_limits<double>::infinity();
-  std::array<double, 4> largest{none, none, none, none};
-  auto &[minus_left, minus_low, right, high] = largest;
+  std::array<double, 3> largest{none, none, none};
+  auto &[minus_left, minus_low, right] = largest;
   ExactSum area;
   std::int64_t count = 0;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
@@ -71,7 +72,6 @@ void CoarseGrid::lay(const BlockSystem &system) {
       minus_left = std::max(minus_left, -x.x);
       minus_low = std::max(minus_low, -x.y);
       right = std::max(right, x.x);
-      high = std::max(high, x.y);
       area.add(system.properties[row].area);
       ++count;
     }
@@ -80,30 +80,37 @@ void CoarseGrid::lay(const BlockSystem &system) {
   communicator_.sum(area.limbs());
   communicator_.sum(std::span(&count, 1));
   if (count == 0) {
-    keys_.clear();
-    cell_of_.assign(system.num_rows(), -1);
-    return;
+    return false;
   }
   origin_ = {-minus_left, -minus_low};
   side_ = blocks_a_side * std::sqrt(area.value() / static_cast<double>(count));
   columns_ = static_cast<std::int64_t>((right + minus_left) / side_) + 1;
-  const auto place_of = [&](std::size_t row) {
-    const Vec2 x = (1.0 / side_) * (system.properties[row].centroid - origin_);
-    return std::array{static_cast<std::int64_t>(x.x), static_cast<std::int64_t>(x.y)};
-  };
+  return true;
+}
+
+std::array<std::int64_t, 2> CoarseGrid::place_of(const BlockSystem &system, std::size_t row) const {
+  const Vec2 x = (1.0 / side_) * (system.properties[row].centroid - origin_);
+  return {static_cast<std::int64_t>(x.x), static_cast<std::int64_t>(x.y)};
+}
+
+void CoarseGrid::lay(const BlockSystem &system) {
+  keys_.clear();
+  cell_of_.assign(system.num_rows(), -1);
+  arms_.assign(system.num_rows(), {});
+  if (!lay_cells(system)) {
+    return;
+  }
   std::vector<std::int64_t> mine;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (moves(system, row)) {
-      const auto [column, line] = place_of(row);
+      const auto [column, line] = place_of(system, row);
       mine.push_back(line * columns_ + column);
     }
   }
   keys_ = united(communicator_, std::move(mine));
-  cell_of_.assign(system.num_rows(), -1);
-  arms_.assign(system.num_rows(), {});
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (moves(system, row)) {
-      const auto [column, line] = place_of(row);
+      const auto [column, line] = place_of(system, row);
       const auto found = std::lower_bound(keys_.begin(), keys_.end(), line * columns_ + column);
       cell_of_[row] = static_cast<std::int32_t>(found - keys_.begin());
       const Vec2 middle{static_cast<double>(column) + 0.5, static_cast<double>(line) + 0.5};
@@ -154,48 +161,47 @@ CoarseGrid::Square CoarseGrid::on_cell(const BlockSystem &system, std::size_t ro
   return square;
 }
 
-template <class Visit> void CoarseGrid::for_parts_of(const ContactSpring &spring, Visit &&visit) const {
+CoarseGrid::Square CoarseGrid::product(const ContactSpring &spring, const std::array<Three, 3> &a,
+                                       const std::array<Three, 3> &b, double sign) {
   const std::array<double, 3> stiffness{spring.normal_stiffness, spring.tangential, spring.bending};
-  const auto product = [&](const std::array<Three, 3> &a, const std::array<Three, 3> &b, double sign) {
-    Square square{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-          square[i][j] += sign * stiffness[k] * a[k][i] * b[k][j];
-        }
+  Square square{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        square[i][j] += sign * stiffness[k] * a[k][i] * b[k][j];
       }
     }
-    return square;
-  };
+  }
+  return square;
+}
+
+template <class Visit> void CoarseGrid::for_parts_of(const ContactSpring &spring, Visit &&visit) const {
   const std::int64_t lower = cell_of_[spring.lower];
   const std::int64_t higher = cell_of_[spring.higher];
-  std::array<Three, 3> on_lower{};
-  std::array<Three, 3> on_higher{};
-  if (lower >= 0) {
-    on_lower = forces_on_cell(spring.lower, spring.lower_arm, spring.normal);
-  }
-  if (higher >= 0) {
-    on_higher = forces_on_cell(spring.higher, spring.higher_arm, spring.normal);
-  }
+  const auto forces_on = [&](std::int64_t cell, std::size_t row, Vec2 arm) {
+    return cell >= 0 ? forces_on_cell(row, arm, spring.normal) : std::array<Three, 3>{};
+  };
+  std::array<Three, 3> on_lower = forces_on(lower, spring.lower, spring.lower_arm);
+  const std::array<Three, 3> on_higher = forces_on(higher, spring.higher, spring.higher_arm);
   if (lower == higher) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t i = 0; i < 3; ++i) {
         on_lower[k][i] -= on_higher[k][i];
       }
     }
-    visit(lower, lower, product(on_lower, on_lower, 1.0));
+    visit(lower, lower, product(spring, on_lower, on_lower, 1.0));
     return;
   }
   if (lower >= 0) {
-    visit(lower, lower, product(on_lower, on_lower, 1.0));
+    visit(lower, lower, product(spring, on_lower, on_lower, 1.0));
   }
   if (higher >= 0) {
-    visit(higher, higher, product(on_higher, on_higher, 1.0));
+    visit(higher, higher, product(spring, on_higher, on_higher, 1.0));
   }
   if (lower > higher && higher >= 0) {
-    visit(lower, higher, product(on_lower, on_higher, -1.0));
+    visit(lower, higher, product(spring, on_lower, on_higher, -1.0));
   } else if (higher > lower && lower >= 0) {
-    visit(higher, lower, product(on_higher, on_lower, -1.0));
+    visit(higher, lower, product(spring, on_higher, on_lower, -1.0));
   }
 }
 
@@ -286,7 +292,8 @@ void CoarseGrid::fill_matrix(double unit) {
   f.ldlt.factorize(f.matrix);
 }
 
-void CoarseGrid::add_correction(const BlockSystem &system, const Field &r, Field &z) {
+// P^T r, into the right side.
+void CoarseGrid::restrict_to_cells(const BlockSystem &system, const Field &r) {
   double largest = 0.0;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (has_cell(row)) {
@@ -301,7 +308,7 @@ void CoarseGrid::add_correction(const BlockSystem &system, const Field &r, Field
   sums_.assign(3 * keys_.size(), 0);
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (has_cell(row)) {
-      std::int64_t *to = sums_.data() + 3 * cell_of_[row];
+      std::int64_t *to = sums_.data() + first_unknown(row);
       for (const double value : to_cell(system, row, r.of(row))) {
         *to++ += std::llrint(value * per_one);
       }
@@ -310,14 +317,18 @@ void CoarseGrid::add_correction(const BlockSystem &system, const Field &r, Field
   if (communicator_.size() > 1) {
     communicator_.sum(sums_);
   }
-  Eigen::VectorXd &vector = factors_->vector;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    vector[static_cast<Eigen::Index>(i)] = unit * static_cast<double>(sums_[i]);
+    factors_->vector[static_cast<Eigen::Index>(i)] = unit * static_cast<double>(sums_[i]);
   }
+}
+
+void CoarseGrid::add_correction(const BlockSystem &system, const Field &r, Field &z) {
+  restrict_to_cells(system, r);
+  Eigen::VectorXd &vector = factors_->vector;
   vector = factors_->ldlt.solve(vector).eval();
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (has_cell(row)) {
-      const double *const motion = vector.data() + 3 * cell_of_[row];
+      const double *const motion = vector.data() + first_unknown(row);
       double *const to = z.of(row);
       to[0] += motion[0] - motion[2] * arms_[row].y;
       to[1] += motion[1] + motion[2] * arms_[row].x;

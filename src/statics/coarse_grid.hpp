@@ -51,11 +51,21 @@ private:
   struct Factors;
 
   [[nodiscard]] bool has_cell(std::size_t row) const { return cell_of_[row] >= 0; }
+  [[nodiscard]] std::ptrdiff_t first_unknown(std::size_t row) const {
+    return 3 * static_cast<std::ptrdiff_t>(cell_of_[row]);
+  }
+  /// @return false where no block of any rank moves
+  bool lay_cells(const BlockSystem &system);
+  /// Column and line of the cell of a row.
+  [[nodiscard]] std::array<std::int64_t, 2> place_of(const BlockSystem &system, std::size_t row) const;
   [[nodiscard]] Three to_cell(const BlockSystem &system, std::size_t row, const double *forces) const;
   /// The unit force of one of a spring's three springs on the freedoms of the cell of a row.
   [[nodiscard]] std::array<Three, 3> forces_on_cell(std::size_t row, Vec2 arm, Vec2 normal) const;
   [[nodiscard]] Square on_cell(const BlockSystem &system, std::size_t row,
                                const BlockMatrices &matrices) const;
+  static Square product(const ContactSpring &spring, const std::array<Three, 3> &a,
+                        const std::array<Three, 3> &b, double sign);
+  void restrict_to_cells(const BlockSystem &system, const Field &r);
   /// visit(higher cell, lower cell, its part of K_c) for what this rank counts.
   template <class Visit>
   void for_parts(const BlockSystem &system, std::span<const ContactSpring> springs,
