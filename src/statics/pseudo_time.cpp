@@ -138,7 +138,8 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
       motion.momentum[i] = a * motion.momentum[i] + b * f[i];
     }
     const double length = length_of_step(system, row);
-    const double share = length > limit ? limit / length : 1.0;
+    const double longest = std::min(limit, rules_.step_of_width * system.properties[row].width);
+    const double share = length > longest ? longest / length : 1.0;
     for (std::size_t i = 0; i < width_; ++i) {
       motion.velocity[i] *= share;
       motion.momentum[i] *= share;

@@ -19,12 +19,16 @@
 // is more than twice K.
 //
 // Loads come in increments. What is out of balance when a stage begins, f_0, is held by an opposite force and
-// let go in `increments` equal parts, one an evaluation: f = f(x) - (1 - s) f_0 with s from 0 to 1. It
-// is all that the stage has changed (weight, excavated rock, strength, water, stress), whatever that was.
-// Blocks follow the load near equilibrium, and friction takes the path of slow loading.
+// let go in `increments` parts, one an evaluation: f = f(x) - (1 - s) f_0 with s from 0 to 1. It is all that
+// the stage has changed (weight, excavated rock, strength, water, stress), whatever that was. Blocks follow
+// the load near equilibrium, and friction takes the path of slow loading. The increments are small where
+// joints that carry nothing yet close, and small again at the end, so that the motion does not run past the
+// equilibrium under all of the load: after the share u of them
+//     s = (u + 3 u^2 - 2 u^3)/2.
 //
 // The step of a block is at most `steps_of_overlap` of the largest overlap, the length by which contacts
-// carry what they carry: a block that has lost its contacts does not fly through its neighbours.
+// carry what they carry, and at most `step_of_width` of its narrowest width: a block that has lost its
+// contacts neither flies through its neighbours nor hits them deeper than a joint may close.
 
 #include "statics/iteration_state.hpp"
 #include "statics/stiffness_solver.hpp"
@@ -35,11 +39,12 @@
 namespace gcpdda::statics {
 
 struct IterationRules {
-  double mass_share = 1e-3;        ///< rho
+  double mass_share = 5e-4;        ///< rho
   double damping_share = 0.7;      ///< c_share
   std::int64_t increments = 50;    ///< of the load
   std::int64_t coarse_every = 5;   ///< evaluations between two coarse matrices
   double steps_of_overlap = 10.0;  ///< largest step of a block
+  double step_of_width = 0.05;     ///< largest step of a block over its narrowest width
   std::int64_t stall_window = 100; ///< evaluations in which the least ratio has to fall by half
   SpringRules springs;
 };
@@ -54,9 +59,8 @@ public:
   [[nodiscard]] const ContactSprings &springs() const { return springs_; }
   /// Share of the load that acts after so many evaluations.
   [[nodiscard]] double load_share(std::int64_t evaluations) const {
-    return evaluations >= rules_.increments
-               ? 1.0
-               : static_cast<double>(evaluations) / static_cast<double>(rules_.increments);
+    const double share = static_cast<double>(evaluations) / static_cast<double>(rules_.increments);
+    return share < 1.0 ? 0.5 * share * (1.0 + share * (3.0 - 2.0 * share)) : 1.0;
   }
   /// The next evaluation needs nothing of those before but what a checkpoint holds.
   [[nodiscard]] bool may_pause(const IterationState &state) const {

@@ -17,9 +17,9 @@
 // K. Three rules keep it so.
 // - A region whose shear is at its cap has no tangential stiffness. It keeps `slip_share` of k_t here: with
 //   none its blocks would run as far as their mass lets them.
-// - Where slip has turned from one cap to the other the region sticks on the way with all of k_t, ten times
-//   what the first rule gives it, and would swing between its caps for ever. It keeps all of k_t for the next
-//   `turn_memory` evaluations.
+// - Where slip has turned from one cap to the other the region sticks on the way with all of k_t, many
+//   times what the first rule gives it, and would swing between its caps for ever. It keeps all of k_t for
+//   the next `turn_memory` evaluations.
 // - A region that opens keeps its springs, weaker by `fade` at each evaluation, for `open_memory` of them: a
 //   block that has lost its contact is braked by them, and speeds up only as fast as they fade.
 // A kept spring also ends when its blocks are farther apart than `reach`, which both ranks of a border pair
@@ -66,7 +66,7 @@ struct SpringRecord {
 };
 
 struct SpringRules {
-  double slip_share = 0.1;
+  double slip_share = 0.06;
   std::uint8_t turn_memory = 20;
   double fade = 0.8;
   std::uint8_t open_memory = 40;
