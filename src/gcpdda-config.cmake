@@ -1,6 +1,6 @@
 # Installed: find_package(gcpdda) gives the target gcpdda::library.
 include(CMakeFindDependencyMacro)
-list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}) # FindMETIS.cmake
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}) # FindMETIS.cmake, FindClp.cmake
 set(MPI_CXX_SKIP_MPICXX ON)
 set(HDF5_PREFER_PARALLEL ON)
 enable_language(C) # what is linked statically is found by it
@@ -12,4 +12,5 @@ find_dependency(Eigen3)
 find_dependency(tomlplusplus)
 find_dependency(fmt)
 find_dependency(GEOS)
+find_dependency(Clp)
 include(${CMAKE_CURRENT_LIST_DIR}/gcpdda-targets.cmake)

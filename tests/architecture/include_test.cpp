@@ -40,8 +40,9 @@ const std::map<std::string, Rule> modules{
     {"parallel", {{"model", "partition", "communicator"}, {}}},
     {"io", {{"model", "communicator"}, {}}},
     {"statics", {{"contact", "dynamics", "communicator"}, {}}},
+    {"limit_analysis", {{"geometry"}, {}}},
     {"simulation", {{"contact", "dynamics", "statics", "parallel", "io"}, {}}},
-    {"driver", {{"simulation"}, {"parallel"}}},
+    {"driver", {{"simulation", "limit_analysis"}, {"parallel"}}},
     {"app", {{"driver", "blockgen"}, {"contact", "dynamics", "statics", "parallel"}}},
 };
 
@@ -52,13 +53,10 @@ struct Wall {
 };
 
 const std::vector<Wall> walls{
-    {R"(mpi\.h)", {"src/parallel/", "src/io/"}},
-    {R"(metis\.h)", {"partition/"}},
-    {R"(hdf5.*\.h|H5.*)", {"src/io/"}},
-    {R"(geos.*)", {"src/blockgen/"}},
-    {R"(Eigen/.*)", {"src/dynamics/", "src/statics/"}},
-    {R"(toml\+\+/.*|toml\.hpp)", {"src/io/"}},
-    {R"(CLI/.*)", {"src/app/", "partition/tool/"}},
+    {R"(mpi\.h)", {"src/parallel/", "src/io/"}}, {R"(metis\.h)", {"partition/"}},
+    {R"(hdf5.*\.h|H5.*)", {"src/io/"}},          {R"(geos.*)", {"src/blockgen/"}},
+    {R"(coin/.*)", {"src/limit_analysis/"}},     {R"(Eigen/.*)", {"src/dynamics/", "src/statics/"}},
+    {R"(toml\+\+/.*|toml\.hpp)", {"src/io/"}},   {R"(CLI/.*)", {"src/app/", "partition/tool/"}},
 };
 
 const std::vector<std::string> walked_folders{"include/gcpdda", "src", "partition"};
