@@ -44,6 +44,7 @@ struct Arguments {
   std::string count; ///< of [ensemble]
   int ranks = 0;
   bool overwrite = false;
+  bool only_bound = false; ///< of fos
   bool accepts_gaps = false;
 };
 
@@ -191,6 +192,7 @@ ExitCode fos(const Communicator &world, Arguments arguments) {
     SafetyOptions options;
     options.directory = result_folder(arguments, scene.stem + "_fos");
     options.overwrite = arguments.overwrite;
+    options.only_bound = arguments.only_bound;
     if (!arguments.settled.empty()) {
       options.settled = arguments.settled;
       options.settled_factor = factor_of_settled(world, arguments.settled, scene);
@@ -285,6 +287,9 @@ const CLI::App *add_fos(CLI::App &app, Arguments &arguments) {
   command->add_option("--tolerance", arguments.tolerance, "width of the bracket at the end; default 0.01");
   command->add_option("--from", arguments.from, "factor that is expected to hold; default 0.5");
   command->add_option("--to", arguments.to, "factor that is expected to fail; default 4");
+  command->add_flag(
+      "--bound", arguments.only_bound,
+      "only an upper bound of the factor by limit analysis at the settled state, without trials");
   command->add_option("--settled", arguments.settled,
                       "begin with the state in this folder, 'settled' of an earlier search with the same "
                       "scene; default: settle now");

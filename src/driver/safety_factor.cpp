@@ -1,6 +1,7 @@
 #include "driver/safety_factor.hpp"
 
 #include "base/check.hpp"
+#include "driver/safety_bound.hpp"
 #include "driver/stop_signal.hpp"
 #include "driver/svg.hpp"
 #include "gcpdda/driver/run.hpp"
@@ -30,6 +31,8 @@ namespace fs = std::filesystem;
 struct TrialFacts {
   double factor = 0.0;
   std::int64_t verdict = 0;
+  std::int64_t means = 0;
+  std::int64_t is_confirmed = 0; ///< by a stage of its own
   double time = 0.0;
   double moved = 0.0;
   double unbalanced_ratio = 0.0;
@@ -59,6 +62,14 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time)
     facts.moved = stage.moved;
     facts.unbalanced_ratio = stage.unbalanced_ratio;
     facts.steps = stage.steps;
+    facts.means = static_cast<std::int64_t>(stage.means);
+    if (outcome.summary.stages.back().name == confirming_stage) {
+      const StageResult &trial = outcome.summary.stages[outcome.summary.stages.size() - 2].result;
+      facts.moved = std::max(facts.moved, trial.moved);
+      facts.steps += trial.steps;
+      facts.means = static_cast<std::int64_t>(trial.means);
+      facts.is_confirmed = 1;
+    }
   }
   return facts;
 }
@@ -82,7 +93,10 @@ public:
 
   SafetyOutcome find() {
     const ExitCode code = begin();
-    return {code == exit_code::done ? search() : code, std::move(report_), std::move(message_)};
+    if (code != exit_code::done) {
+      return {code, std::move(report_), std::move(message_)};
+    }
+    return {options_.only_bound ? bound() : search(), std::move(report_), std::move(message_)};
   }
 
 private:
@@ -99,6 +113,14 @@ private:
   }
 
   void prepare_directory() const { prepare_safety_directory(options_.directory, options_.overwrite); }
+
+  ExitCode bound() {
+    Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_directory()});
+    report_.bound = bound_at(settled);
+    report_.is_bound_alone = true;
+    conclude();
+    return report_.bound ? exit_code::done : exit_code::undecided;
+  }
 
   ExitCode search() {
     const std::size_t at_once = choose_groups();
@@ -261,10 +283,22 @@ private:
     return verdict == Verdict::settled ? "holds" : verdict == Verdict::failed ? "fails" : "undecided";
   }
 
+  static std::string words_on_means(const TrialFacts &facts) {
+    if (static_cast<Verdict>(facts.verdict) == Verdict::undecided) {
+      return "";
+    }
+    const auto means = static_cast<VerdictMeans>(facts.means);
+    return means == VerdictMeans::no_drag ? "dynamic step without damping"
+           : means == VerdictMeans::static_solver
+               ? facts.is_confirmed != 0 ? "static solver and dynamic step" : "static solver"
+               : "dynamic step";
+  }
+
   static StrengthTrial trial_of(const TrialFacts &facts) {
     StrengthTrial trial;
     trial.factor = facts.factor;
     trial.verdict = static_cast<Verdict>(facts.verdict);
+    trial.decided_by = words_on_means(facts);
     trial.time = facts.time;
     trial.moved = facts.moved;
     trial.unbalanced_ratio = facts.unbalanced_ratio;

@@ -41,7 +41,7 @@ SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &ver
 std::vector<double> next_factors(const StrengthReduction &reduction, const TrialVerdicts &verdicts,
                                  std::size_t most);
 
-/// A scene without stages settles for run.duration at most.
+/// A scene without stages settles for five times run.duration at most; its trials take run.duration as limit.
 Scene with_settle_stage(Scene scene);
 
 /// The scene up to the end of its last settle stage, strengths divided by `factor` from the beginning.
@@ -54,7 +54,11 @@ inline constexpr std::string_view settled_weaker = "# settled by gcpdda fos: str
 /// Whether the strengths of a law are divided.
 bool is_weakened(const StrengthReduction &reduction, std::size_t law);
 
-/// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints.
+/// Name of the stage in which the dynamic step confirms what the static solver has found at rest.
+inline constexpr const char *confirming_stage = "confirm";
+
+/// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints. Where
+/// the static solver finds that they hold, the dynamic step confirms it in a stage of its own.
 Scene weakened_scene(const Scene &scene, double factor);
 
 struct SafetyOptions {
@@ -65,6 +69,7 @@ struct SafetyOptions {
   /// The `settled` folder of an earlier search with the same scene but for [fos], [output], [ensemble] and
   /// monitors (scene_reader.hpp); empty to settle now.
   std::filesystem::path settled = {};
+  bool only_bound = false; ///< no trials: the bound of limit analysis at the settled state (safety_bound.hpp)
   double settled_factor = 1.0; ///< what strengths were divided by then
 };
 
@@ -77,9 +82,9 @@ struct SafetyOutcome {
 };
 
 /// Find the factor of a valid scene and write everything: `settled` (the run up to the end of the last settle
-/// stage), `trials`, and the report. A scene without stages settles for run.duration at most. One that does
-/// not come to rest with its full strength begins from where it rests with the most that is tried, if that is
-/// more. Collective.
+/// stage), `trials`, and the report. A scene without stages settles as with_settle_stage() says. One that
+/// does not come to rest with its full strength begins from where it rests with the most that is tried, if
+/// that is more. Collective.
 /// @throws SceneError, FileError
 SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene &scene,
                                    const SafetyOptions &options);

@@ -133,7 +133,10 @@ Scene with_settle_stage(Scene scene) {
     Stage &settle = scene.stages.emplace_back();
     settle.name = "settle";
     settle.kind = StageKind::settle;
-    settle.duration = scene.run.duration;
+    settle.duration = 5.0 * scene.run.duration; // which says how long a run is to be, not a settling
+    if (scene.reduction.limit == 0.0) {
+      scene.reduction.limit = scene.run.duration;
+    }
     settle.until_verdict = true;
     settle.local_damping = 0.8; // as a settle stage that says nothing else
   }
@@ -190,15 +193,26 @@ Scene weakened_scene(const Scene &scene, double factor) {
   weaken(*after, scene.reduction, factor);
   Stage trial;
   trial.name = "trial";
-  trial.duration = scene.reduction.limit > 0.0 ? scene.reduction.limit : std::prev(last_settle)->duration;
+  const double limit = scene.reduction.limit > 0.0 ? scene.reduction.limit : std::prev(last_settle)->duration;
+  trial.drag_limit = limit;
+  trial.duration = static_cast<double>(1 + scene.reduction.patience) * limit;
   trial.until_verdict = true;
   trial.failure_motion = scene.reduction.failure_motion;
   trial.local_damping = scene.reduction.local_damping;
   trial.solver = std::prev(last_settle)->solver;
   trial.where = std::prev(last_settle)->where;
   trial.after = std::move(after);
-  weakened.output = {trial.duration, trial.duration, 0.0, scene.output.contacts};
+  weakened.output = {limit, limit, 0.0, scene.output.contacts};
+  const bool is_static = trial.solver == Solver::statics;
   weakened.stages.push_back(std::move(trial));
+  if (is_static) {
+    Stage confirm = weakened.stages.back();
+    confirm.name = confirming_stage;
+    confirm.solver = Solver::dynamic;
+    confirm.after = nullptr;
+    confirm.tolerance *= 10.0; // swings of the step about a state of rest are no motion away from it
+    weakened.stages.push_back(std::move(confirm));
+  }
   return weakened;
 }
 

@@ -106,6 +106,10 @@ void look_at_stage(RunState &run) {
                        moved_beyond_sag};
   const Stage &stage = run.clock.stage();
   run.clock.state.verdict = judge(stage, look, run.clock.state.memory);
+  if (run.clock.state.verdict == Verdict::undecided && stage.is_trial() && !is_static(run)) {
+    run.clock.state.verdict =
+        judge_without_drag(stage, look, run.clock.plan.time(run.clock.stage_step()), run.clock.state.memory);
+  }
   const bool unloads = std::any_of(
       run.clock.state.unloading.begin(), run.clock.state.unloading.end(), [&](const Unloading &u) {
         return std::isfinite(u.duration) && run.clock.time() < u.begin + u.duration;
@@ -239,12 +243,30 @@ void plan_stage(RunState &run) {
   run.local_damping = stage.local_damping_or(run.scene.run.local_damping);
 }
 
+namespace {
+
+bool drag_has_ended(const StageClock &clock) {
+  return clock.plan.time(clock.stage_step()) >= clock.stage().drag_limit;
+}
+
+VerdictMeans means_of_verdict(const StageClock &clock) {
+  return clock.stage().solver == Solver::statics && clock.state.iteration.is_left == 0
+             ? VerdictMeans::static_solver
+         : drag_has_ended(clock) ? VerdictMeans::no_drag
+                                 : VerdictMeans::dynamic_step;
+}
+
+} // namespace
+
 void judge_stage(RunState &run) {
   if (run.clock.stage().kinetic_damping) {
     stop_at_energy_peak(run);
   }
   if (run.clock.is_staged && run.clock.stage_step() % steps_between_verdicts(num_blocks(run.scene)) == 0) {
     look_at_stage(run);
+    if (drag_has_ended(run.clock)) {
+      run.local_damping = 0.0;
+    }
   }
 }
 
@@ -256,7 +278,7 @@ std::vector<StageResult> stage_results(const RunState &run) {
     const StageLook &last = run.clock.state.memory.last;
     results.push_back({run.clock.state.verdict, run.clock.time(), run.clock.stage_step(),
                        contact_steps - run.clock.state.contact_steps_before, last.unbalanced_ratio,
-                       last.kinetic, last.moved, 0});
+                       last.kinetic, last.moved, 0, means_of_verdict(run.clock)});
   }
   return results;
 }

@@ -25,6 +25,39 @@ Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory) {
   return look.moved_beyond_sag >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
 }
 
+bool note_motion(const StageLook &look, double now, double first_length, double growth,
+                 MotionWindows &windows) {
+  constexpr double rate_kept = 0.8;
+  constexpr double log_kept = 0.05;
+  if (windows.length == 0.0) {
+    windows = {};
+    windows.begin = now;
+    windows.length = first_length;
+    windows.moved = look.moved;
+    return false;
+  }
+  windows.sum_of_logs += std::log10(std::max(look.unbalanced_ratio, 1e-300));
+  ++windows.looks;
+  if (now < windows.begin + windows.length * (1.0 - 1e-9)) {
+    return false;
+  }
+  const double rate = (look.moved - windows.moved) / (now - windows.begin);
+  const double mean = windows.sum_of_logs / static_cast<double>(windows.looks);
+  const bool goes_on = windows.closed > 0 && rate > 0.0 && rate >= rate_kept * windows.last_rate &&
+                       mean >= windows.last_log - log_kept;
+  const std::int64_t in_a_row = goes_on ? windows.undiminished + 1 : 0;
+  windows = {now, growth * windows.length, look.moved, 0.0, 0, windows.closed + 1, rate, mean, in_a_row};
+  return true;
+}
+
+Verdict judge_without_drag(const Stage &stage, const StageLook &look, double time, LookMemory &memory) {
+  constexpr double growth = 2.0;
+  return time >= stage.drag_limit && note_motion(look, time, stage.drag_limit, growth, memory.windows) &&
+                 memory.windows.undiminished > 0 && look.moved_beyond_sag > 0.0
+             ? Verdict::failed
+             : Verdict::undecided;
+}
+
 // Long enough to see a pile sway, whose slowest period of about 12 steps for each block of its height grows
 // with the root of their number: between two verdicts it goes on by a tenth of a period or more.
 std::int64_t steps_between_verdicts(std::int64_t num_blocks) {

@@ -15,6 +15,20 @@
 // rest is what T is for. Below 1e-12 of f d, the energy in the largest contact, motion is rounding.)
 // failed: M has reached failure_motion, D is at least half of what it was, and T at least a quarter of the
 // most it was: the blocks are not about to come to rest.
+//
+// A trial of gcpdda fos that is still undecided after Stage::drag_limit goes on without local damping, which
+// acts as drag on blocks that creep, and is judged by windows of its motion as well. Each window is twice as
+// long as the one before. With g the growth of M over the length of a window and m the mean of log10 r in it,
+//     failed: g >= 0.8 of the window before, m >= that of the window before - 0.05, and some block has moved
+//     farther than a pile sags.
+// Motion of blocks that come to rest is bounded: g then falls by half from one window to the next, or faster.
+// At a constant speed g stays, and under a constant force, as that of a block on a plane beyond its limit, g
+// doubles at least. The threshold lies between the first and the other two. The term in m refuses blocks
+// that slide on while what drives them fades.
+//
+// The same rule decides when the static solver leaves a trial to the dynamic one, with windows of equal
+// length: in pseudo-time motion is damped, and a constant force gives a constant speed. It needs two windows
+// in a row, and a block that has moved by 2 % of its size.
 
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/model/stage.hpp"
@@ -37,16 +51,39 @@ struct StageLook {
   double moved_beyond_sag = 0.0; ///< M of those that have moved farther than a pile sags
 };
 
+/// Motion of a trial in windows.
+struct MotionWindows {
+  double begin = 0.0;  ///< of the window at hand, in s or evaluations
+  double length = 0.0; ///< of it; 0: none has begun
+  double moved = 0.0;  ///< M at its begin
+  double sum_of_logs = 0.0;
+  std::int64_t looks = 0;
+  std::int64_t closed = 0;       ///< windows before
+  double last_rate = 0.0;        ///< g of the one before ...
+  double last_log = 0.0;         ///< ... and m
+  std::int64_t undiminished = 0; ///< windows in a row that motion has gone on in at an undiminished rate
+};
+/// Take a look at a trial into its window.
+/// @param growth  of the length from one window to the next
+/// @return true where this look has closed a window
+bool note_motion(const StageLook &look, double now, double first_length, double growth,
+                 MotionWindows &windows);
+
 /// What is remembered from one look to the next.
 struct LookMemory {
   StageLook last;
   double most_kinetic = 0.0;
   double kinetic_before = 0.0; ///< one step ago, of a stage with kinetic damping
   std::int64_t settled_looks = 0;
+  MotionWindows windows; ///< not in checkpoints, because nothing goes on with a trial
 };
 
 /// Verdict of a look; the memory moves on.
 Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory);
+
+/// Verdict by windows on a trial without local damping.
+/// @param time  since the stage began, s
+Verdict judge_without_drag(const Stage &stage, const StageLook &look, double time, LookMemory &memory);
 
 /// Steps between two verdicts on a stage.
 std::int64_t steps_between_verdicts(std::int64_t num_blocks);

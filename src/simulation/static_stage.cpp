@@ -194,6 +194,30 @@ void refresh_statics(RunState &run) {
   lay_statics(run);
 }
 
+// The dynamic solver has the last word on a trial that fails, so that statics never says so alone.
+void judge_static_trial(RunState &run) {
+  constexpr double window = 50.0; // evaluations
+  constexpr double motion_of_failure = 0.02;
+  constexpr std::int64_t most_evaluations = 1500;
+  const std::int64_t evaluations = run.clock.state.iteration.evaluations;
+  const StageLook &look = run.clock.state.memory.last;
+  MotionWindows &windows = run.clock.state.memory.windows;
+  if (run.clock.state.verdict == Verdict::settled) {
+    return;
+  }
+  const bool has_moved_far = run.clock.state.verdict == Verdict::failed;
+  run.clock.state.ended = false;
+  run.clock.state.verdict = Verdict::undecided;
+  const bool is_closed = note_motion(look, static_cast<double>(evaluations), window, 1.0, windows);
+  const bool fails =
+      has_moved_far || (is_closed && windows.undiminished >= 2 && look.moved > motion_of_failure);
+  if (fails || evaluations >= most_evaluations) {
+    windows = {};
+    leave_statics(run, fails ? "its motion has gone far or goes on at an undiminished rate"
+                             : fmt::format("it has no verdict after {} evaluations", most_evaluations));
+  }
+}
+
 void judge_statics(RunState &run) {
   statics::IterationState &iteration = run.clock.state.iteration;
   const std::int64_t window = run.statics->rules().stall_window;
@@ -202,6 +226,10 @@ void judge_statics(RunState &run) {
     run.clock.state.ended = false;
     run.clock.state.verdict = Verdict::undecided;
     run.clock.state.memory.settled_looks = 0;
+    return;
+  }
+  if (run.clock.stage().is_trial()) {
+    judge_static_trial(run);
     return;
   }
   if (run.clock.state.verdict == Verdict::failed) {

@@ -48,7 +48,7 @@ TEST(Fos, WritesWhatItFinds) {
   const Outcome inside = run_gcpdda(0, {"fos", "plane.toml", "--out", "results/plane_fos/settled"}, folder);
   EXPECT_EQ(inside.exit_code, 4) << "the folder of a run";
   std::vector<std::string> replace = call;
-  replace.insert(replace.end(), {"--overwrite", "--set", "fos.limit=0.01"});
+  replace.insert(replace.end(), {"--overwrite", "--set", "fos.limit=0.01", "--set", "fos.patience=0"});
   EXPECT_EQ(run_gcpdda(0, replace, folder).exit_code, 7) << "too short for any verdict";
   EXPECT_FALSE(fs::exists(results / "trials/F2.5")) << "of the search before";
   EXPECT_EQ(json_value(results / "fos.json", "holds"), "null");

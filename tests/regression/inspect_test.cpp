@@ -442,7 +442,8 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
       {"[[pyramid]]", {"name", "material", "origin", "rows", "block_size", "gap"}},
       {"[blocks]", {"file"}},
       {"[output]", {"interval", "history_interval", "checkpoint_interval", "contacts"}},
-      {"[fos]", {"families", "from", "to", "tolerance", "limit", "failure_motion", "local_damping"}},
+      {"[fos]",
+       {"families", "from", "to", "tolerance", "limit", "patience", "failure_motion", "local_damping"}},
       {"[[monitor]]", {"block", "name", "point"}}};
   for (const auto &[title, keys] : contract) {
     const std::string text = section(title);

@@ -127,16 +127,28 @@ TEST(SafetyFactor, OfASlopeThatDoesNotStand) {
   EXPECT_NE(found.text.find("settled state with strengths divided by 0.6"), std::string::npos) << found.text;
 }
 
-// A limit too short for a verdict near the factor: the bracket says so.
+// A limit too short for a verdict near the factor, without patience: the bracket says so.
 TEST(SafetyFactor, KeepsUndecidedTrialsInTheBracket) {
   std::string toml = plane_failure_toml(0.0);
-  toml.replace(toml.find("limit = 30.0"), 12, "limit = 0.35");
+  toml.replace(toml.find("limit = 30.0"), 12, "limit = 0.35\npatience = 0");
   toml.replace(toml.find("tolerance = 0.004"), 17, "tolerance = 0.05");
   const Found found(toml);
   EXPECT_EQ(found.exit_code, 7);
   EXPECT_NE(found.text.find("undecided in the limit"), std::string::npos) << found.text;
   EXPECT_LT(found.holds, plane_failure_factor(0.0));
   EXPECT_GT(found.fails, plane_failure_factor(0.0));
+}
+
+// The same limit with the patience of the default: trials without a verdict go on without local damping.
+TEST(SafetyFactor, GoesOnWithUndecidedTrialsWithoutDrag) {
+  std::string toml = plane_failure_toml(0.0);
+  toml.replace(toml.find("limit = 30.0"), 12, "limit = 0.7");
+  toml.replace(toml.find("tolerance = 0.004"), 17, "tolerance = 0.01");
+  const Found found(toml);
+  EXPECT_EQ(found.exit_code, 0);
+  EXPECT_NE(found.text.find("dynamic step without damping"), std::string::npos) << found.text;
+  expect_value("factor of safety, plane failure, limit of 0.7 s", plane_failure_factor(0.0), found.factor(),
+               0.01);
 }
 
 } // namespace

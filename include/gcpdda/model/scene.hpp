@@ -155,9 +155,10 @@ struct StrengthReduction {
   double from = 0.5;                  ///< factor that is expected to hold
   double to = 4.0;                    ///< one that is expected to fail
   double tolerance = 0.01;            ///< width of the last bracket over its lower end
-  double limit = 0.0;                 ///< s a trial lasts at most; 0: as long as the last settle stage
-  double failure_motion = 0.1;        ///< share of its size that a block moves when it fails
-  double local_damping = 0.3;         ///< without it blocks weakened at once swing beyond their new balance
+  double limit = 0.0;          ///< s a trial lasts with local damping; 0: as long as the last settle stage
+  std::int64_t patience = 8;   ///< limits that it goes on for without, where it has no verdict
+  double failure_motion = 0.1; ///< share of its size that a block moves when it fails
+  double local_damping = 0.3;  ///< without it blocks weakened at once swing beyond their new balance
 };
 
 class BlockSource;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,6 +40,13 @@ inline const char *word_of(Verdict verdict) {
   return words.at(static_cast<std::size_t>(verdict));
 }
 
+/// By what a stage has come to its verdict.
+enum class VerdictMeans : std::int64_t {
+  dynamic_step, ///< of a stage with the dynamic solver, or one that the static solver has left to it
+  static_solver,
+  no_drag ///< the dynamic step after local damping has ended (Stage::drag_limit)
+};
+
 /// Blocks by name and by place; where both are given, those of either.
 struct BlockSelection {
   std::vector<std::int64_t> blocks; ///< ids, ascending
@@ -58,6 +66,9 @@ struct Stage {
   bool mass_scaling = false;
   bool kinetic_damping = false; ///< velocities are set to zero whenever the kinetic energy has passed a peak
   Solver solver = Solver::dynamic;
+  /// s of a trial of gcpdda fos after which it goes on without local damping and is judged by its motion in
+  /// windows (simulation/stages.hpp); infinite for every other stage.
+  double drag_limit = std::numeric_limits<double>::infinity();
   BlockSelection excavated;
   double relax = 0.0;          ///< s over which the forces of excavated blocks fall to zero
   double ramp = 0.0;           ///< s over which loads and stress that the stage changes do so
@@ -67,6 +78,7 @@ struct Stage {
   SourcePosition where;
 
   [[nodiscard]] bool takes_steps() const { return kind == StageKind::run || kind == StageKind::settle; }
+  [[nodiscard]] bool is_trial() const { return drag_limit < std::numeric_limits<double>::infinity(); }
   [[nodiscard]] double local_damping_or(double of_run) const {
     return local_damping >= 0.0 ? local_damping : of_run;
   }
@@ -82,6 +94,7 @@ struct StageResult {
   double kinetic = 0.0;     ///< J/m
   double moved = 0.0;       ///< largest motion of a block in the stage, in sizes of that block
   std::int64_t removed = 0; ///< blocks
+  VerdictMeans means = VerdictMeans::dynamic_step; ///< not in checkpoints: of stages of this process
 };
 
 } // namespace gcpdda

@@ -24,6 +24,15 @@ constexpr std::array<const char *, 5> own_names{"fos.txt", "fos.json", "fos_tria
 constexpr double one_degree = std::numbers::pi / 180.0;
 
 std::string factor_text(const SafetyReport &report) {
+  if (report.is_bound_alone) {
+    return report.bound
+               ? fmt::format(
+                     "factor of safety at most {:.5g}, by limit analysis of rigid blocks at the settled "
+                     "state: with strengths divided by more no forces balance the loads",
+                     *report.bound)
+               : std::string("limit analysis gives no bound: forces balance the loads at the largest factor "
+                             "(fos.to), or the strengths have no part in it");
+  }
   if (report.holds && report.fails) {
     return fmt::format(
         "factor of safety {:.5g}: the blocks hold at {:.6g} and fail at {:.6g}, {:.2g} % apart",
@@ -80,9 +89,9 @@ std::string mechanism_text(const SafetyReport &report) {
 }
 
 std::string trial_line(const StrengthTrial &trial) {
-  return fmt::format("{:>10.6g}  {:<9} {:>9.4g} {:>9} {:>12} {:>8.2f} {:>5} {:>9.3g}{}{}\n", trial.factor,
+  return fmt::format("{:>10.6g}  {:<9} {:>9.4g} {:>9} {:>12} {:>8.2f} {:>5} {:>9.3g}  {}{}{}\n", trial.factor,
                      word_of(trial.verdict), trial.time, trial.steps, trial.evaluations, trial.cpu_s,
-                     trial.ranks, trial.moved, trial.decisive ? "" : "  (spare)",
+                     trial.ranks, trial.moved, trial.decided_by, trial.decisive ? "" : "  (spare)",
                      trial.message.empty() ? "" : "  " + trial.message);
 }
 
@@ -90,6 +99,7 @@ JsonObject trial_object(const StrengthTrial &trial) {
   return JsonObject()
       .add("factor", trial.factor)
       .add("verdict", std::string(word_of(trial.verdict)))
+      .add("decided_by", trial.decided_by)
       .add("decisive", trial.decisive ? 1 : 0)
       .add("time", trial.time)
       .add("steps", trial.steps)
@@ -108,6 +118,7 @@ std::string json_text(const SafetyReport &report) {
   object.add("factor", report.holds && report.fails ? 0.5 * (*report.holds + *report.fails) : none)
       .add("holds", report.holds.value_or(none))
       .add("fails", report.fails.value_or(none))
+      .add("bound", report.bound.value_or(none))
       .add("tolerance", report.tolerance)
       .add("found", report.is_found() ? 1 : 0);
   std::vector<JsonObject> trials;
@@ -133,12 +144,13 @@ std::string json_text(const SafetyReport &report) {
 }
 
 std::string trials_csv(const SafetyReport &report) {
-  std::string text =
-      "factor[-],verdict,decisive,time[s],steps,evaluations,cpu[s],ranks,moved[-],unbalanced_ratio[-]\n";
+  std::string text = "factor[-],verdict,decisive,time[s],steps,evaluations,cpu[s],ranks,moved[-],unbalanced_"
+                     "ratio[-],decided_by\n";
   for (const StrengthTrial &trial : report.trials) {
-    text += fmt::format("{:.17g},{},{},{:.9g},{},{},{:.3f},{},{:.9g},{:.9g}\n", trial.factor,
+    text += fmt::format("{:.17g},{},{},{:.9g},{},{},{:.3f},{},{:.9g},{:.9g},{}\n", trial.factor,
                         word_of(trial.verdict), trial.decisive ? 1 : 0, trial.time, trial.steps,
-                        trial.evaluations, trial.cpu_s, trial.ranks, trial.moved, trial.unbalanced_ratio);
+                        trial.evaluations, trial.cpu_s, trial.ranks, trial.moved, trial.unbalanced_ratio,
+                        trial.decided_by);
   }
   return text;
 }
@@ -167,7 +179,10 @@ std::string to_text(const SafetyReport &report) {
                       settled_at == 1.0 ? "" : fmt::format(" with strengths divided by {:g}", settled_at),
                       report.settled.time, report.settled.steps, report.settled.evaluations,
                       report.settled.cpu_s);
-  text += "    factor  verdict    time[s]     steps  evaluations   CPU[s] ranks     moved\n";
+  if (report.is_bound_alone) {
+    return text;
+  }
+  text += "    factor  verdict    time[s]     steps  evaluations   CPU[s] ranks     moved  decided by\n";
   for (const StrengthTrial &trial : report.trials) {
     text += trial_line(trial);
   }

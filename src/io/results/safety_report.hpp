@@ -17,6 +17,7 @@ namespace gcpdda {
 struct StrengthTrial {
   double factor = 1.0;
   Verdict verdict = Verdict::undecided; ///< also where the run has ended in a numerical failure
+  std::string decided_by;               ///< what has come to the verdict, in words
   bool decisive = false;                ///< the bracket rests on it; others were run because ranks were free
   double time = 0.0;                    ///< simulated, s
   double moved = 0.0;                   ///< largest motion of a block, in sizes of that block
@@ -50,6 +51,8 @@ struct SafetyReport {
   std::vector<double> undecided;       ///< factors between these two without a verdict
   StrengthTrial settled;               ///< the run up to the settled state, at factor 1
   std::vector<StrengthTrial> trials;   ///< by factor
+  std::optional<double> bound;         ///< upper bound by limit analysis, where it was asked for
+  bool is_bound_alone = false;         ///< no trials were to be run
   std::vector<FailingBlock> mechanism; ///< of `fails`, by BlockId; empty without it
 
   /// The bracket is as narrow as asked for.

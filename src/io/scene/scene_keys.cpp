@@ -254,7 +254,8 @@ constexpr Key keys_after_joints[] = {
   {"fos.from", Kind::number, optional, above_to(0, 1e6), "", "0.5", "0.8", "Factor at which the blocks are expected to hold; below it is not searched."},
   {"fos.to", Kind::number, optional, above_to(0, 1e6), "", "4.0", "2.5", "Factor at which they are expected to fail; above it is not searched."},
   {"fos.tolerance", Kind::number, optional, above_to(0, 1), "", "0.01", "0.005", "Width of the bracket at which the search ends, as a share of its lower end."},
-  {"fos.limit", Kind::number, optional, above_to(0, 1e12), "", "<that of the last settle stage>", "5.0", "[s] Longest simulated time of a trial; one that reaches it without a verdict is undecided."},
+  {"fos.limit", Kind::number, optional, above_to(0, 1e12), "", "<that of the last settle stage>", "5.0", "[s] Simulated time of a trial with local damping; one that reaches it without a verdict goes on without (patience)."},
+  {"fos.patience", Kind::count, optional, from_to(0, 1e6), "", "8", "0", "How many times limit a trial without a verdict goes on without local damping, which acts as drag on blocks that creep. It is then judged by windows of its motion as well: it fails where its motion goes on at an undiminished rate while the unbalanced ratio stays. 0: such a trial is undecided at its limit."},
   {"fos.failure_motion", Kind::number, optional, above_to(0, 1e6), "", "0.1", "0.1", "A block that has moved by this share of its size (the root of its area) in a trial, farther than the pile may sag as its joints close, and is not slowing down has failed."},
   {"fos.local_damping", Kind::number, optional, from_below(0, 1), "", "0.3", "0.8", "Share of the net force that is taken away against the motion in a trial. With 0 blocks that are weakened at once swing beyond their new balance, and the factor comes out lower."},
 

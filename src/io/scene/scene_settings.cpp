@@ -144,6 +144,7 @@ StrengthReduction read_reduction(const SceneSource &source, const JointLaws &joi
   fos.read("to", reduction.to);
   fos.read("tolerance", reduction.tolerance);
   fos.read("limit", reduction.limit);
+  fos.read("patience", reduction.patience);
   fos.read("failure_motion", reduction.failure_motion);
   fos.read("local_damping", reduction.local_damping);
   if (reduction.to <= reduction.from && fos.known("from") && fos.known("to")) {

@@ -132,7 +132,8 @@ TEST(WeakenedScene, DividesTheStrengthThatIsInForce) {
   ASSERT_EQ(trial.stages.size(), 4U) << "settle, what changes at once, and the trial in place of the run";
   EXPECT_EQ(trial.stages[2].kind, StageKind::excavate);
   EXPECT_TRUE(trial.stages[3].until_verdict);
-  EXPECT_EQ(trial.stages[3].duration, 7.0);
+  EXPECT_EQ(trial.stages[3].drag_limit, 7.0);
+  EXPECT_EQ(trial.stages[3].duration, 63.0) << "eight times as long again without local damping";
   const std::vector<JointLaw> &laws = trial.stages[3].after->joints.laws;
   EXPECT_EQ(laws[0].tan_friction, 0.4);
   EXPECT_EQ(laws[0].residual_tan_friction, 0.3);
@@ -153,7 +154,10 @@ TEST(WeakenedScene, IsSolvedAsTheLastSettleStageIs) {
   const auto last_settle = std::find_if(scene.stages.rbegin(), scene.stages.rend(),
                                         [](const Stage &stage) { return stage.kind == StageKind::settle; });
   last_settle->solver = Solver::statics;
-  EXPECT_EQ(weakened_scene(scene, 2.0).stages.back().solver, Solver::statics);
+  const std::vector<Stage> stages = weakened_scene(scene, 2.0).stages;
+  EXPECT_EQ(stages[stages.size() - 2].solver, Solver::statics);
+  EXPECT_EQ(stages.back().name, confirming_stage);
+  EXPECT_EQ(stages.back().solver, Solver::dynamic) << "the dynamic step confirms it";
 }
 
 TEST(WeakenedScene, DilatesNoMoreThanItsFrictionAllows) {

@@ -53,6 +53,37 @@ INSTANTIATE_TEST_SUITE_P(
       return fmt::format("Case{}_{}deg", slope.index, static_cast<int>(slope.param.friction_deg));
     });
 
+/// What a trial that has moved by `moved(t)` sizes is called at the end of its windows without drag.
+template <class Motion> Verdict verdict_by_windows(Motion &&moved, double fall_of_ratio) {
+  Stage stage;
+  stage.drag_limit = 1.0;
+  LookMemory memory;
+  for (int k = 1; k <= 900; ++k) {
+    const double time = 0.01 * k;
+    StageLook look;
+    look.unbalanced_ratio = 1e-3 * std::exp(-fall_of_ratio * time);
+    look.moved = look.moved_beyond_sag = moved(time);
+    if (judge_without_drag(stage, look, time, memory) == Verdict::failed) {
+      return Verdict::failed;
+    }
+  }
+  return Verdict::undecided;
+}
+
+// However little it has moved: what is bounded, or grows as a logarithm, is not called failed.
+TEST(Stages, WindowsTellWhatGoesOnFromWhatFades) {
+  EXPECT_EQ(verdict_by_windows([](double t) { return 1e-3 * t * t; }, 0.0), Verdict::failed) << "accelerates";
+  EXPECT_EQ(verdict_by_windows([](double t) { return 1e-3 * t; }, 0.0), Verdict::failed) << "goes on";
+  EXPECT_EQ(verdict_by_windows([](double t) { return 1e-3 * t; }, 0.2), Verdict::undecided)
+      << "what drives it fades";
+  EXPECT_EQ(verdict_by_windows([](double t) { return 1.0 - std::exp(-t); }, 0.0), Verdict::undecided);
+  EXPECT_EQ(verdict_by_windows([](double t) { return std::log(1.0 + t); }, 0.0), Verdict::undecided);
+  EXPECT_EQ(verdict_by_windows([](double t) { return 0.01 + 1e-3 * std::sin(30.0 * t); }, 0.0),
+            Verdict::undecided)
+      << "sways";
+  EXPECT_EQ(verdict_by_windows([](double) { return 0.0; }, 0.0), Verdict::undecided) << "does not move";
+}
+
 const std::string stack_head = R"([run]
 fidelity = "rigid"
 [material.rock]

@@ -1,0 +1,18 @@
+#pragma once
+
+// The upper bound of the factor of safety by limit analysis (limit_analysis/limit_analysis.hpp) at a settled state.
+
+#include "simulation/simulation.hpp"
+
+#include <optional>
+
+namespace gcpdda {
+
+/// Bound between `from` and `to` of the reduction, to 0.1 %; nothing where the blocks could still hold at
+/// `to`. Blocks are rigid there, as they lie, and joints are where they touch. The load of a block is what
+/// its contacts carry: weight, water, bolts as they pull, loads. Friction that depends on pressure (Barton
+/// and Bandis) is taken at the pressure of the state. Collective.
+/// @param settled  the state; its contact forces are evaluated
+std::optional<double> bound_at(Simulation &settled);
+
+} // namespace gcpdda

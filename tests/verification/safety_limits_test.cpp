@@ -1,0 +1,229 @@
+// Factors of safety of block systems whose limit is known in closed form, found with the default settings of
+// gcpdda fos: bracket of 1 %, exit code 0. None of these systems has had a part in setting the thresholds of
+// a trial's verdict (simulation/stages.hpp): the untouched half of the known limits.
+
+#include "problem.hpp"
+
+#include "driver/safety_factor.hpp"
+#include "geometry/polygon.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+namespace gcpdda::testing::safety_limits_test {
+namespace {
+
+/// The default bracket; the factor lies within it.
+constexpr double bracket = 0.01;
+const std::string settle = "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n";
+
+/// gcpdda fos by the given solver, or the bound of limit analysis alone.
+SafetyOutcome search(const std::string &toml, bool is_static, bool only_bound = false) {
+  std::string folder = (std::filesystem::temp_directory_path() / "gcpdda_limits_XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) {
+    throw std::runtime_error("no temporary folder");
+  }
+  const Scene scene = scene_of(without_duration(toml) + settle + (is_static ? "solver = \"static\"\n" : ""));
+  SafetyOptions options;
+  options.directory = std::filesystem::path(folder) / "fos";
+  options.quiet = true;
+  options.only_bound = only_bound;
+  SafetyOutcome outcome = search_safety_factor(Communicator::self(), scene, options);
+  std::filesystem::remove_all(folder);
+  return outcome;
+}
+
+// Limit analysis gives the closed form too, at blocks that have settled by 1e-4 of their size.
+void expect_factor(const std::string &problem, double expected, const std::string &toml) {
+  const SafetyOutcome bound = search(toml, false, true);
+  ASSERT_TRUE(bound.report.bound) << problem;
+  expect_value("upper bound by limit analysis, " + problem, expected, *bound.report.bound, 3e-3);
+  for (const bool is_static : {false, true}) {
+    const SafetyOutcome found = search(toml, is_static);
+    const std::string name =
+        fmt::format("factor of safety, {}, {} trials", problem, is_static ? "static" : "dynamic");
+    EXPECT_EQ(found.exit_code, exit_code::done) << name << ": " << found.message;
+    EXPECT_TRUE(found.report.undecided.empty()) << name;
+    ASSERT_TRUE(found.report.holds && found.report.fails) << name;
+    EXPECT_LE(*found.report.holds, *bound.report.bound) << name;
+    expect_value(name, expected, 0.5 * (*found.report.holds + *found.report.fails), bracket);
+  }
+}
+
+/// Gravity on a plane that falls by `dip` (rad) towards +x and lies along x.
+Vec2 gravity_on(double dip) {
+  return {earth_gravity * std::sin(dip), -earth_gravity * std::cos(dip)};
+}
+const std::string long_plane = block_toml("plane", rectangle({-2.0, -1.0}, {40.0, 0.0}), "fixed = true");
+
+// F = tan(phi)/tan(th), phi = th + 7 degrees.
+TEST(SafetyLimits, InclinesAtFiveAngles) {
+  for (const int dip : {10, 20, 30, 40, 50}) {
+    const double phi = dip + 7.0;
+    const std::string toml = head({.gravity = gravity_on(dip * degree), .friction_deg = phi}) + long_plane +
+                             block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0}));
+    expect_factor(fmt::format("incline at {} degrees", dip), std::tan(phi * degree) / std::tan(dip * degree),
+                  toml);
+  }
+}
+
+// Two blocks on each other slide on the lower joint, which carries more and has the same friction, or where
+// the upper one has less, on that: F = tan(phi)/tan(th) of the weaker joint.
+TEST(SafetyLimits, WeakerOfTwoJoints) {
+  const double dip = 25.0 * degree;
+  std::string toml = head({.gravity = gravity_on(dip), .friction_deg = 45.0});
+  toml.insert(toml.find("[joint.default]"), "[material.cap]\ndensity = 2600.0\n");
+  toml += "[joint.weak]\nmaterials = [\"rock\", \"cap\"]\nfriction_angle_deg = 35.0\n" + long_plane +
+          block_toml("lower", rectangle({0.0, 0.0}, {3.0, 1.0})) +
+          "[[block]]\nname = \"upper\"\nmaterial = \"cap\"\n"
+          "vertices = [[0.5, 1.0], [2.5, 1.0], [2.5, 2.0], [0.5, 2.0]]\n";
+  expect_factor("two blocks on an incline", std::tan(35.0 * degree) / std::tan(dip), toml);
+}
+
+// A horizontal force H on a block on a floor: F = W tan(phi)/H.
+TEST(SafetyLimits, BlockPushedOnAFloor) {
+  const double weight = rock_density * earth_gravity * 2.0;
+  const std::string toml =
+      head({.friction_deg = 30.0}) + long_plane + block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0})) +
+      fmt::format("[[block.load]]\npoint = [1.0, 0.2]\nforce = [{:.17g}, 0.0]\n", 0.4 * weight);
+  expect_factor("block pushed on a floor", std::tan(30.0 * degree) / 0.4, toml);
+}
+
+// Cohesion alone, nearly: F = (W cos(th) tan(phi) + c l)/(W sin(th)).
+TEST(SafetyLimits, CohesionWithLittleFriction) {
+  const double dip = 30.0 * degree;
+  const double weight = rock_density * earth_gravity * 2.0;
+  const double cohesion = 1.5 * weight * std::sin(dip) / 2.0; // 1.5 of what drives, over a joint of 2 m
+  std::string toml = head({.gravity = gravity_on(dip), .friction_deg = 5.0});
+  toml.insert(toml.find("friction_angle_deg"), fmt::format("cohesion = {:.17g}\n", cohesion));
+  toml += long_plane + block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0}));
+  expect_factor("block with cohesion", 1.5 + std::tan(5.0 * degree) / std::tan(dip), toml);
+}
+
+// A plane failure with a tension crack behind it and water that stands z above the plane everywhere, so that
+// the forces of the water do not change while it slides: V = w z^2/2 on the crack, U = w z l on the plane,
+// and on the submerged part of the face, which rises by 16 m in 4 m, R = w z y/2 towards the slope and R/4
+// downwards, with y = z/(1 - tan(th)/4) the height at which the face leaves the water.
+//     S = W sin + V cos - (R cos - R/4 sin),  N = W cos - U - V sin + R sin + R/4 cos,  F = N tan(phi)/S.
+TEST(SafetyLimits, WetPlaneFailureWithTensionCrack) {
+  const double dip = 30.0 * degree;
+  const double behind = 20.0;
+  const double crack_end = behind * std::tan(dip);
+  const double unit_weight = 1000.0 * earth_gravity;
+  for (const double level : {1.5, 3.0}) {
+    const std::vector<Vec2> outline{{0.0, 0.0}, {behind, crack_end}, {behind, 16.0}, {4.0, 16.0}};
+    const double weight = rock_density * earth_gravity * signed_area(outline);
+    const double uplift = unit_weight * level * behind / std::cos(dip);
+    const double thrust = 0.5 * unit_weight * level * level;
+    const double face = 0.5 * unit_weight * level * level / (1.0 - 0.25 * std::tan(dip));
+    const double normal = weight * std::cos(dip) - uplift - thrust * std::sin(dip) + face * std::sin(dip) +
+                          0.25 * face * std::cos(dip);
+    const double driving =
+        weight * std::sin(dip) + thrust * std::cos(dip) - face * std::cos(dip) + 0.25 * face * std::sin(dip);
+    const std::string toml =
+        head({.friction_deg = 45.0}) +
+        fmt::format("[water.table]\nphreatic = [[-40.0, {:.17g}], [{:.17g}, {:.17g}]]\n",
+                    level - 40.0 * std::tan(dip), behind, crack_end + level) +
+        block_toml("base",
+                   {{-10.0, -20.0}, {behind, -20.0}, {behind, crack_end}, {-10.0, -10.0 * std::tan(dip)}},
+                   "fixed = true") +
+        block_toml("slide", outline);
+    expect_factor(fmt::format("wet plane failure, water {} m above the plane", level),
+                  normal * std::tan(45.0 * degree) / driving, toml);
+  }
+}
+
+// A cable normal to the plane, put in with the tension T, soft enough to keep it and so long that it does not
+// turn while the block fails (a short one resists the slide by T s/L): F = (W cos(th) + T) tan(phi)/(W
+// sin(th)).
+TEST(SafetyLimits, BoltedBlock) {
+  const double dip = 35.0 * degree;
+  const double weight = rock_density * earth_gravity * 2.0;
+  const double tension = 0.3 * weight;
+  const std::string toml =
+      head({.gravity = gravity_on(dip), .friction_deg = 36.0}) +
+      block_toml("plane", rectangle({-2.0, -101.0}, {40.0, 0.0}), "fixed = true") +
+      block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0})) +
+      fmt::format("[support.steel]\nkind = \"anchored\"\naxial_stiffness = 1e4\npretension = {:.17g}\n"
+                  "[[bolt]]\nsupport = \"steel\"\nfrom = [1.0, 0.5]\nto = [1.0, -100.0]\n",
+                  tension);
+  expect_factor("bolted block",
+                (weight * std::cos(dip) + tension) * std::tan(36.0 * degree) / (weight * std::sin(dip)),
+                toml);
+}
+
+/// An active block on a steep plane that pushes a passive one along a flatter plane, across a vertical joint.
+/// Both rise to the right; the joint is at x = 0. The lowest tip of the active block is cut off, because it
+/// would run into the flatter plane, and the tip alone would carry the block.
+struct ActivePassive {
+  double active_dip;   ///< rad
+  double passive_dip;  ///< rad
+  double friction;     ///< rad, of all joints
+  double height = 6.0; ///< of the joint, m
+  double length = 8.0; ///< of the passive block, m
+
+  static constexpr double cut = 0.7;
+  [[nodiscard]] std::vector<Vec2> active() const {
+    const double run = height / std::tan(active_dip);
+    return {{cut, cut * std::tan(active_dip)}, {run, height}, {0.0, height}, {0.0, height / 3.0}};
+  }
+  [[nodiscard]] std::vector<Vec2> passive() const {
+    const double down = -length * std::tan(passive_dip);
+    return {{-length, down}, {0.0, 0.0}, {0.0, height}, {-length, down + height}};
+  }
+  /// What drives both beyond what holds them when tan(phi) is `tangent` on all joints. A block with the
+  /// weight W on a base of dip th that slides down and bears a force (h, v) has N = (W - v) cos(th) - h
+  /// sin(th) and is in balance along its base where (W - v) sin(th) + h cos(th) = N t; h is counted downhill.
+  /// The joint carries P, and the active block, which moves down along it, is held up by P t: for it h = -P,
+  /// v = P t, and for the passive one h = P, v = -P t. P follows from the first, the rest from the second.
+  [[nodiscard]] double unbalanced(double t) const {
+    const double gamma = rock_density * earth_gravity;
+    const double upper = gamma * signed_area(active());
+    const double lower = gamma * signed_area(passive());
+    const double s1 = std::sin(active_dip);
+    const double c1 = std::cos(active_dip);
+    const double s2 = std::sin(passive_dip);
+    const double c2 = std::cos(passive_dip);
+    const double push = upper * (s1 - t * c1) / ((t * s1 + c1) + t * (s1 - t * c1));
+    return (lower + push * t) * (s2 - t * c2) + push * (c2 + t * s2);
+  }
+  [[nodiscard]] double factor() const {
+    double low = 0.01;                  // of the tangent that balances
+    double high = std::tan(active_dip); // with which the active block needs no help
+    for (int k = 0; k < 200; ++k) {
+      const double middle = 0.5 * (low + high);
+      (unbalanced(middle) > 0.0 ? low : high) = middle;
+    }
+    return std::tan(friction) / high;
+  }
+  [[nodiscard]] std::string toml() const {
+    const double far = height / std::tan(active_dip) * 2.0;
+    const double deep = -4.0 * length;
+    const double ahead = 3.0 * length;
+    return head({.friction_deg = friction / degree}) +
+           block_toml("steep", {{0.0, deep}, {far, deep}, {far, far * std::tan(active_dip)}, {0.0, 0.0}},
+                      "fixed = true") +
+           block_toml("flat",
+                      {{-ahead, deep}, {0.0, deep}, {0.0, 0.0}, {-ahead, -ahead * std::tan(passive_dip)}},
+                      "fixed = true") +
+           block_toml("active", active()) + block_toml("passive", passive());
+  }
+};
+
+TEST(SafetyLimits, ActiveAndPassiveBlocks) {
+  for (const ActivePassive &slide : {ActivePassive{45.0 * degree, 10.0 * degree, 30.0 * degree},
+                                     ActivePassive{45.0 * degree, 20.0 * degree, 35.0 * degree},
+                                     ActivePassive{50.0 * degree, 5.0 * degree, 30.0 * degree}}) {
+    expect_factor(fmt::format("active block at {:.0f} and passive one at {:.0f} degrees",
+                              slide.active_dip / degree, slide.passive_dip / degree),
+                  slide.factor(), slide.toml());
+  }
+}
+
+} // namespace
+} // namespace gcpdda::testing::safety_limits_test
