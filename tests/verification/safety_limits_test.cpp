@@ -85,6 +85,25 @@ TEST(SafetyLimits, WeakerOfTwoJoints) {
   expect_factor("two blocks on an incline", std::tan(35.0 * degree) / std::tan(dip), toml);
 }
 
+// A block that would slide alone leans on one below it with a rougher base. The joint between them is smooth
+// (one with friction passes weight to the rougher base, and the factor depends on how much): both slide
+// together, and F = (tan(phi1) + tan(phi2))/(2 tan(th)) for blocks of the same weight.
+TEST(SafetyLimits, BlockHeldByAnother) {
+  const double dip = 30.0 * degree;
+  std::string toml = head({.gravity = gravity_on(dip), .friction_deg = 25.0});
+  toml.insert(toml.find("[joint.default]"),
+              "[material.rough]\ndensity = 2600.0\n[material.upper]\ndensity = 2600.0\n");
+  toml += "[joint.rough]\nmaterials = [\"rock\", \"rough\"]\nfriction_angle_deg = 50.0\n"
+          "[joint.smooth]\nmaterials = [\"upper\", \"rough\"]\nfriction_angle_deg = 0.0\n" +
+          long_plane +
+          "[[block]]\nname = \"upper\"\nmaterial = \"upper\"\n"
+          "vertices = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]\n"
+          "[[block]]\nname = \"lower\"\nmaterial = \"rough\"\n"
+          "vertices = [[2.0, 0.0], [4.0, 0.0], [4.0, 1.0], [2.0, 1.0]]\n";
+  expect_factor("block held by another",
+                (std::tan(25.0 * degree) + std::tan(50.0 * degree)) / (2.0 * std::tan(dip)), toml);
+}
+
 // A horizontal force H on a block on a floor: F = W tan(phi)/H.
 TEST(SafetyLimits, BlockPushedOnAFloor) {
   const double weight = rock_density * earth_gravity * 2.0;
