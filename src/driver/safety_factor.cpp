@@ -247,7 +247,16 @@ private:
     options.computed_with = &settled;
     options.once = true;
     options.progress_of = shows ? fmt::format("factor {:.6g}: ", factor) : std::string();
-    return run_and_tell(*group_, weakened, options);
+    RunOutcome outcome = run_and_tell(*group_, weakened, options);
+    if (outcome.exit_code == exit_code::numerical_failure &&
+        weakened.stages.back().name == confirming_stage) {
+      // Blocks that fall may pass through each other in pseudo-time. The dynamic step keeps them apart.
+      weakened.stages.pop_back();
+      weakened.stages.back().solver = Solver::dynamic;
+      options.overwrite = true;
+      outcome = run_and_tell(*group_, weakened, options);
+    }
+    return outcome;
   }
 
   /// What every group has found goes to all; the first trouble ends the search on all ranks.

@@ -5,10 +5,11 @@
 //
 // Which factors are tried follows from the verdicts alone, never from how many trials run at once: first the
 // two ends, then the middle of what lies between the largest factor that has settled and the smallest that
-// has failed. A trial without a verdict in its limit moves neither: what lies on both sides of it is narrowed
-// down on its own, and the bracket keeps the stretch between. With ranks to spare the trials that would come
-// next after either outcome run at the same time, each on its own ranks. A trial gives the same bits on any
-// number of ranks, and so the factor is the same.
+// has failed. Where there is no verdict at the upper end, the search comes down from there by halves until a
+// trial fails. A trial without a verdict moves neither end of the bracket: what lies on both sides of it is
+// narrowed down on its own, and the bracket keeps the stretch between. With ranks to spare the trials that
+// would come next after either outcome run at the same time, each on its own ranks. A trial gives the same
+// bits on any number of ranks, and so the factor is the same.
 
 #include "gcpdda/base/exit_code.hpp"
 #include "gcpdda/model/scene.hpp"

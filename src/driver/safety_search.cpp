@@ -21,7 +21,7 @@ public:
       : reduction_(reduction), verdicts_(verdicts) {}
 
   SafetySearch follow() {
-    if (!look_at_end(reduction_.from) || !look_at_end(reduction_.to)) {
+    if (!holds_at_from() || !find_failing_end()) {
       return found_;
     }
     while (const std::optional<double> middle = widest_gap()) {
@@ -45,14 +45,36 @@ private:
     return verdict;
   }
 
-  /// False where the search ends, or waits for a trial.
-  bool look_at_end(double factor) {
-    const std::optional<Verdict> verdict = ask(factor);
+  bool holds_at_from() {
+    const std::optional<Verdict> verdict = ask(reduction_.from);
     if (verdict) {
-      note(factor, *verdict);
+      note(reduction_.from, *verdict);
     }
-    const Verdict expected = factor == reduction_.from ? Verdict::settled : Verdict::failed;
-    return verdict == expected;
+    return verdict == Verdict::settled;
+  }
+
+  // Far beyond its limit a pile may fall so wildly that the trial breaks down: then the next one is halfway
+  // down.
+  bool find_failing_end() {
+    double top = reduction_.to;
+    double factor = top;
+    while (true) {
+      const std::optional<Verdict> verdict = ask(factor);
+      if (!verdict) {
+        return false;
+      }
+      note(factor, *verdict);
+      if (*verdict == Verdict::failed || found_.holds == reduction_.to) {
+        return *verdict == Verdict::failed;
+      }
+      if (*verdict == Verdict::undecided) {
+        top = factor;
+      }
+      if (top - *found_.holds <= reduction_.tolerance * *found_.holds) {
+        return false;
+      }
+      factor = std::midpoint(*found_.holds, top);
+    }
   }
 
   void note(double factor, Verdict verdict) {

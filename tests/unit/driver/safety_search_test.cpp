@@ -98,6 +98,26 @@ TEST(SafetySearch, EndsWhereTheEndsDoNotBracketIt) {
   EXPECT_FALSE(strong.search.fails);
 }
 
+// Trials beyond 2.0 break down without a verdict; the limit is below.
+TEST(SafetySearch, ComesDownFromAnEndWithoutAVerdict) {
+  const StrengthReduction reduction;
+  std::map<double, Verdict> tried;
+  const TrialVerdicts known = [&](double factor) -> std::optional<Verdict> {
+    const auto found = tried.find(factor);
+    return found == tried.end() ? std::nullopt : std::optional(found->second);
+  };
+  SafetySearch found = follow(reduction, known);
+  for (; found.next; found = follow(reduction, known)) {
+    ASSERT_LT(tried.size(), 20U);
+    tried[*found.next] = *found.next > 2.0 ? Verdict::undecided : verdict_at(*found.next, 1.4534);
+  }
+  ASSERT_TRUE(found.holds && found.fails);
+  EXPECT_LT(*found.holds, 1.4534);
+  EXPECT_GT(*found.fails, 1.4534);
+  EXPECT_LE(*found.fails - *found.holds, reduction.tolerance * *found.holds);
+  EXPECT_TRUE(found.undecided.empty()) << "none is in the bracket";
+}
+
 Scene staged_scene() {
   Scene scene;
   scene.joints.laws.resize(3);
