@@ -1,6 +1,7 @@
 #pragma once
 
-// The upper bound of the factor of safety by limit analysis (limit_analysis/limit_analysis.hpp) at a settled state.
+// The upper bound of the factor of safety by limit analysis (limit_analysis/limit_analysis.hpp) at a settled
+// state.
 
 #include "simulation/simulation.hpp"
 
