@@ -151,4 +151,9 @@ std::optional<Cut> cut_by_metis(const OccupiedCells &cells, int num_parts, CutEf
   return Cut(part.begin(), part.end());
 }
 
+std::string metis_version() {
+  return std::to_string(METIS_VER_MAJOR) + '.' + std::to_string(METIS_VER_MINOR) + '.' +
+         std::to_string(METIS_VER_SUBMINOR);
+}
+
 } // namespace gcpdda

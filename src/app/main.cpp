@@ -3,6 +3,7 @@
 #include "app/blocks.hpp"
 #include "app/condensed.hpp"
 #include "app/root_file.hpp"
+#include "app/versions.hpp"
 #include "base/check.hpp"
 #include "driver/ensemble.hpp"
 #include "driver/inspect.hpp"
@@ -319,6 +320,8 @@ ExitCode dispatch(const Communicator &world, int argc, char **argv) {
   CLI::App app("gcpdda: block-by-block simulation of jointed rock slopes and tunnels");
   app.require_subcommand(1);
   app.footer(list_of_exit_codes());
+  app.set_version_flag(
+      "--version", [] { return versions(); }, "print the versions of program and libraries");
   Arguments arguments;
   CLI::App *run_command = app.add_subcommand("run", "run a scene");
   take_scene(run_command, arguments);

@@ -242,4 +242,8 @@ std::vector<Trace> PlanarGraph::voronoi_edges(std::span<const Vec2> sites) const
   return traces;
 }
 
+std::string geos_version() {
+  return GEOSversion();
+}
+
 } // namespace gcpdda::blockgen

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gcpdda::blockgen {
@@ -43,5 +44,8 @@ private:
   struct Context;
   std::unique_ptr<Context> context_;
 };
+
+/// Version of the GEOS library that runs: "3.11.1-CAPI-1.17.1".
+std::string geos_version();
 
 } // namespace gcpdda::blockgen

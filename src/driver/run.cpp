@@ -1,6 +1,7 @@
 #include "gcpdda/driver/run.hpp"
 
 #include "base/check.hpp"
+#include "base/program_facts.hpp"
 #include "driver/run_log.hpp"
 #include "driver/run_words.hpp"
 #include "driver/stop_signal.hpp"
@@ -415,6 +416,8 @@ private:
   void fill(RunSummary &summary) {
     const Counters &counters = simulation_.counters();
     const TimePlan &plan = simulation_.plan();
+    summary.version = program_version();
+    summary.command = command_line();
     summary.ranks = communicator_.size();
     summary.blocks = total(communicator_, simulation_.blocks().num_owned);
     summary.fixed_blocks = static_cast<std::int64_t>(simulation_.blocks().num_fixed);

@@ -62,6 +62,21 @@ TEST_P(CommandLine, HelpIsNoError) {
   }
 }
 
+TEST_P(CommandLine, VersionNamesTheLibrariesAndIsThatOfResults) {
+  const Outcome outcome = run_gcpdda(GetParam(), {"--version"}, folder_);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char *name : {"gcpdda ", "MPI v", "\nHDF5 1.", "\nMETIS 5.", "\nGEOS 3.", "\nEigen 3."}) {
+    EXPECT_EQ(count_of(outcome.out, name), 1) << name << " in: " << outcome.out;
+  }
+  folder_.write("two words.toml", testing::small_scene());
+  ASSERT_EQ(run_gcpdda(GetParam(), {"run", "two words.toml", "--out", "kept"}, folder_).exit_code, 0);
+  const std::string version = summary_text(folder_ / "kept", "version");
+  EXPECT_TRUE(outcome.out.starts_with("gcpdda " + version.substr(1, version.size() - 2) + '\n'))
+      << version << " and " << outcome.out;
+  EXPECT_TRUE(summary_text(folder_ / "kept", "command").ends_with("gcpdda run 'two words.toml' --out kept\""))
+      << summary_text(folder_ / "kept", "command");
+}
+
 TEST_P(CommandLine, AMissingSceneIsFour) {
   fs::create_directory(folder_ / "folder.toml");
   expect_refusal({"run", "nowhere.toml"}, 4, "nowhere.toml");

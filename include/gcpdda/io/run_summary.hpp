@@ -58,6 +58,8 @@ struct BoltLoad {
 
 /// Everything summary.json holds.
 struct RunSummary {
+  std::string version; ///< of the program that has written the last part of the run
+  std::string command; ///< its command line, as a shell reads it
   int ranks = 1;
   std::int64_t blocks = 0;
   std::int64_t fixed_blocks = 0;

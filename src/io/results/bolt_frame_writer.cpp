@@ -1,4 +1,4 @@
-// Frames of bolts (result_files.hpp).
+// Frames of bolts.
 
 #include "gcpdda/io/frame_rows.hpp"
 #include "io/results/frame_writer.hpp"

@@ -1,4 +1,4 @@
-// Frames of contacts (result_files.hpp).
+// Frames of contacts.
 
 #include "gcpdda/io/frame_rows.hpp"
 #include "io/results/frame_writer.hpp"

@@ -1,4 +1,4 @@
-// Histories as CSV (result_files.hpp).
+// Histories as CSV.
 
 #include "io/results/history_writer.hpp"
 

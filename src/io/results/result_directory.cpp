@@ -1,4 +1,4 @@
-// The folder of a run: made, taken up again, recognised (result_files.hpp).
+// The folder of a run: made, taken up again, recognised.
 
 #include "io/results/result_directory.hpp"
 

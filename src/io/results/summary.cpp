@@ -1,4 +1,4 @@
-// summary.json (result_files.hpp).
+// summary.json.
 
 #include "io/results/summary.hpp"
 
@@ -76,6 +76,7 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
     counters.add(name, count);
   }
   JsonObject object(",\n ");
+  object.add("version", summary.version).add("command", summary.command);
   if (summary.restarted_at >= 0.0) {
     object.add("restarted_at", summary.restarted_at);
   }

@@ -47,7 +47,9 @@ def facts(result):
     summary = result.summary or {}
     path = result.path / ("summary.json" if summary else "scene.toml")
     ended = datetime.datetime.fromtimestamp(path.stat().st_mtime).astimezone().isoformat(timespec="seconds")
-    return {"ranks": summary.get("ranks", "the run goes on"), "last written": ended}
+    unknown = "not recorded" if summary else "the run goes on"
+    return {"version of the program": summary.get("version", unknown), "command": summary.get("command", unknown),
+            "ranks": summary.get("ranks", "the run goes on"), "last written": ended}
 
 
 def moved_most(frame):

@@ -104,8 +104,7 @@ def add_provenance(page, folder, scene_file, facts, task="run"):
     for path in [scene_file, *_inputs(scene_file)]:
         rows.append({"what": f"SHA-256 of {path.name}", "value": hashlib.sha256(path.read_bytes()).hexdigest()})
     page.table(rows)
-    page.text("The program does not record its own version and command line; the scene below holds all values that "
-              "were used. "
+    page.text("The scene below holds all values that were used, those of --set included. "
               f"Compute it again with: gcpdda {task} {scene_file.name}", "note")
     page.details(f"The scene ({scene_file.name})", scene_file.read_text())
 
