@@ -2,6 +2,7 @@
 
 #include "app/blocks.hpp"
 #include "app/condensed.hpp"
+#include "app/first_scenes.hpp"
 #include "app/root_file.hpp"
 #include "app/versions.hpp"
 #include "base/check.hpp"
@@ -43,6 +44,7 @@ struct Arguments {
   std::string to;
   std::string settled;
   std::string count; ///< of [ensemble]
+  std::string kind;  ///< of a new scene
   int ranks = 0;
   bool overwrite = false;
   bool only_bound = false; ///< of fos
@@ -308,6 +310,15 @@ const CLI::App *add_ensemble(CLI::App &app, Arguments &arguments) {
   return command;
 }
 
+const CLI::App *add_new(CLI::App &app, Arguments &arguments) {
+  CLI::App *command = app.add_subcommand("new", "write a commented scene to begin with, which runs as it is");
+  command->add_option("KIND", arguments.kind, "what the scene is about")
+      ->required()
+      ->check(CLI::IsMember(first_scene_names()));
+  command->add_option("FILE", arguments.scene, "file to write; default KIND.toml");
+  return command;
+}
+
 std::string list_of_exit_codes() {
   std::string text = "Exit codes:";
   for (const auto &[code, meaning] : exit_codes) {
@@ -323,6 +334,7 @@ ExitCode dispatch(const Communicator &world, int argc, char **argv) {
   app.set_version_flag(
       "--version", [] { return versions(); }, "print the versions of program and libraries");
   Arguments arguments;
+  const CLI::App *new_command = add_new(app, arguments);
   CLI::App *run_command = app.add_subcommand("run", "run a scene");
   take_scene(run_command, arguments);
   run_command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>");
@@ -362,6 +374,11 @@ ExitCode dispatch(const Communicator &world, int argc, char **argv) {
     if (world.is_root()) {
       std::cout << (values ? plausible_values_page() : scene_reference()) << std::flush;
     }
+    return exit_code::done;
+  }
+  if (new_command->parsed()) {
+    write_first_scene(world, arguments.kind,
+                      arguments.scene.empty() ? arguments.kind + ".toml" : arguments.scene);
     return exit_code::done;
   }
   if (restart_command->parsed()) {
