@@ -3,6 +3,7 @@
 #include "app/blocks.hpp"
 #include "app/condensed.hpp"
 #include "app/first_scenes.hpp"
+#include "app/report.hpp"
 #include "app/root_file.hpp"
 #include "app/versions.hpp"
 #include "base/check.hpp"
@@ -43,8 +44,9 @@ struct Arguments {
   std::string from;
   std::string to;
   std::string settled;
-  std::string count; ///< of [ensemble]
-  std::string kind;  ///< of a new scene
+  std::string count;                       ///< of [ensemble]
+  std::string kind;                        ///< of a new scene
+  std::vector<std::string> report_options; ///< as the Python package takes them
   int ranks = 0;
   bool overwrite = false;
   bool only_bound = false; ///< of fos
@@ -267,6 +269,18 @@ ExitCode blocks(const Communicator &world, const Arguments &arguments) {
   });
 }
 
+ExitCode new_scene(const Communicator &world, const Arguments &arguments) {
+  write_first_scene(world, arguments.kind,
+                    arguments.scene.empty() ? arguments.kind + ".toml" : arguments.scene);
+  return exit_code::done;
+}
+
+ExitCode report(const Communicator &world, const Arguments &arguments) {
+  std::vector<std::string> words = arguments.report_options;
+  words.insert(words.end(), {"--", arguments.directory});
+  return write_report(world, words);
+}
+
 void take_sets(CLI::App *command, Arguments &arguments) {
   command->add_option("--set", arguments.sets, "path=value: replace a value of the scene; repeatable")
       ->allow_extra_args(false);
@@ -275,6 +289,42 @@ void take_sets(CLI::App *command, Arguments &arguments) {
 void take_scene(CLI::App *command, Arguments &arguments) {
   command->add_option("SCENE", arguments.scene, "scene file (TOML)")->required();
   take_sets(command, arguments);
+}
+
+void add_run(CLI::App &app, Arguments &arguments) {
+  CLI::App *command = app.add_subcommand("run", "run a scene");
+  take_scene(command, arguments);
+  command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>");
+  command->add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the result folder");
+}
+
+const CLI::App *add_restart(CLI::App &app, Arguments &arguments) {
+  CLI::App *command = app.add_subcommand(
+      "restart", "go on with a stopped or broken run from its newest checkpoint, on any number of ranks");
+  command->add_option("DIR", arguments.directory, "result folder")->required();
+  take_sets(command, arguments);
+  command->add_flag("--accept-gaps", arguments.accepts_gaps,
+                    "go on though histories or frames from before the checkpoint are missing or damaged");
+  return command;
+}
+
+const CLI::App *add_inspect(CLI::App &app, Arguments &arguments) {
+  CLI::App *command = app.add_subcommand("inspect", "tell what a scene holds, costs and how it would be cut");
+  take_scene(command, arguments);
+  command->add_option("--ranks", arguments.ranks, "number of subdomains; default: ranks of this call")
+      ->check(CLI::Range(1, most_subdomains));
+  command->add_option("--svg", arguments.svg, "draw blocks and subdomains into this file");
+  return command;
+}
+
+const CLI::App *add_blocks(CLI::App &app, Arguments &arguments) {
+  CLI::App *command = app.add_subcommand(
+      "blocks", "cut the region of a scene into blocks, check and draw them without a run");
+  take_scene(command, arguments);
+  command->add_option("--svg", arguments.svg, "draw the blocks into this file");
+  command->add_option("--out", arguments.directory, "write the blocks into this block file (HDF5)");
+  command->add_option("--json", arguments.json, "write the report for programs into this file");
+  return command;
 }
 
 const CLI::App *add_fos(CLI::App &app, Arguments &arguments) {
@@ -319,6 +369,24 @@ const CLI::App *add_new(CLI::App &app, Arguments &arguments) {
   return command;
 }
 
+const CLI::App *add_report(CLI::App &app, Arguments &arguments) {
+  CLI::App *command = app.add_subcommand(
+      "report", "write one HTML file about the results of run, fos or ensemble; takes Python");
+  command->add_option("DIR", arguments.directory, "result folder")->required();
+  for (const auto &[name, meaning] :
+       {std::pair("--out", "file to write; default DIR/report.html"),
+        std::pair("--title", "heading; default: the name of the folder"),
+        std::pair("--frames", "most frames of the player, 0 for none; default 40")}) {
+    command->add_option_function<std::string>(
+        name,
+        [&arguments, option = std::string(name)](const std::string &value) {
+          arguments.report_options.push_back(option + '=' + value);
+        },
+        meaning);
+  }
+  return command;
+}
+
 std::string list_of_exit_codes() {
   std::string text = "Exit codes:";
   for (const auto &[code, meaning] : exit_codes) {
@@ -335,31 +403,13 @@ ExitCode dispatch(const Communicator &world, int argc, char **argv) {
       "--version", [] { return versions(); }, "print the versions of program and libraries");
   Arguments arguments;
   const CLI::App *new_command = add_new(app, arguments);
-  CLI::App *run_command = app.add_subcommand("run", "run a scene");
-  take_scene(run_command, arguments);
-  run_command->add_option("--out", arguments.directory, "result folder; default results/<scene stem>");
-  run_command->add_flag("--overwrite", arguments.overwrite, "replace an earlier run in the result folder");
-  CLI::App *restart_command = app.add_subcommand(
-      "restart", "go on with a stopped or broken run from its newest checkpoint, on any number of ranks");
-  restart_command->add_option("DIR", arguments.directory, "result folder")->required();
-  take_sets(restart_command, arguments);
-  restart_command->add_flag(
-      "--accept-gaps", arguments.accepts_gaps,
-      "go on though histories or frames from before the checkpoint are missing or damaged");
-  CLI::App *inspect_command =
-      app.add_subcommand("inspect", "tell what a scene holds, costs and how it would be cut");
-  take_scene(inspect_command, arguments);
-  inspect_command->add_option("--ranks", arguments.ranks, "number of subdomains; default: ranks of this call")
-      ->check(CLI::Range(1, most_subdomains));
-  inspect_command->add_option("--svg", arguments.svg, "draw blocks and subdomains into this file");
-  CLI::App *blocks_command = app.add_subcommand(
-      "blocks", "cut the region of a scene into blocks, check and draw them without a run");
-  take_scene(blocks_command, arguments);
-  blocks_command->add_option("--svg", arguments.svg, "draw the blocks into this file");
-  blocks_command->add_option("--out", arguments.directory, "write the blocks into this block file (HDF5)");
-  blocks_command->add_option("--json", arguments.json, "write the report for programs into this file");
+  add_run(app, arguments);
+  const CLI::App *restart_command = add_restart(app, arguments);
+  const CLI::App *inspect_command = add_inspect(app, arguments);
+  const CLI::App *blocks_command = add_blocks(app, arguments);
   const CLI::App *fos_command = add_fos(app, arguments);
   const CLI::App *ensemble_command = add_ensemble(app, arguments);
+  const CLI::App *report_command = add_report(app, arguments);
   CLI::App *reference_command = app.add_subcommand("reference", "print all scene keys as a Markdown page");
   bool values = false;
   reference_command->add_flag("--values", values, "print the plausible values and their sources instead");
@@ -377,9 +427,10 @@ ExitCode dispatch(const Communicator &world, int argc, char **argv) {
     return exit_code::done;
   }
   if (new_command->parsed()) {
-    write_first_scene(world, arguments.kind,
-                      arguments.scene.empty() ? arguments.kind + ".toml" : arguments.scene);
-    return exit_code::done;
+    return new_scene(world, arguments);
+  }
+  if (report_command->parsed()) {
+    return report(world, arguments);
   }
   if (restart_command->parsed()) {
     return restart(world, arguments);

@@ -145,7 +145,7 @@ def test_command_line(search, tmp_path):
     assert done.returncode == 0 and str(out) in done.stdout, done.stderr
     assert "<title>My slope</title>" in out.read_text()
     done = subprocess.run([str(SOURCE / "run" / "report.py"), str(tmp_path)], capture_output=True, text=True)
-    assert done.returncode == 1 and "not a result folder" in done.stderr and "Traceback" not in done.stderr
+    assert done.returncode == 4 and "not a result folder" in done.stderr and "Traceback" not in done.stderr
 
 
 def test_in_a_browser(opening, tmp_path):

@@ -104,9 +104,9 @@ mechanism, speed.
 """
 
 
-def report(words=None):
-    """Writes the report that the words of a command line ask for; returns an exit code."""
-    parser = argparse.ArgumentParser(prog="report.py", description=REPORT,
+def report(words=None, name="report.py"):
+    """Writes the report that the words of a command line ask for; returns an exit code, as the program has them."""
+    parser = argparse.ArgumentParser(prog=name, description=REPORT,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", type=pathlib.Path, metavar="DIR", help="result folder")
     parser.add_argument("--out", type=pathlib.Path, help="FILE.html (default: DIR/report.html)")
@@ -116,7 +116,8 @@ def report(words=None):
     from .reports import report as write
     try:
         out = write(chosen.directory, chosen.out, title=chosen.title, frames=chosen.frames)
-    except (FileNotFoundError, ValueError) as error:
-        sys.exit(f"report.py: {error}")
+    except (OSError, ValueError) as error:
+        print(f"{name}: error: {error}", file=sys.stderr)
+        return 4
     print(f"{out}, {out.stat().st_size / 1e6:.2f} MB")
     return 0
