@@ -303,6 +303,22 @@ void end_stage(RunState &run) {
   }
 }
 
+namespace {
+
+/// What is remembered of contacts between blocks that have not been removed.
+ContactMemory remembered_of_those_left(const RunState &run) {
+  ContactMemory memory = run.neighbours.remembered(run.blocks);
+  const auto is_gone = [&](const auto &record) {
+    return is_removed(run.clock.state, record.lower.value) ||
+           is_removed(run.clock.state, record.higher.value);
+  };
+  std::erase_if(memory.plain, is_gone);
+  std::erase_if(memory.others, is_gone);
+  return memory;
+}
+
+} // namespace
+
 void begin_next_stage(RunState &run) {
   expect(run.clock.stage_is_over() && !run.fault && !run.clock.is_finished(),
          "a stage begins when the one before is over");
@@ -331,13 +347,7 @@ void begin_next_stage(RunState &run) {
       excavate(run, held_beyond_viscous_sides(run), std::numeric_limits<double>::infinity());
     }
   }
-  ContactMemory memory = run.neighbours.remembered(run.blocks);
-  const auto is_gone = [&](const auto &record) {
-    return is_removed(run.clock.state, record.lower.value) ||
-           is_removed(run.clock.state, record.higher.value);
-  };
-  std::erase_if(memory.plain, is_gone);
-  std::erase_if(memory.others, is_gone);
+  ContactMemory memory = remembered_of_those_left(run);
   if (takes_away) {
     remove_blocks(run, run.clock.state.removed);
   }
