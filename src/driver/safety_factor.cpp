@@ -7,6 +7,7 @@
 #include "gcpdda/driver/run.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/run_comparison.hpp"
+#include "limit_analysis/limit_analysis.hpp"
 #include "model/generators.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/simulation.hpp"
@@ -116,7 +117,12 @@ private:
 
   ExitCode bound() {
     Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_directory()});
-    report_.bound = bound_at(settled);
+    try {
+      report_.bound = bound_at(settled);
+    } catch (const UnsolvedProgramme &unsolved) {
+      say(std::string(unsolved.what()) + "\n");
+      return exit_code::undecided;
+    }
     report_.is_bound_alone = true;
     conclude();
     return report_.bound ? exit_code::done : exit_code::undecided;

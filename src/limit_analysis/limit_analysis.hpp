@@ -21,9 +21,16 @@
 
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 namespace gcpdda {
+
+/// A linear programme took too long; the same on every rank.
+class UnsolvedProgramme : public std::runtime_error {
+public:
+  UnsolvedProgramme(std::size_t blocks, std::size_t forces);
+};
 
 /// What a block has to bear.
 struct LimitBlock {
