@@ -1,7 +1,5 @@
 #include "limit_analysis/limit_analysis.hpp"
 
-#include "base/check.hpp"
-
 #include <coin/Clp_C_Interface.h>
 
 #include <algorithm>
@@ -15,6 +13,10 @@ namespace gcpdda {
 
 namespace {
 
+/// What the simplex method leaves of a share that is 1.
+constexpr double rounding_of_share = 1e-7;
+/// Parts of unit vectors below this are rounding.
+constexpr double rounding_of_direction = 1e-12;
 /// Of the simplex method in one programme: about a minute for 2,000 blocks.
 constexpr int most_iterations = 50'000;
 
@@ -27,58 +29,65 @@ public:
       sum += norm(block.load);
     }
     unit_ = sum > 0.0 ? sum / static_cast<double>(blocks.size()) : 1.0;
-    for (const LimitBlock &block : blocks) {
-      right_.insert(right_.end(),
-                    {-block.load.x / unit_, -block.load.y / unit_, -block.torque / (block.size * unit_)});
+    for (std::size_t i = 0; i < blocks.size(); ++i) { // column 0: the share of the load
+      const LimitBlock &block = blocks[i];
+      const int row = 3 * static_cast<int>(i);
+      rows_.insert(rows_.end(), {row, row + 1, row + 2});
+      values_.insert(values_.end(),
+                     {block.load.x / unit_, block.load.y / unit_, block.torque / (block.size * unit_)});
     }
+    close_column(0.0, 1.0);
   }
 
   /// A force along `direction` at a point of a joint, its size between two bounds (N/m).
   void add(const LimitJoint &joint, Vec2 point, Vec2 direction, double least, double most) {
     put(joint.first, point, direction);
     put(joint.second, point, -1.0 * direction);
-    starts_.push_back(static_cast<CoinBigIndex>(rows_.size()));
-    low_.push_back(least / unit_);
-    high_.push_back(most / unit_);
+    close_column(least / unit_, most / unit_);
   }
 
-  /// @param basis  that of a similar programme, or empty; becomes the one of this
-  [[nodiscard]] bool is_feasible(std::vector<unsigned char> &basis) const {
+  /// The largest share of the load that the forces hold, at most 1.
+  [[nodiscard]] double largest_share() const {
     const std::unique_ptr<Clp_Simplex, void (*)(Clp_Simplex *)> model(Clp_newModel(), Clp_deleteModel);
     Clp_setLogLevel(model.get(), 0);
-    Clp_loadProblem(model.get(), static_cast<int>(low_.size()), static_cast<int>(right_.size()),
-                    starts_.data(), rows_.data(), values_.data(), low_.data(), high_.data(), nullptr,
-                    right_.data(), right_.data());
+    std::vector<double> costs(low_.size(), 0.0);
+    costs[0] = -1.0;
+    const std::vector<double> balance(3 * blocks_.size(), 0.0);
+    Clp_loadProblem(model.get(), static_cast<int>(low_.size()), static_cast<int>(balance.size()),
+                    starts_.data(), rows_.data(), values_.data(), low_.data(), high_.data(), costs.data(),
+                    balance.data(), balance.data());
     Clp_setMaximumIterations(model.get(), most_iterations);
-    if (basis.empty()) {
-      Clp_initialPrimalSolve(model.get());
-    } else {
-      Clp_copyinStatus(model.get(), basis.data());
-      Clp_dual(model.get(), 0);
-    }
-    const int status = Clp_status(model.get());
-    if (status != 0 && status != 1) {
+    Clp_initialPrimalSolve(model.get());
+    if (Clp_status(model.get()) != 0) { // no load needs no force, so that a solution exists
       throw UnsolvedProgramme(blocks_.size(), low_.size());
     }
-    const unsigned char *found = Clp_statusArray(model.get());
-    basis.assign(found, found + low_.size() + right_.size());
-    return status == 0;
+    return Clp_getColSolution(model.get())[0];
   }
 
 private:
+  void close_column(double least, double most) {
+    starts_.push_back(static_cast<CoinBigIndex>(rows_.size()));
+    low_.push_back(least);
+    high_.push_back(most);
+  }
   void put(std::int64_t block, Vec2 point, Vec2 force) {
     if (block < 0) {
       return;
     }
     const LimitBlock &on = blocks_[static_cast<std::size_t>(block)];
     const int row = 3 * static_cast<int>(block);
-    rows_.insert(rows_.end(), {row, row + 1, row + 2});
-    values_.insert(values_.end(), {force.x, force.y, cross(point - on.centroid, force) / on.size});
+    const std::array<double, 3> values{force.x, force.y, cross(point - on.centroid, force) / on.size};
+    for (int k = 0; k < 3; ++k) { // what rounding leaves of a direction would set the scale of its row
+      const double value = values[static_cast<std::size_t>(k)];
+      if (std::abs(value) > rounding_of_direction) {
+        rows_.push_back(row + k);
+        values_.push_back(value);
+      }
+    }
   }
 
   const std::vector<LimitBlock> &blocks_;
   double unit_ = 1.0; ///< of forces, N/m
-  std::vector<double> right_;
   std::vector<CoinBigIndex> starts_{0};
   std::vector<int> rows_;
   std::vector<double> values_;
@@ -88,11 +97,7 @@ private:
 
 } // namespace
 
-namespace {
-
-/// @param basis  of the programme with another factor, or empty
-bool can_hold_from(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoint> &joints,
-                   double factor, std::vector<unsigned char> &basis) {
+bool can_hold(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoint> &joints, double factor) {
   constexpr double infinite = std::numeric_limits<double>::max();
   Programme programme(blocks);
   for (const LimitJoint &joint : joints) {
@@ -110,10 +115,8 @@ bool can_hold_from(const std::vector<LimitBlock> &blocks, const std::vector<Limi
       programme.add(joint, joint.begin, perp(joint.normal), -most, most);
     }
   }
-  return programme.is_feasible(basis);
+  return programme.largest_share() > 1.0 - rounding_of_share;
 }
-
-} // namespace
 
 UnsolvedProgramme::UnsolvedProgramme(std::size_t blocks, std::size_t forces)
     : std::runtime_error(
@@ -122,26 +125,20 @@ UnsolvedProgramme::UnsolvedProgramme(std::size_t blocks, std::size_t forces)
           " iterations; cut the scene to the blocks around the slip surface, or use fos without "
           "--bound") {}
 
-bool can_hold(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoint> &joints, double factor) {
-  std::vector<unsigned char> basis;
-  return can_hold_from(blocks, joints, factor, basis);
-}
-
 std::optional<double> bound_of_factor(const std::vector<LimitBlock> &blocks,
                                       const std::vector<LimitJoint> &joints, double least, double most,
                                       double tolerance) {
-  std::vector<unsigned char> basis;
-  if (!can_hold_from(blocks, joints, least, basis)) {
+  if (!can_hold(blocks, joints, least)) {
     return least;
   }
-  if (can_hold_from(blocks, joints, most, basis)) {
+  if (can_hold(blocks, joints, most)) {
     return std::nullopt;
   }
   double holds = least;
   double fails = most;
   while (fails - holds > tolerance * holds) {
     const double middle = std::sqrt(holds * fails);
-    (can_hold_from(blocks, joints, middle, basis) ? holds : fails) = middle;
+    (can_hold(blocks, joints, middle) ? holds : fails) = middle;
   }
   return fails;
 }

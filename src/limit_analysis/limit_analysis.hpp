@@ -11,7 +11,7 @@
 // law of the joint admits. The blocks can hold only if some of them balance the load of every block: three
 // linear equations for each. The set of admissible forces shrinks where m, c and T are divided by a larger
 // factor, and the largest factor for which a balance exists is found by bisection, each time by a linear
-// programme without an objective.
+// programme: the largest share of the loads, up to all of them, that admissible forces balance.
 //
 // No equilibrium with a larger factor exists at this geometry, whatever path led to it, so that the factor of
 // a run lies below the bound. It is no lower bound: friction is not associated (slip does not open joints),

@@ -3,8 +3,8 @@
 // Rows of frames, histories and checkpoints from the state of a run.
 
 #include "gcpdda/io/frame_rows.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 #include "gcpdda/io/run_summary.hpp"
-#include "io/results/frame_writer.hpp"
 #include "io/results/history_writer.hpp"
 #include "simulation/simulation.hpp"
 

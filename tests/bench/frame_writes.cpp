@@ -3,7 +3,7 @@
 // ratios.
 
 #include "gcpdda/io/frame_rows.hpp"
-#include "io/results/frame_writer.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 
 #include <fmt/format.h>
 #include <hdf5.h>

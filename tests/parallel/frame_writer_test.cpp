@@ -2,7 +2,7 @@
 // the number of ranks. No fatal assertion: a rank that left early would leave the others waiting.
 
 #include "gcpdda/io/frame_rows.hpp"
-#include "io/results/frame_writer.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 #include "io/results/id_slabs.hpp"
 #include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gcpdda/io/frame_rows.hpp"
-#include "io/results/frame_writer.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 
 #include <algorithm>
 #include <numeric>

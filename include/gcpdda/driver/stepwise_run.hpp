@@ -4,10 +4,10 @@
 
 #include "gcpdda/base/scene_error.hpp"
 #include "gcpdda/io/frame_rows.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 #include "gcpdda/io/run_summary.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
-#include "io/results/frame_writer.hpp"
 
 #include <cstdint>
 #include <memory>

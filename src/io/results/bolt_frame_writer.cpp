@@ -1,7 +1,7 @@
 // Frames of bolts.
 
 #include "gcpdda/io/frame_rows.hpp"
-#include "io/results/frame_writer.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 
 #include "io/hdf5/hdf5_collective_file.hpp"
 #include "io/results/hdf5_vtk_layout.hpp"

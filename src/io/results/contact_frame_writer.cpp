@@ -1,7 +1,7 @@
 // Frames of contacts.
 
 #include "gcpdda/io/frame_rows.hpp"
-#include "io/results/frame_writer.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 
 #include "io/results/frame_fields.hpp"
 #include "io/results/frame_strips.hpp"

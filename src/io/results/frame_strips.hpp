@@ -3,7 +3,7 @@
 // The rows of a frame on their way from the ranks that have them to those that write them.
 
 #include "gcpdda/io/frame_rows.hpp"
-#include "io/results/frame_writer.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 
 #include <cstdint>
 #include <utility>

@@ -2,7 +2,7 @@
 // rank, every row travels once to the owner of its slab, and all ranks write their slabs together, strip by
 // strip. What never changes is in a topology file of its own, which the frames link to.
 
-#include "io/results/frame_writer.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 
 #include "io/hdf5/durable_file.hpp"
 #include "io/hdf5/hdf5_input.hpp"

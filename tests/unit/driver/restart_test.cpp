@@ -5,9 +5,9 @@
 
 #include "base/check.hpp"
 #include "gcpdda/io/frame_rows.hpp"
+#include "gcpdda/io/frame_writer.hpp"
 #include "gcpdda/io/run_summary.hpp"
 #include "io/results/folder_lock.hpp"
-#include "io/results/frame_writer.hpp"
 #include "io/results/history_writer.hpp"
 #include "io/results/run_comparison.hpp"
 #include "simulation/time_plan.hpp"
