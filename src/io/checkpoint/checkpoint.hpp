@@ -107,7 +107,8 @@ struct Restored {
 /// Put the newest checkpoint of a run's folder that is whole and fits into the rows of `blocks`. Collective.
 ///
 /// @param directory  the result folder
-/// @param blocks  owned: the mobile ones of this rank's slab of ids (results/id_slabs.hpp), ascending; shapes and
+/// @param blocks  owned: the mobile ones of this rank's slab of ids (results/id_slabs.hpp), ascending; shapes
+/// and
 ///                constants as the scene says
 /// @param prepare  what these rows need to be those of a checkpoint with these facts; called before each one
 ///                 is tried; rejects it by a FileError on all ranks
