@@ -2,9 +2,11 @@
 
 #include "base/check.hpp"
 #include "base/exact_sum.hpp"
+#include "driver/odd_blocks.hpp"
 #include "driver/svg.hpp"
 #include "model/stiffness.hpp"
 #include "partition/partition_cells.hpp"
+#include "simulation/rank_facts.hpp"
 #include "simulation/simulation.hpp"
 
 #include <algorithm>
@@ -18,15 +20,7 @@ namespace gcpdda {
 
 namespace {
 
-/// Corners sharper and blocks narrower than these are reported: contact forces there are soft or short-lived.
-constexpr double needle_angle = 10.0; // degrees
-constexpr double sliver_ratio = 0.05; // narrowest width over sqrt(area)
 constexpr std::int64_t most_drawn = 200'000;
-
-std::int64_t total(const Communicator &communicator, std::int64_t value) {
-  communicator.sum(std::span(&value, 1));
-  return value;
-}
 
 std::string bytes_text(double bytes) {
   return bytes < 1e6   ? fmt::format("{:.0f} kB", bytes / 1e3)
@@ -61,32 +55,6 @@ std::int64_t state_bytes(const Simulation &simulation) {
   return static_cast<std::int64_t>(bytes);
 }
 
-/// The worst of its kind and how many there are, over all ranks.
-struct Oddity {
-  std::int64_t count = 0;
-  double worst = std::numeric_limits<double>::infinity();
-  std::int64_t block = -1;
-
-  void see(double value, double limit, std::int64_t id) {
-    count += value < limit ? 1 : 0;
-    if (value < worst || (value == worst && id < block)) {
-      worst = value;
-      block = id;
-    }
-  }
-  void agree(const Communicator &communicator) {
-    count = total(communicator, count);
-    Oddity all;
-    for (const auto &other : communicator.all_gather(std::vector<Oddity>{*this})) {
-      if (other[0].block >= 0) {
-        all.see(other[0].worst, 0.0, other[0].block);
-      }
-    }
-    worst = all.worst;
-    block = all.block;
-  }
-};
-
 /// The heaviest mobile block; of several the first.
 struct Heaviest {
   double weight = 0.0; ///< N/m
@@ -100,19 +68,6 @@ struct Heaviest {
     }
   }
 };
-
-/// Sharpest convex corner of a row, degrees.
-double sharpest_corner(const BlockSystem &blocks, std::size_t row) {
-  const auto normal = blocks.of_row(blocks.reference_normal, row);
-  double sharpest = 180.0;
-  for (std::size_t i = 0; i < normal.size(); ++i) {
-    const Vec2 a = normal[i];
-    const Vec2 b = normal[(i + 1) % normal.size()];
-    const double turn = std::atan2(cross(a, b), dot(a, b)) * 180.0 / std::numbers::pi;
-    sharpest = std::min(sharpest, 180.0 - std::max(0.0, turn));
-  }
-  return sharpest;
-}
 
 class Inspection {
 public:
@@ -403,27 +358,16 @@ private:
   }
 
   std::string oddity_lines() {
-    const BlockSystem &blocks = simulation_.blocks();
-    Oddity needles;
-    Oddity slivers;
-    for (std::size_t row = 0; row < blocks.num_rows(); ++row) {
-      if (row < blocks.num_owned || (blocks.is_fixed(row) && communicator_.is_root())) {
-        const BlockProperties &block = blocks.properties[row];
-        needles.see(sharpest_corner(blocks, row), needle_angle, block.id.value);
-        slivers.see(block.width / std::sqrt(block.area), sliver_ratio, block.id.value);
-      }
-    }
-    needles.agree(communicator_);
-    slivers.agree(communicator_);
+    const OddBlocks odd = odd_blocks(communicator_, simulation_.blocks());
     const auto name = [&](const Oddity &oddity) { return block_name(simulation_.scene(), oddity.block); };
     return line("corners",
                 fmt::format("{} blocks with a needle below {:g} degrees; the sharpest corner has {:.3g} "
                             "degrees, block '{}'",
-                            needles.count, needle_angle, needles.worst, name(needles))) +
+                            odd.needles.count, needle_angle, odd.needles.worst, name(odd.needles))) +
            line("slivers",
                 fmt::format("{} blocks narrower than {:g} of sqrt(area); the narrowest has {:.3g}, "
                             "block '{}'",
-                            slivers.count, sliver_ratio, slivers.worst, name(slivers)));
+                            odd.slivers.count, sliver_ratio, odd.slivers.worst, name(odd.slivers)));
   }
 
   void draw() {

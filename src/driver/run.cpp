@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 #include "base/program_facts.hpp"
+#include "driver/run_facts.hpp"
 #include "driver/run_log.hpp"
 #include "driver/run_words.hpp"
 #include "driver/stop_signal.hpp"
@@ -414,74 +415,19 @@ private:
   }
 
   void fill(RunSummary &summary) {
-    const Counters &counters = simulation_.counters();
-    const TimePlan &plan = simulation_.plan();
+    take_facts(communicator_, simulation_, first_step_, summary);
     summary.version = program_version();
     summary.command = command_line();
-    summary.ranks = communicator_.size();
-    summary.blocks = total(communicator_, simulation_.blocks().num_owned);
-    summary.fixed_blocks = static_cast<std::int64_t>(simulation_.blocks().num_fixed);
-    summary.steps = simulation_.step_count();
-    summary.time = simulation_.time();
-    summary.time_step = plan.time_step;
-    summary.time_step_min = plan.time_step;
     summary.contacts = contacts_at_end_;
-    fill_work(summary);
-    fill_times(summary);
-    double max_overlap = counters.max_overlap;
-    communicator_.max(std::span(&max_overlap, 1));
-    summary.max_overlap = max_overlap;
-    if (const auto farthest = permanent_displacement(simulation_.state())) {
-      summary.permanent_displacement = farthest->distance;
-      summary.permanent_block = block_name(simulation_.scene(), farthest->block);
-    }
     summary.energy = energy_;
     const std::vector<BoltLoad> loads = histories_ ? histories_->bolt_loads() : std::vector<BoltLoad>();
     summary.bolts = with_installation(loads, bolts_at_start_, simulation_); // of the root
-    if (simulation_.restored()) {
-      summary.restarted_at = simulation_.restored()->facts.time;
-    }
-    if (simulation_.is_staged()) {
-      for (const StageResult &result : simulation_.stage_results()) {
-        const Stage &stage = simulation_.stages()[summary.stages.size()];
-        summary.stages.push_back({stage.name, word_of(result.verdict), result});
-      }
-    }
-  }
-
-  void fill_work(RunSummary &summary) {
-    const Counters &counters = simulation_.counters();
-    summary.contact_steps = total(communicator_, counters.contact_steps);
-    summary.evaluations_per_rank = counts_by_rank(communicator_, counters.evaluations);
-    summary.imbalance = imbalance_of(summary.evaluations_per_rank);
-    summary.work_per_rank = counts_by_rank(communicator_, counters.evaluations + counters.block_steps);
-    summary.ghosts_per_rank =
-        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_ghosts));
-    const double steps = static_cast<double>(std::max<std::int64_t>(summary.steps - first_step_, 1));
-    summary.bytes_sent_per_step = static_cast<double>(total(communicator_, counters.bytes)) / steps;
-    summary.messages_per_step = static_cast<double>(total(communicator_, counters.messages)) / steps;
-    const auto add = [&](const char *name, std::int64_t value) {
-      summary.counters.emplace_back(name, static_cast<double>(value));
-    };
-    add("migrations", total(communicator_, counters.migrations));
-    add("refreshes", counters.refreshes);
-    add("rebalances", counters.rebalances);
-    add("cross_rank_contacts", total(communicator_, counters.cross_rank_contacts));
-    add("cross_rank_contacts_formed", total(communicator_, counters.cross_rank_contacts_formed));
-    add("normals_undefined", total(communicator_, counters.normals_undefined));
-  }
-
-  void fill_times(RunSummary &summary) {
     summary.wall_s = spread(communicator_, loop_seconds_)[2];
     const auto num_ranks = static_cast<double>(communicator_.size());
     summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
     summary.setup_wall_s = spread(communicator_, set_up_seconds_)[2];
     summary.output_wall_s = spread(communicator_, output_seconds())[2];
     summary.total_wall_s = spread(communicator_, seconds_since(start_))[2];
-    for (std::size_t p = 0; p < phase_names.size(); ++p) {
-      const double seconds = simulation_.phases().seconds(static_cast<Phase>(p));
-      summary.phases.emplace_back(phase_names[p], spread(communicator_, seconds));
-    }
   }
 
   Clock::time_point start_ = Clock::now();
