@@ -54,10 +54,12 @@ struct LimitJoint {
 
 /// Whether some admissible forces balance the loads when the strengths of weakened joints are divided by
 /// `factor`.
+/// @throws UnsolvedProgramme
 bool can_hold(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoint> &joints, double factor);
 
-/// The bound to `tolerance` of it, from above; nothing where the blocks could still hold at `most`. Less than
-/// `least` where they cannot hold at that.
+/// The bound to `tolerance` of it, from above; nothing where the blocks could still hold at `most`, and
+/// `least` where they cannot even hold at that.
+/// @throws UnsolvedProgramme
 std::optional<double> bound_of_factor(const std::vector<LimitBlock> &blocks,
                                       const std::vector<LimitJoint> &joints, double least, double most,
                                       double tolerance);

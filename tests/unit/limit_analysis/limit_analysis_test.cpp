@@ -66,6 +66,46 @@ TEST(LimitAnalysis, WeakerJointGoverns) {
               5e-6);
 }
 
+// A block of 51,012 N/m that has settled on a plane of 30 degrees, glued by 1.5 of what drives it: the normal
+// of its joint is that of the plane but for a part of 3e-18, and its load has a torque of 1e-6 N left.
+TEST(LimitAnalysis, RoundingOfASettledStateChangesNothing) {
+  const LimitBlock block{{1.0000379906499344, 0.4999779108510925},
+                         std::sqrt(2.0),
+                         {25505.999995000453, -44177.687897789925},
+                         1.6250469343503937e-06};
+  LimitJoint joint;
+  joint.second = 0;
+  joint.begin = {2.8425607541349152e-05, -1.3806146285795485e-05};
+  joint.end = {2.0000284260301151, -1.3806146285801889e-05};
+  joint.normal = {-3.2017946496843251e-18, -1.0};
+  joint.tan_friction = std::tan(5.0 * degree);
+  joint.cohesion = 38259.00000808362;
+  const double expected = 1.5 + std::tan(5.0 * degree) / std::tan(30.0 * degree);
+  EXPECT_NEAR(bound({block}, {joint}), expected, 5e-6);
+  EXPECT_TRUE(can_hold({block}, {joint}, 0.5));
+}
+
+// However the axes lie: parts of unit vectors that are zero in some are rounding in others.
+TEST(LimitAnalysis, TurnsChangeNothing) {
+  for (int step = 0; step < 24; ++step) {
+    const double angle = 15.0 * degree * step;
+    const auto turned = [&](Vec2 x) {
+      return Vec2{std::cos(angle) * x.x - std::sin(angle) * x.y,
+                  std::sin(angle) * x.x + std::cos(angle) * x.y};
+    };
+    LimitBlock block = block_on(30.0 * degree, 0.5);
+    LimitJoint glued = base_of(2.0, 5.0 * degree);
+    glued.cohesion = 1.5 * std::sin(30.0 * degree);
+    block.centroid = turned(block.centroid);
+    block.load = turned(block.load);
+    glued.begin = turned(glued.begin);
+    glued.end = turned(glued.end);
+    glued.normal = turned(glued.normal);
+    EXPECT_NEAR(bound({block}, {glued}), 1.5 + std::tan(5.0 * degree) / std::tan(30.0 * degree), 5e-6)
+        << 15 * step << " degrees";
+  }
+}
+
 TEST(LimitAnalysis, SaysWhereNothingFails) {
   EXPECT_FALSE(bound_of_factor({block_on(0.0, 1.0)}, {base_of(1.0, 30.0 * degree)}, 0.5, 4.0, 0.01));
   EXPECT_EQ(bound_of_factor({block_on(40.0 * degree, 0.5)}, {base_of(2.0, 20.0 * degree)}, 0.5, 4.0, 0.01),
