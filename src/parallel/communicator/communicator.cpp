@@ -302,7 +302,7 @@ MpiScope::~MpiScope() {
   }
   // MPI_Init leaves an event to Open MPI's own thread. MPI_Finalize of Open MPI 4 unloads the code that
   // handles it without asking whether it has been handled: on a busy machine a short run would end in a crash
-  // (github.com/open-mpi/ompi/issues/10117). Threads that never sleep end the wait after its limit.
+  // (issue 10117 of Open MPI). Threads that never sleep end the wait after its limit.
   wait_for_idle_threads(std::chrono::seconds(10));
   MPI_Finalize();
 }
