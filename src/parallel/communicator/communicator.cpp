@@ -21,7 +21,6 @@ namespace gcpdda {
 
 namespace {
 
-constexpr int data_tag = 1;
 constexpr int exchange_tag = 2;
 constexpr int round_tag = 3;
 
