@@ -1,5 +1,6 @@
 #include "closed_paths.hpp"
 
+#include "contact/block_view.hpp"
 #include "contact/contact_forces.hpp"
 #include "model/block_system.hpp"
 #include "support/setting.hpp"

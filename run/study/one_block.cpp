@@ -1,5 +1,7 @@
 #include "one_block.hpp"
 
+#include "contact/block_view.hpp"
+#include "contact/geometry/overlap_energy.hpp"
 #include "support/setting.hpp"
 
 #include <algorithm>

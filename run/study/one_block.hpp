@@ -4,7 +4,6 @@
 // friction and a dashpot of its own whose rejected forms can be switched on.
 
 #include "contact/contact_forces.hpp"
-#include "dynamics/integrate.hpp"
 #include "dynamics/scheme.hpp"
 
 #include <vector>

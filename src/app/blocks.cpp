@@ -10,7 +10,7 @@
 #include "blockgen/region_cutter.hpp"
 #include "gcpdda/blockgen/region_blocks.hpp"
 #include "geometry/polygon.hpp"
-#include "io/blocks/block_file.hpp"
+#include "io/blocks/block_file_writer.hpp"
 #include "io/results/id_slabs.hpp"
 #include "model/generators.hpp"
 #include "simulation/region_slabs.hpp"

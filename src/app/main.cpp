@@ -11,6 +11,7 @@
 #include "driver/inspect.hpp"
 #include "driver/restart.hpp"
 #include "driver/safety_factor.hpp"
+#include "driver/safety_search.hpp"
 #include "driver/stop_signal.hpp"
 #include "gcpdda/base/exit_code.hpp"
 #include "gcpdda/driver/run.hpp"
@@ -19,6 +20,7 @@
 #include "io/hdf5/unclosed_files.hpp"
 #include "io/scene/scene_reference.hpp"
 #include "simulation/plausibility.hpp"
+#include "simulation/plausible_ranges.hpp"
 #include "simulation/scene_size.hpp"
 #include "simulation/simulation.hpp"
 

@@ -1,6 +1,4 @@
-// Rows of the system as the contact integrals see them.
-
-#include "contact/contact_forces.hpp"
+#include "contact/block_view.hpp"
 
 namespace gcpdda {
 

@@ -368,16 +368,6 @@ private:
   ClosedPair closed_;                ///< the same, with one of these taken out
 };
 
-/// int t X^T with X = F^-1 (x - x_c) of what BlockSums has added.
-BlockGradientSum in_reference_axes(const BlockGradientSum &sum, const Mat2 &to_reference);
-
-/// One region's part of a block's force and dyad about the block's trial centroid.
-struct ContactPart {
-  Vec2 force;
-  Mat2 dyad;
-};
-ContactPart contact_part(const RegionForce &force, bool is_lower, Vec2 centroid);
-
 /// The trial configuration that comes next, seen from the last one.
 class ComingConfiguration {
 public:
@@ -392,13 +382,5 @@ private:
   std::vector<RigidDof> steps_; ///< by row
   std::vector<Mat2> turns_;     ///< by entry of BlockSystem::deformation
 };
-
-/// Material point X of a block that is now at x, in the trial configuration.
-Vec2 reference_point(const BlockSystem &system, std::size_t row, Vec2 x);
-/// Where the material point X of a block is in the trial configuration.
-Vec2 current_point(const BlockSystem &system, std::size_t row, Vec2 x);
-
-/// @param outline  is found, and has to live as long as the view
-BlockView view_of(const BlockSystem &system, std::size_t row, TrialOutline &outline);
 
 } // namespace gcpdda

@@ -1,6 +1,5 @@
-// What a region does to each of its two blocks (contact_forces.hpp).
 
-#include "contact/contact_forces.hpp"
+#include "contact/contact_sums.hpp"
 
 namespace gcpdda {
 

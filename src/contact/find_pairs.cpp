@@ -1,6 +1,5 @@
-// Pairs of blocks whose boxes meet (candidates.hpp).
 
-#include "contact/candidates.hpp"
+#include "contact/find_pairs.hpp"
 
 #include <algorithm>
 #include <cmath>

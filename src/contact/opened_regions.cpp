@@ -1,6 +1,8 @@
 #include "contact/opened_regions.hpp"
 
+#include "contact/block_view.hpp"
 #include "contact/contact_forces.hpp"
+#include "contact/geometry/overlap_energy.hpp"
 
 #include <algorithm>
 #include <cmath>

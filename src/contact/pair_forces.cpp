@@ -1,5 +1,6 @@
 // One pair after the other, any shapes: what the plain pairs' lanes (plain_kernel.hpp) are not for.
 
+#include "contact/block_view.hpp"
 #include "contact/contact_forces.hpp"
 #include "contact/laws/bond_work.hpp"
 #include "contact/laws/dilation.hpp"

@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "driver/histogram.hpp"
 #include "driver/safety_factor.hpp"
+#include "driver/safety_search.hpp"
 #include "driver/stop_signal.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "io/hdf5/passing_files.hpp"

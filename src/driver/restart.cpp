@@ -2,7 +2,7 @@
 
 #include "base/check.hpp"
 #include "gcpdda/driver/run.hpp"
-#include "io/checkpoint/checkpoint.hpp"
+#include "io/checkpoint/checkpoint_reader.hpp"
 #include "io/results/result_directory.hpp"
 #include "model/fingerprint.hpp"
 #include "simulation/simulation.hpp"

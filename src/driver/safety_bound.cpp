@@ -1,6 +1,7 @@
 #include "driver/safety_bound.hpp"
 
-#include "driver/safety_factor.hpp"
+#include "contact/contact_sums.hpp"
+#include "driver/safety_search.hpp"
 #include "limit_analysis/limit_analysis.hpp"
 #include "simulation/evaluation.hpp"
 

@@ -2,11 +2,12 @@
 
 #include "base/check.hpp"
 #include "driver/safety_bound.hpp"
+#include "driver/safety_search.hpp"
 #include "driver/stop_signal.hpp"
 #include "driver/svg.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "geometry/polygon.hpp"
-#include "io/results/run_comparison.hpp"
+#include "io/results/frame_reader.hpp"
 #include "limit_analysis/limit_analysis.hpp"
 #include "model/generators.hpp"
 #include "simulation/rank_facts.hpp"

@@ -24,44 +24,6 @@
 
 namespace gcpdda {
 
-/// Verdict of the trial at a factor; none where it has not run.
-using TrialVerdicts = std::function<std::optional<Verdict>(double factor)>;
-
-/// Where a search stands.
-struct SafetySearch {
-  std::optional<double> next; ///< the factor to try; none at the end
-  std::optional<double> holds;
-  std::optional<double> fails;
-  std::vector<double> undecided; ///< between these two, ascending
-  std::vector<double> decisive;  ///< what all this rests on, in the order they were asked for
-};
-SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &verdicts);
-
-/// The next factor and those that would follow it after either outcome, in the order of how soon they may be
-/// asked for; at most `most` of them.
-std::vector<double> next_factors(const StrengthReduction &reduction, const TrialVerdicts &verdicts,
-                                 std::size_t most);
-
-/// A scene without stages settles for five times run.duration at most; its trials take run.duration as limit.
-Scene with_settle_stage(Scene scene);
-
-/// The scene up to the end of its last settle stage, strengths divided by `factor` from the beginning.
-/// @throws SceneError where no stage is of kind settle
-Scene settling_scene(const Scene &scene, double factor);
-
-/// How Scene::resolved begins after a settling_scene() with another factor than 1; the factor follows.
-inline constexpr std::string_view settled_weaker = "# settled by gcpdda fos: strengths as below divided by ";
-
-/// Whether the strengths of a law are divided.
-bool is_weakened(const StrengthReduction &reduction, std::size_t law);
-
-/// Name of the stage in which the dynamic step confirms what the static solver has found at rest.
-inline constexpr const char *confirming_stage = "confirm";
-
-/// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints. Where
-/// the static solver finds that they hold, the dynamic step confirms it in a stage of its own.
-Scene weakened_scene(const Scene &scene, double factor);
-
 struct SafetyOptions {
   std::filesystem::path directory;
   bool overwrite = false;

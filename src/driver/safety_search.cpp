@@ -1,6 +1,5 @@
-// Which factors are tried, and the scene of a trial.
 
-#include "driver/safety_factor.hpp"
+#include "driver/safety_search.hpp"
 
 #include "simulation/simulation.hpp"
 

@@ -1,4 +1,4 @@
-// Rows on which only contacts and gravity act, in lanes (block_solve.hpp).
+#include "dynamics/free_rows.hpp"
 
 #include "dynamics/block_solve.hpp"
 

@@ -1,4 +1,4 @@
-// Works of the forces of an evaluation on the half step around it (integrate.hpp).
+#include "dynamics/half_works.hpp"
 
 #include "dynamics/lanes/block_lanes.hpp"
 

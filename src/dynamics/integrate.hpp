@@ -126,34 +126,6 @@ inline double most_motion(const BlockSystem &system, std::size_t row, double tim
           time_step * (most(v.u) + radius * turning + time_step * (most(a.u) + radius * turning_rate)));
 }
 
-/// What acts on free rows: those without an entry of BlockSystem::applied in a run without Rayleigh damping,
-/// deformable ones in a scene without bolts.
-struct FreeRows {
-  BodyForces body; ///< now
-  double local_damping = 0.0;
-  double safe_motion = std::numeric_limits<double>::infinity(); ///< as of solve_and_update(), m
-  bool have_deformable = true;                                  ///< or only rigid ones are free
-};
-
-/// Half the work of the forces of a block's last evaluation, over the last increment of its trial
-/// configuration (J/m): what the trapezoid takes from one end. Of fixed points and viscous sides none.
-struct HalfWorks {
-  double shear = 0.0;
-  double damping = 0.0;
-  double load = 0.0;
-  double gravity = 0.0;
-};
-HalfWorks half_works(const BlockSystem &system, std::size_t row, const AppliedForces &applied);
-/// The same for fixed points and viscous sides, whose force is known only after the step it acts in.
-double anchor_half_work(const BlockSystem &system, std::size_t row);
-/// Onto the works of a row so far.
-void add_to_ledger(BlockSystem &system, std::size_t row, const HalfWorks &half);
-
-/// What the forces of the last evaluation do over the increment behind it, onto the works of owned rows
-/// [first, last), which have been predicted since.
-void add_half_works(BlockSystem &system, std::size_t first, std::size_t last,
-                    Instructions instructions = Instructions::widest);
-
 /// What is to be known of rows that have been advanced.
 struct AdvanceReport {
   /// The first one whose new state is not finite, or was turned inside out (det F <= 0); it keeps its old
@@ -170,26 +142,6 @@ struct AdvanceReport {
     largest_turn = 0.0;
   }
 };
-
-/// Advances free rows from `first` on, several at a time, as far as rigid or deformable ones come one behind
-/// the other: the forces on them, local damping, the half of the works of the ledger that goes with these
-/// forces, and the step, to the bits that one after the other would have.
-///
-/// @return the first row that is left
-std::size_t advance_free_rows(BlockSystem &system, const FreeRows &rows, const Scheme &scheme,
-                              double time_step, Elasticity elasticity, std::size_t first, std::size_t last,
-                              AdvanceReport &report, Instructions instructions = Instructions::widest);
-
-/// Non-viscous damping of one owned rigid row, for static problems: every generalised force loses `share` of
-/// its size against the velocity it works on, f - share |f| sign(v). The force of anchors of the last step
-/// counts in f. What is taken is added to the damping forces. Driven blocks are left alone, and so are
-/// deformable ones: they lose their share within the step (OwnForces::local_damping).
-void apply_local_damping(BlockSystem &system, std::size_t row, double share);
-
-/// Mass-proportional damping of one owned row, f - alpha M v_n; what is taken is added to the damping forces.
-/// Driven blocks are left alone.
-/// @param mass_damping  alpha, 1/s
-void apply_mass_damping(BlockSystem &system, std::size_t row, double mass_damping);
 
 /// Advance owned rows [first, last) from t_n to t_{n+1} under their total forces: one system each, diagonal
 /// for a rigid block without fixed points, else by its own factorised matrix. Needs make_block_matrices().

@@ -69,7 +69,7 @@ double amplification(const Scheme &scheme, double frequency, double damping_rati
 /// Local damping of share a drives back what moves away with (1 + a) times its force. What swings fastest
 /// moves away in every step, and then W grows by sqrt(1 + a) and the dashpot's ratio too: at a = 0.8 a
 /// neutral scheme has a limit of 1.49. Deformable blocks do not grow there, but they come to rest below this
-/// limit only (local_damping.cpp). (Not a bound for a scheme that takes forces later than leapfrog does:
+/// limit only (local_damping.hpp). (Not a bound for a scheme that takes forces later than leapfrog does:
 /// central differences have 1.09.)
 double stability_limit(const Scheme &scheme, double damping_ratio, double local_damping = 0.0);
 

@@ -1,7 +1,7 @@
 #include "dynamics/static_springs.hpp"
 
 #include "dynamics/deformable.hpp"
-#include "dynamics/integrate.hpp"
+#include "dynamics/half_works.hpp"
 #include "dynamics/own_springs.hpp"
 
 namespace gcpdda {

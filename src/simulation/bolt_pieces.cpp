@@ -1,8 +1,7 @@
-// Where a bolt crosses which blocks.
+#include "simulation/bolt_pieces.hpp"
 
 #include "geometry/aabb.hpp"
 #include "geometry/holds_point.hpp"
-#include "simulation/bolts.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,8 @@
 #include "simulation/bolts.hpp"
 
 #include "base/check.hpp"
-#include "contact/contact_forces.hpp"
+#include "contact/contact_sums.hpp"
+#include "simulation/bolt_pieces.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -24,23 +24,6 @@ namespace gcpdda {
 
 struct BlockContactSum;
 
-/// A stretch of a bolt within one block, as shares of its way from head to tip.
-struct BoltPiece {
-  std::int64_t bolt = 0; ///< index into Scene::bolts
-  std::int64_t block = 0;
-  double begin = 0.0;
-  double end = 0.0;
-};
-
-/// Append the stretches of a bolt inside a simple polygon.
-void append_pieces(const Bolt &bolt, std::int64_t index, std::span<const Vec2> polygon, std::int64_t block,
-                   std::vector<BoltPiece> &pieces);
-
-/// The links of one bolt; their ends are world positions yet, not those of a block.
-/// @param pieces  of the bolt, in any order; sorted on return
-std::vector<BoltLink> links_of(const Bolt &bolt, std::int64_t index, const SupportType &support,
-                               std::vector<BoltPiece> &pieces);
-
 /// A link as a line, from halfway to the link before, or the bolt's head, to halfway to the next, or its tip.
 struct LinkLine {
   std::uint32_t link = 0; ///< index into Bolts::links()

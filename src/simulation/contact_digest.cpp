@@ -1,5 +1,7 @@
 #include "simulation/contact_digest.hpp"
 
+#include "contact/contact_sums.hpp"
+
 namespace gcpdda {
 
 void ContactDigest::find(const BlockSystem &blocks, const Candidates &candidates,

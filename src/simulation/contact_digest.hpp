@@ -3,6 +3,7 @@
 // What frames and histories tell of contacts, from one pass over their details.
 
 #include "contact/contact_forces.hpp"
+#include "contact/contact_sums.hpp"
 
 #include <array>
 #include <cstdint>

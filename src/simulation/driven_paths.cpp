@@ -1,5 +1,6 @@
 #include "simulation/driven_paths.hpp"
 
+#include "contact/block_view.hpp"
 #include "contact/contact_forces.hpp"
 #include "dynamics/integrate.hpp"
 #include "model/generators.hpp"

@@ -1,11 +1,14 @@
 #include "simulation/energy_ledger.hpp"
 
 #include "base/exact_sum.hpp"
+#include "contact/block_view.hpp"
+#include "contact/geometry/overlap_energy.hpp"
 #include "contact/laws/bonds.hpp"
 #include "contact/laws/region_law.hpp"
 #include "contact/opened_regions.hpp"
 #include "contact/pair_energies.hpp"
 #include "dynamics/deformable.hpp"
+#include "dynamics/half_works.hpp"
 #include "simulation/step_rows.hpp"
 
 #include <algorithm>

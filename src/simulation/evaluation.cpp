@@ -1,7 +1,5 @@
 #include "simulation/evaluation.hpp"
 
-#include "dynamics/integrate.hpp"
-
 namespace gcpdda {
 
 void evaluate_group(RunState &run, const PairGroup &group) {

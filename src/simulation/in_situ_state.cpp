@@ -1,5 +1,6 @@
 #include "simulation/in_situ_state.hpp"
 
+#include "contact/find_pairs.hpp"
 #include "contact/in_situ.hpp"
 #include "dynamics/deformable.hpp"
 #include "io/results/id_slabs.hpp"

@@ -1,5 +1,6 @@
 #include "simulation/initial_overlaps.hpp"
 
+#include "contact/find_pairs.hpp"
 #include "geometry/common_area.hpp"
 
 #include <algorithm>

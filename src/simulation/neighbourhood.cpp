@@ -1,5 +1,6 @@
 #include "simulation/neighbourhood.hpp"
 
+#include "contact/find_pairs.hpp"
 #include "dynamics/integrate.hpp"
 #include "parallel/migration.hpp"
 

@@ -5,6 +5,7 @@
 #include "base/check.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/polygon.hpp"
+#include "simulation/plausible_ranges.hpp"
 
 #include <fmt/format.h>
 

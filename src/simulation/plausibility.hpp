@@ -11,12 +11,6 @@
 
 namespace gcpdda {
 
-/// All rows, in the order of scene_keys.md.
-std::span<const PlausibleRange> plausible_ranges();
-
-/// The page run/guide/plausible_values.md (Markdown).
-std::string plausible_values_page();
-
 /// What is implausible in a scene that is valid: quantities outside the ranges above, with what was probably
 /// meant, times that lie beyond the end of the run, and parts that lie outside the region. Every warning has
 /// the place where the value was written; values that the scene does not give are not judged. A scene made in

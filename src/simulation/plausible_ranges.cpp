@@ -1,6 +1,5 @@
-// The table of plausible values (plausibility.hpp).
 
-#include "simulation/plausibility.hpp"
+#include "simulation/plausible_ranges.hpp"
 
 #include "io/scene/joint_parameters.hpp"
 

@@ -2,6 +2,7 @@
 
 // Rows of frames, histories and checkpoints from the state of a run.
 
+#include "contact/contact_sums.hpp"
 #include "gcpdda/io/frame_rows.hpp"
 #include "gcpdda/io/frame_writer.hpp"
 #include "gcpdda/io/run_summary.hpp"

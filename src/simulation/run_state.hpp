@@ -9,6 +9,7 @@
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "io/checkpoint/checkpoint.hpp"
+#include "io/checkpoint/checkpoint_reader.hpp"
 #include "simulation/bolts.hpp"
 #include "simulation/contact_digest.hpp"
 #include "simulation/loads.hpp"

@@ -1,6 +1,8 @@
 #include "simulation/saved_state.hpp"
 
 #include "base/check.hpp"
+#include "io/checkpoint/checkpoint_reader.hpp"
+#include "io/checkpoint/past_scenes.hpp"
 #include "io/results/id_slabs.hpp"
 #include "model/fingerprint.hpp"
 #include "simulation/stage_changes.hpp"

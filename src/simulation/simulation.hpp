@@ -4,6 +4,7 @@
 // (simulation/run_state.hpp), and what is done with it stands in the files that are included here; those who
 // only look at a run use the names below.
 
+#include "io/checkpoint/checkpoint_reader.hpp"
 #include "partition/partition_cells.hpp"
 #include "simulation/ground.hpp"
 #include "simulation/run_state.hpp"

@@ -1,6 +1,7 @@
 #include "simulation/stage_changes.hpp"
 
 #include "base/check.hpp"
+#include "contact/contact_sums.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "dynamics/deformable.hpp"
 #include "dynamics/frequency_bound.hpp"

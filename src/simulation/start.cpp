@@ -1,6 +1,7 @@
 #include "simulation/start.hpp"
 
 #include "base/free_memory.hpp"
+#include "contact/find_pairs.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "dynamics/deformable.hpp"
 #include "dynamics/frequency_bound.hpp"

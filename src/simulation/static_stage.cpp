@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "contact/block_sums.hpp"
 #include "contact/stiffness_bound.hpp"
+#include "dynamics/half_works.hpp"
 #include "dynamics/static_springs.hpp"
 #include "simulation/evaluation.hpp"
 #include "simulation/stage_runner.hpp"

@@ -1,7 +1,11 @@
 #include "simulation/step_rows.hpp"
 
 #include "base/free_memory.hpp"
+#include "contact/contact_sums.hpp"
 #include "dynamics/deformable.hpp"
+#include "dynamics/free_rows.hpp"
+#include "dynamics/half_works.hpp"
+#include "dynamics/local_damping.hpp"
 #include "simulation/evaluation.hpp"
 #include "simulation/ground.hpp"
 #include "simulation/stage_changes.hpp"

@@ -3,7 +3,10 @@
 
 #include "support/scenes.hpp"
 
+#include "contact/block_view.hpp"
+#include "contact/find_pairs.hpp"
 #include "contact/geometry/overlap.hpp"
+#include "contact/geometry/overlap_energy.hpp"
 #include "dynamics/integrate.hpp"
 #include "simulation/simulation.hpp"
 

@@ -5,6 +5,8 @@
 
 #include "base/check.hpp"
 #include "io/checkpoint/checkpoint.hpp"
+#include "io/checkpoint/checkpoint_reader.hpp"
+#include "io/checkpoint/checkpoint_writer.hpp"
 #include "io/hdf5/passing_files.hpp"
 #include "simulation/bolts.hpp"
 #include "simulation/stages.hpp"

@@ -3,7 +3,7 @@
 #include "base/text.hpp"
 #include "driver/restart.hpp"
 #include "gcpdda/driver/run.hpp"
-#include "io/checkpoint/checkpoint.hpp"
+#include "io/checkpoint/checkpoint_reader.hpp"
 #include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"
 #include "support/run_facts.hpp"

@@ -4,6 +4,8 @@
 #include "driver/stop_signal.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "io/checkpoint/checkpoint.hpp"
+#include "io/checkpoint/checkpoint_reader.hpp"
+#include "io/checkpoint/checkpoint_writer.hpp"
 #include "io/results/id_slabs.hpp"
 #include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"

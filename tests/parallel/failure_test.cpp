@@ -3,6 +3,7 @@
 
 #include "gcpdda/driver/run.hpp"
 #include "geometry/polygon.hpp"
+#include "io/results/frame_reader.hpp"
 #include "io/results/run_comparison.hpp"
 #include "partition/partition_cells.hpp"
 #include "shared_folder.hpp"

@@ -3,6 +3,7 @@
 
 #include "gcpdda/io/frame_rows.hpp"
 #include "gcpdda/io/frame_writer.hpp"
+#include "io/results/frame_reader.hpp"
 #include "io/results/id_slabs.hpp"
 #include "io/results/run_comparison.hpp"
 #include "shared_folder.hpp"

@@ -4,6 +4,7 @@
 #include "parallel/ghosts.hpp"
 
 #include "contact/candidates.hpp"
+#include "contact/find_pairs.hpp"
 #include "random_blocks.hpp"
 
 #include <gtest/gtest.h>

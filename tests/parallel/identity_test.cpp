@@ -3,7 +3,8 @@
 
 #include "driver/restart.hpp"
 #include "gcpdda/driver/run.hpp"
-#include "io/checkpoint/checkpoint.hpp"
+#include "io/checkpoint/checkpoint_reader.hpp"
+#include "io/results/frame_reader.hpp"
 #include "io/results/run_comparison.hpp"
 #include "model/contact_history.hpp"
 #include "shared_folder.hpp"

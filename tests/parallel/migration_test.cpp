@@ -2,7 +2,7 @@
 
 #include "parallel/migration.hpp"
 
-#include "contact/candidates.hpp"
+#include "contact/find_pairs.hpp"
 #include "parallel/ghosts.hpp"
 #include "partition/partition_cells.hpp"
 #include "random_blocks.hpp"

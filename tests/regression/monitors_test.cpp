@@ -1,9 +1,8 @@
 // Histories of monitored blocks and points, and the order of a pair's contact regions, from the files of
 // runs.
 
-#include "io/results/run_comparison.hpp"
-
 #include "child_process.hpp"
+#include "io/results/frame_reader.hpp"
 #include "sample_scenes.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"

@@ -5,6 +5,7 @@
 
 #include "checkpoints.hpp"
 #include "child_process.hpp"
+#include "io/results/frame_reader.hpp"
 #include "sample_scenes.hpp"
 #include "support/block_file_writer.hpp"
 #include "support/run_facts.hpp"

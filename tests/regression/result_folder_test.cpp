@@ -4,6 +4,7 @@
 #include "io/results/run_comparison.hpp"
 
 #include "child_process.hpp"
+#include "io/results/frame_reader.hpp"
 #include "sample_scenes.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"

@@ -1,5 +1,6 @@
 #include "base_state.hpp"
 
+#include "contact/contact_sums.hpp"
 #include "contact_regions.hpp"
 #include "dynamics/deformable.hpp"
 #include "eigenvalues.hpp"

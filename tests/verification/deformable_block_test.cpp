@@ -3,7 +3,9 @@
 #include "problem.hpp"
 
 #include "dynamics/deformable.hpp"
+#include "dynamics/half_works.hpp"
 #include "dynamics/integrate.hpp"
+#include "dynamics/local_damping.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

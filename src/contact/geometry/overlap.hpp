@@ -174,8 +174,4 @@ private:
   std::unique_ptr<OfReentrant> of_reentrant_; ///< made for the first pair that needs it
 };
 
-/// Energy int_S (phi_A + phi_B) H dA (m3) that belongs to the forces of RegionIntegrals: moving a block
-/// changes it by minus the work of its contact force. For the ledger, not for the step: it assembles S.
-double overlap_energy(const BlockView &first, const BlockView &second);
-
 } // namespace gcpdda

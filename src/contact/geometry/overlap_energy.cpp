@@ -1,6 +1,5 @@
-// The energy of an overlap (overlap.hpp).
 
-#include "contact/geometry/overlap.hpp"
+#include "contact/geometry/overlap_energy.hpp"
 
 #include "contact/geometry/convex_cut.hpp"
 #include "contact/geometry/field_energy.hpp"

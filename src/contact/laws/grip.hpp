@@ -41,6 +41,7 @@
 //
 // LaneGrip (lane_grip.hpp) is the same in SIMD lanes.
 
+#include "contact/block_view.hpp"
 #include "contact/contact_forces.hpp"
 
 #include <algorithm>

@@ -3,6 +3,8 @@
 // The step of deformable blocks (deformable.hpp) and of rigid ones that are free, several at a time.
 
 #include "base/instructions.hpp"
+#include "dynamics/free_rows.hpp"
+#include "dynamics/half_works.hpp"
 #include "dynamics/integrate.hpp"
 #include "dynamics/own_springs.hpp"
 

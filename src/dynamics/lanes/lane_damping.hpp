@@ -1,7 +1,7 @@
 #pragma once
 
 // Local damping of deformable blocks within their step, one in each lane; the derivation is in
-// local_damping.cpp.
+// local_damping.hpp.
 
 #include "dynamics/lanes/lane_deformable_block.hpp"
 

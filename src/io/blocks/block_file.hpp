@@ -26,9 +26,4 @@ Diagnostics open_block_file(const Communicator &communicator, Scene &scene);
 Diagnostics read_block_file(const Communicator &communicator, const Scene &scene, std::int64_t first,
                             std::int64_t last, std::vector<SceneBlock> &blocks);
 
-/// Writes a block file: outlines, materials, what is fixed and the laws of edges of the blocks that the ranks
-/// hold, in the order of the ranks. Collective; throws FileError on all ranks.
-void write_block_file(const Communicator &communicator, const std::filesystem::path &path,
-                      std::span<const SceneBlock> mine);
-
 } // namespace gcpdda

@@ -1,6 +1,5 @@
-// Block files written (block_file.hpp).
 
-#include "io/blocks/block_file.hpp"
+#include "io/blocks/block_file_writer.hpp"
 
 #include "base/check.hpp"
 #include "io/hdf5/hdf5_collective_file.hpp"

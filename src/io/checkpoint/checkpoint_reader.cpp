@@ -1,4 +1,4 @@
-// Checkpoints read, verified and distributed (checkpoint.hpp).
+#include "io/checkpoint/checkpoint_reader.hpp"
 
 #include "io/checkpoint/checkpoint_layout.hpp"
 #include "io/checkpoint/checkpoint_seal.hpp"

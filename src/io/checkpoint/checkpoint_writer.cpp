@@ -1,6 +1,7 @@
-// Checkpoints written (checkpoint.hpp).
+#include "io/checkpoint/checkpoint_writer.hpp"
 
 #include "io/checkpoint/checkpoint_layout.hpp"
+#include "io/checkpoint/checkpoint_reader.hpp"
 #include "io/checkpoint/checkpoint_seal.hpp"
 #include "io/hdf5/durable_file.hpp"
 #include "io/hdf5/hdf5_collective_file.hpp"

@@ -1,6 +1,5 @@
-// Scenes that a run has been computed with before (checkpoint.hpp).
 
-#include "io/checkpoint/checkpoint.hpp"
+#include "io/checkpoint/past_scenes.hpp"
 
 #include "io/hdf5/durable_file.hpp"
 

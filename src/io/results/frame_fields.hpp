@@ -5,8 +5,8 @@
 // test compares with it. Datasets are made in the order of a table, and the bytes of a file depend on it.
 
 #include "gcpdda/io/frame_rows.hpp"
+#include "io/results/frame_reader.hpp"
 #include "io/results/hdf5_vtk_layout.hpp"
-#include "io/results/run_comparison.hpp"
 
 #include <array>
 #include <cstddef>

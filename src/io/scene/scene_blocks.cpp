@@ -1,8 +1,9 @@
-// Tables [[block]] of a scene.
+#include "io/scene/scene_blocks.hpp"
 
 #include "geometry/holds_point.hpp"
+#include "io/scene/scene_joints.hpp"
+#include "io/scene/scene_materials.hpp"
 #include "io/scene/scene_outline.hpp"
-#include "io/scene/scene_parts.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,4 @@
-// The walk through the TOML tree along the table of keys (scene_keys.cpp).
-
-#include "io/scene/scene_section.hpp"
+#include "io/scene/scene_check.hpp"
 
 #include "base/edit_distance.hpp"
 

@@ -1,6 +1,4 @@
-// [earthquake]: how the ground moves.
-
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_earthquake.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,4 @@
-// [ensemble]: what each of many members draws in place of the values of the scene.
-
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_ensemble.hpp"
 
 #include "base/edit_distance.hpp"
 

@@ -1,7 +1,8 @@
-// Where blocks come from that the scene file does not list: walls, pyramids and the block file.
+#include "io/scene/scene_generators.hpp"
 
+#include "io/scene/scene_blocks.hpp"
+#include "io/scene/scene_materials.hpp"
 #include "io/scene/scene_outline.hpp"
-#include "io/scene/scene_parts.hpp"
 #include "model/generators.hpp"
 
 #include <fmt/format.h>

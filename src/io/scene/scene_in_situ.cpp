@@ -1,6 +1,4 @@
-// [in_situ]: the stress that is in the rock before anything happens.
-
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_in_situ.hpp"
 
 #include <fmt/format.h>
 

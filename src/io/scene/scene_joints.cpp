@@ -1,9 +1,9 @@
-// Tables [joint.NAME] of a scene: the keys of contact laws, how they are read, and which materials have them.
+#include "io/scene/scene_joints.hpp"
 
 #include "io/scene/joint_parameters.hpp"
-#include "io/scene/scene_parts.hpp"
 
 #include "base/edit_distance.hpp"
+#include "io/scene/scene_materials.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,4 @@
-// Tables [material.NAME] of a scene.
-
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_materials.hpp"
 
 #include "base/edit_distance.hpp"
 

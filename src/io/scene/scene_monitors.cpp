@@ -1,6 +1,4 @@
-// Tables [[monitor]] of a scene.
-
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_monitors.hpp"
 
 #include "base/edit_distance.hpp"
 #include "model/generators.hpp"

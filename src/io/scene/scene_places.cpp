@@ -1,6 +1,4 @@
-// Where the values of a scene were written (scene_parts.hpp).
-
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_places.hpp"
 
 #include <utility>
 

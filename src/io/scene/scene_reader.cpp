@@ -1,12 +1,29 @@
 #include "gcpdda/io/scene_reader.hpp"
 
+#include "io/scene/scene_blocks.hpp"
+#include "io/scene/scene_check.hpp"
+#include "io/scene/scene_earthquake.hpp"
+#include "io/scene/scene_ensemble.hpp"
+#include "io/scene/scene_generators.hpp"
+#include "io/scene/scene_in_situ.hpp"
+#include "io/scene/scene_joints.hpp"
 #include "io/scene/scene_keys.hpp"
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_materials.hpp"
+#include "io/scene/scene_monitors.hpp"
+#include "io/scene/scene_places.hpp"
+#include "io/scene/scene_region.hpp"
 #include "io/scene/scene_sets.hpp"
+#include "io/scene/scene_settings.hpp"
+#include "io/scene/scene_sides.hpp"
+#include "io/scene/scene_stages.hpp"
+#include "io/scene/scene_support.hpp"
+#include "io/scene/scene_water.hpp"
 #include "io/scene/scene_writer.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <optional>
 
@@ -216,6 +233,26 @@ SceneReading read_scene(std::string_view text, const std::string &file,
     scene_text::check_variations({text, file, sets}, reading);
   }
   return reading;
+}
+
+// No string of a resolved scene holds a line end, so that a line which begins with a bracket is a header.
+std::string settling_part(std::string_view resolved) {
+  constexpr std::array<std::string_view, 4> left_out{"fos", "output", "ensemble", "monitor"};
+  std::string part;
+  bool counts = true;
+  while (!resolved.empty()) {
+    const std::string_view line = resolved.substr(0, resolved.find('\n'));
+    resolved.remove_prefix(std::min(line.size() + 1, resolved.size()));
+    if (line.starts_with('[')) {
+      const std::string_view path = line.substr(line.find_first_not_of('['));
+      const std::string_view table = path.substr(0, path.find_first_of(".]"));
+      counts = std::find(left_out.begin(), left_out.end(), table) == left_out.end();
+    }
+    if (counts && !line.empty() && !line.starts_with('#')) {
+      part.append(line).push_back('\n');
+    }
+  }
+  return part;
 }
 
 } // namespace gcpdda

@@ -1,9 +1,10 @@
-// The region that joints cut into blocks: [region] and everything that lies in it.
+#include "io/scene/scene_region.hpp"
 
 #include "geometry/aabb.hpp"
 #include "geometry/polygon.hpp"
+#include "io/scene/scene_joints.hpp"
+#include "io/scene/scene_materials.hpp"
 #include "io/scene/scene_outline.hpp"
-#include "io/scene/scene_parts.hpp"
 #include "io/scene/scene_shapes.hpp"
 
 #include <fmt/format.h>

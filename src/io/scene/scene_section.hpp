@@ -22,6 +22,13 @@ namespace gcpdda::scene_text {
 /// Nodes already reported: nothing that rests on them is reported again.
 using FaultyNodes = std::unordered_set<const toml::node *>;
 
+/// What the parts of a scene are put together from.
+struct SceneSource {
+  const toml::table &root;
+  const FaultyNodes &faulty;
+  Faults &faults;
+};
+
 double as_number(const toml::node &node);
 
 /// "'density' in [material.granite]"; without `in` at the top level.
@@ -85,7 +92,7 @@ struct NamedSection {
   Section section;
 };
 
-/// [name.X] for every X, in the order they were written.
+/// [name.] for every , in the order they were written.
 std::vector<NamedSection> named_sections(const toml::table &root, std::string_view name,
                                          const FaultyNodes &faulty, const Origins &origins);
 
@@ -102,9 +109,5 @@ std::string label_of_element(std::string_view list, const toml::node &element, s
 /// The name of element number `index` of the blocks, walls or pyramids: its own if it has a fit one, else
 /// b<index>, wall<index>, pyramid<index>.
 std::string name_of_element(std::string_view list, const toml::node &element, std::size_t index);
-
-/// Reports everything that can be said of each key by itself: unknown, missing, of the wrong type,
-/// out of range.
-FaultyNodes check_keys(const toml::table &root, Faults &faults);
 
 } // namespace gcpdda::scene_text

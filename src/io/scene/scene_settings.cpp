@@ -1,6 +1,6 @@
-// The tables [run], [output] and [fos].
+#include "io/scene/scene_settings.hpp"
 
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_joints.hpp"
 
 #include <fmt/format.h>
 

@@ -1,19 +1,5 @@
-// Sides of the region that blocks may slide along but not move through or away sideways: rollers; and sides
-// on which the in-situ stress acts from outside; and viscous ones.
-//
-// Rollers: a fixed block lies along such a side, as along a fixed one, and its edges have a law without
-// friction and cohesion, which is the weaker one of any two: the side pushes along its normal and lets go
-// along itself. Like every contact it only pushes, and yields by its normal stiffness, which is that of the
-// default law.
-//
-// Viscous sides (dynamics/viscous_sides.hpp) let waves out.
-//
-// Stress: the traction -C n of the in-situ compression C on the edges that lie on the side at t = 0. It stays
-// what it is whatever moves, as the weight of far rock does, until a stage changes C or the sides. C then
-// says what the far rock does: sides under stress follow it, sides that are held bear what equilibrium asks
-// of them, and what is in the blocks follows by equilibrium alone.
 
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_sides.hpp"
 
 #include "geometry/aabb.hpp"
 #include "geometry/polygon.hpp"

@@ -1,8 +1,7 @@
-// [[stage]]: what happens one after the other.
+#include "io/scene/scene_stages.hpp"
 
 #include "base/edit_distance.hpp"
 #include "io/scene/scene_outline.hpp"
-#include "io/scene/scene_parts.hpp"
 #include "io/scene/scene_sets.hpp"
 #include "model/generators.hpp"
 

@@ -1,6 +1,4 @@
-// [support.NAME], [[bolt]] and [[bolt_pattern]].
-
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_support.hpp"
 
 #include "base/edit_distance.hpp"
 

@@ -1,6 +1,6 @@
-// [water.NAME]: phreatic lines.
+#include "io/scene/scene_water.hpp"
 
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_joints.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 // What blocks get of their contacts, group by group, against the same regions one block after the other.
 
+#include "contact/contact_sums.hpp"
 #include "simulation/simulation.hpp"
 #include "support/contact_regions.hpp"
 #include "support/scenes.hpp"

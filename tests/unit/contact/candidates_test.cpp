@@ -1,5 +1,6 @@
 #include "contact/candidates.hpp"
 
+#include "contact/find_pairs.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "support/blocks.hpp"
 #include "support/scenes.hpp"

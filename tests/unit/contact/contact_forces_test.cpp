@@ -1,5 +1,6 @@
 // Friction, dashpot and bookkeeping of single contacts, configuration by configuration.
 
+#include "contact/contact_sums.hpp"
 #include "simulation/contact_digest.hpp"
 #include "support/blocks.hpp"
 #include "support/scenes.hpp"

@@ -1,5 +1,6 @@
 // Energy of the contact field, and its behaviour along paths: conservation, continuity, degenerate cases.
 
+#include "contact/geometry/overlap_energy.hpp"
 #include "support/critical_path.hpp"
 #include "support/scenes.hpp"
 #include "support/shapes.hpp"

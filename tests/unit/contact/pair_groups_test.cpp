@@ -1,6 +1,7 @@
 // Groups of pairs: which rows each reads, and which rows may be advanced while later groups are evaluated.
 
 #include "contact/contact_forces.hpp"
+#include "contact/find_pairs.hpp"
 #include "support/blocks.hpp"
 #include "support/scenes.hpp"
 

@@ -1,6 +1,8 @@
 // Plain pairs, several in the lanes of one evaluation, against the general way that takes one pair after the
 // other with all its edges.
 
+#include "contact/block_view.hpp"
+#include "contact/geometry/overlap_energy.hpp"
 #include "contact/pair_energies.hpp"
 #include "support/blocks.hpp"
 #include "support/plain_pairs.hpp"

@@ -1,5 +1,7 @@
 // Forces of re-entrant and deformable blocks: gradient of an energy, momentum, continuity, locality.
 
+#include "contact/block_view.hpp"
+#include "contact/geometry/overlap_energy.hpp"
 #include "support/critical_path.hpp"
 #include "support/scenes.hpp"
 #include "support/shapes.hpp"

@@ -1,7 +1,6 @@
 // Which factors a search for the factor of safety tries.
 
-#include "driver/safety_factor.hpp"
-
+#include "driver/safety_search.hpp"
 #include "unit/scene_texts.hpp"
 
 #include <gtest/gtest.h>

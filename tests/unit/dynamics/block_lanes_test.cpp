@@ -3,6 +3,7 @@
 #include "dynamics/block_solve.hpp"
 
 #include "dynamics/deformable.hpp"
+#include "dynamics/free_rows.hpp"
 #include "simulation/simulation.hpp"
 #include "support/scenes.hpp"
 

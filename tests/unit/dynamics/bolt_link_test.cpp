@@ -1,6 +1,7 @@
 // The law of a bolt where it crosses a joint, its forces, and where it crosses which blocks.
 
 #include "dynamics/bolt_link.hpp"
+#include "simulation/bolt_pieces.hpp"
 #include "simulation/bolts.hpp"
 #include "support/blocks.hpp"
 #include "support/setting.hpp"

@@ -3,6 +3,7 @@
 #include "dynamics/integrate.hpp"
 
 #include "dynamics/deformable.hpp"
+#include "dynamics/local_damping.hpp"
 
 #include <gtest/gtest.h>
 

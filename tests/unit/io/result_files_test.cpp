@@ -2,6 +2,7 @@
 #include "gcpdda/io/frame_rows.hpp"
 #include "gcpdda/io/frame_writer.hpp"
 #include "gcpdda/io/run_summary.hpp"
+#include "io/results/frame_reader.hpp"
 #include "io/results/history_writer.hpp"
 #include "io/results/result_directory.hpp"
 #include "io/results/run_comparison.hpp"

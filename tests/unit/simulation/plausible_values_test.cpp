@@ -3,6 +3,7 @@
 
 #include "simulation/plausibility.hpp"
 
+#include "simulation/plausible_ranges.hpp"
 #include "support/scenes.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,5 @@
-// Frames read back (run_comparison.hpp).
 
-#include "io/results/run_comparison.hpp"
+#include "io/results/frame_reader.hpp"
 
 #include "io/hdf5/hdf5_input.hpp"
 #include "io/results/frame_fields.hpp"
