@@ -1,8 +1,8 @@
 #include "contact/opened_regions.hpp"
 
 #include "contact/block_view.hpp"
-#include "contact/contact_forces.hpp"
 #include "contact/geometry/overlap_energy.hpp"
+#include "contact/pair_forces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -112,18 +112,18 @@ double opened_energy(const BlockSystem &system, const CandidatePair &pair,
   return sum + half_stiffness_of_rest * overlap_energy(lower, higher) * energy_share(overlap, is_fresh);
 }
 
-const Region *ContactForces::find_opened(const BlockSystem &system, const CandidatePair &pair,
-                                         const RegionMemory &memory, Vec2 opening) {
+const Region *PairForces::find_opened(const BlockSystem &system, const CandidatePair &pair,
+                                      const RegionMemory &memory, Vec2 opening) {
   closed_.move(system, pair, opening);
   return closed_.lower().box.meets(closed_.higher().box) &&
-                 overlap_.find(closed_.lower(), closed_.higher(), parameters_.potential)
+                 overlap_.find(closed_.lower(), closed_.higher(), parameters_->potential)
              ? region_of(system, pair, overlap_, memory)
              : nullptr;
 }
 
 // Without a force, as long as it is not open by as much again.
-void ContactForces::keep_open(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
-                              const RegionMemory &known) {
+void PairForces::keep_open(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                           const RegionMemory &known) {
   RegionForce nearest;
   const Region *region = find_opened(system, pair, known, 2.0 * known.opening);
   if (region == nullptr || !measure(*region, nearest)) {
@@ -137,13 +137,13 @@ void ContactForces::keep_open(const BlockSystem &system, const CandidatePair &pa
   force.normal = nearest.normal;
   damping_dyad_ = {};
   note_dyads(system, pair, force);
-  RegionMemory &memory = next_.regions.emplace_back(known);
+  RegionMemory &memory = memory_.emplace_back(known);
   memory.shear = 0.0;
   memory.longest = 0.0;
   memory.state = ContactState::slip;
 }
 
-void ContactForces::add_opening_works(const Candidates &candidates, BlockSystem &system) {
+void PairForces::add_opening_works(const Candidates &candidates, BlockSystem &system) {
   // Interior pairs were evaluated before those with a ghost: sums of a block go by its partners' ids.
   std::sort(opening_works_.begin(), opening_works_.end(),
             [](const OpeningWork &a, const OpeningWork &b) { return a.pair < b.pair; });

@@ -1,7 +1,6 @@
-// One pair after the other, any shapes: what the plain pairs' lanes (plain_kernel.hpp) are not for.
+#include "contact/pair_forces.hpp"
 
 #include "contact/block_view.hpp"
-#include "contact/contact_forces.hpp"
 #include "contact/laws/bond_work.hpp"
 #include "contact/laws/dilation.hpp"
 #include "contact/laws/grip.hpp"
@@ -72,7 +71,38 @@ void take_middle(std::optional<Grip> &grip, RegionMemory &memory, RegionForce &f
 
 } // namespace
 
-bool ContactForces::measure(const Region &region, RegionForce &force) const {
+PairForces::PairForces(std::shared_ptr<const ContactParameters> parameters)
+    : parameters_(std::move(parameters)) {}
+PairForces::~PairForces() = default;
+PairForces::PairForces(PairForces &&) noexcept = default;
+PairForces &PairForces::operator=(PairForces &&) noexcept = default;
+
+void PairForces::begin() {
+  num_forces_ = 0;
+  memory_.clear();
+  opening_works_.clear();
+  report_ = {};
+}
+
+std::size_t PairForces::evaluate(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                                 std::span<RegionMemory> old) {
+  first_of_pair_ = num_forces_;
+  dyads_.clear();
+  find_regions(system, pair, number, old);
+  return num_forces_ - first_of_pair_;
+}
+
+void PairForces::drop_last() {
+  --num_forces_;
+  memory_.pop_back();
+}
+
+RegionForce &PairForces::append_force(const RegionForce &force) {
+  grow(forces_, num_forces_ + 1);
+  return forces_[num_forces_++] = force;
+}
+
+bool PairForces::measure(const Region &region, RegionForce &force) const {
   const RegionIntegrals sum = overlap_.integrate(region);
   if (!(sum.pressure > 0.0)) {
     return false;
@@ -100,8 +130,8 @@ bool ContactForces::measure(const Region &region, RegionForce &force) const {
 // A memory can be that of a region between the same stretches which the old and the new extent reach. The
 // nearest two of all belong together, then the nearest of those that are left: a tip that has just begun to
 // touch beside a joint does not take the joint's memory, whatever the order of the regions.
-void ContactForces::match_memories(const BlockSystem &system, const CandidatePair &pair,
-                                   std::span<RegionMemory> old) {
+void PairForces::match_memories(const BlockSystem &system, const CandidatePair &pair,
+                                std::span<RegionMemory> old) {
   matches_.clear();
   for (std::size_t k = 0; k < found_.size(); ++k) {
     FoundRegion &found = found_[k];
@@ -126,8 +156,8 @@ void ContactForces::match_memories(const BlockSystem &system, const CandidatePai
   }
 }
 
-void ContactForces::find_touching(const BlockSystem &system, const CandidatePair &pair,
-                                  std::span<RegionMemory> old) {
+void PairForces::find_touching(const BlockSystem &system, const CandidatePair &pair,
+                               std::span<RegionMemory> old) {
   found_.clear();
   for (const Region &region : overlap_.regions()) {
     FoundRegion found{&region, {}, {}, nullptr};
@@ -143,8 +173,8 @@ void ContactForces::find_touching(const BlockSystem &system, const CandidatePair
 }
 
 // What the spring has beyond its cap is slip.
-void ContactForces::slip(const BlockSystem &system, const CandidatePair &pair, const JointLaw &law,
-                         double stiffness, RegionMemory &memory, const RegionForce &force) {
+void PairForces::slip(const BlockSystem &system, const CandidatePair &pair, const JointLaw &law,
+                      double stiffness, RegionMemory &memory, const RegionForce &force) {
   const double slip_before = memory.slip;
   memory.slip += (std::abs(memory.shear) - force.cap) / stiffness;
   memory.shear = std::copysign(force.cap, memory.shear);
@@ -154,9 +184,9 @@ void ContactForces::slip(const BlockSystem &system, const CandidatePair &pair, c
   }
 }
 
-void ContactForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
-                                 const RelativeVelocity &velocity, const BondShare &bonds,
-                                 RegionMemory &memory, RegionForce &force) {
+void PairForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
+                              const RelativeVelocity &velocity, const BondShare &bonds, RegionMemory &memory,
+                              RegionForce &force) {
   const double extent = force.extent_end - force.extent_begin;
   std::optional<Grip> grip; // none between rigid blocks
   if (has_grip(system, pair)) {
@@ -169,7 +199,7 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
     take_middle(grip, memory, force);
     return;
   }
-  const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
+  const JointLaw &law = parameters_->joints.laws[static_cast<std::size_t>(pair.law)];
   const LawConstants constants = law.constants();
   const double tan_friction =
       law.is_barton_bandis ? law.tan_friction_at(force.normal_force / extent) : constants.tan_friction;
@@ -197,16 +227,16 @@ void ContactForces::add_friction(const BlockSystem &system, const CandidatePair 
     slip(system, pair, law, stiffness, memory, force);
   }
   double viscous = 0.0;
-  if (parameters_.has_dashpots()) {
-    const double drag = (2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) +
-                         parameters_.stiffness_damping * stiffness) *
+  if (parameters_->has_dashpots()) {
+    const double drag = (2.0 * parameters_->damping_ratio * std::sqrt(stiffness * pair.mass) +
+                         parameters_->stiffness_damping * stiffness) *
                         dot(velocity.at(force.grip - force.origin), tangent);
     viscous = std::clamp(memory.shear + drag, -force.cap, force.cap) - memory.shear;
   }
   add_shear(force, memory.shear, viscous);
 }
 
-void ContactForces::add_shear(RegionForce &force, double elastic, double viscous) {
+void PairForces::add_shear(RegionForce &force, double elastic, double viscous) {
   const Vec2 tangent = perp(force.normal);
   force.shear = elastic + viscous;
   force.shear_force = -elastic * tangent;
@@ -215,8 +245,8 @@ void ContactForces::add_shear(RegionForce &force, double elastic, double viscous
   add_force(force, force.grip, -force.shear * tangent);
 }
 
-void ContactForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
-                                       const Region &region, RegionForce &force) {
+void PairForces::add_normal_dashpot(const CandidatePair &pair, const RelativeVelocity &velocity,
+                                    const Region &region, RegionForce &force) {
   const Vec2 n = force.normal;
   // Closing speed (v_own - v_other).u at an offset from the origin, the same for both blocks' pieces.
   const double closing_at_origin = -dot(velocity.at_origin, n);
@@ -231,7 +261,7 @@ void ContactForces::add_normal_dashpot(const CandidatePair &pair, const Relative
     facing_[i] = std::max(0.0, facing_of(piece, i < region.middle, n));
     facing_pressure += facing_[i] * 0.5 * piece.length * (piece.depth_begin + piece.depth_end);
   }
-  const double half_stiffness = parameters_.constants(pair.law).half_stiffness;
+  const double half_stiffness = parameters_->constants(pair.law).half_stiffness;
   const double share = std::min(1.0, force.normal_force / half_stiffness / facing_pressure);
 
   double total = 0.0;
@@ -258,12 +288,12 @@ void ContactForces::add_normal_dashpot(const CandidatePair &pair, const Relative
   add_damping(force, total * n, moment, n);
 }
 
-void ContactForces::add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction) {
+void PairForces::add_damping(RegionForce &force, Vec2 f, Vec2 moment, Vec2 direction) {
   force.damping_force += f;
   damping_dyad_ += outer(moment, direction);
 }
 
-void ContactForces::finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force) {
+void PairForces::finish_region(const BlockSystem &system, const CandidatePair &pair, RegionForce &force) {
   for (const bool is_lower : {true, false}) {
     const std::size_t row = (is_lower ? pair.lower : pair.higher).value;
     const double sign = is_lower ? 1.0 : -1.0;
@@ -277,8 +307,8 @@ void ContactForces::finish_region(const BlockSystem &system, const CandidatePair
   note_dyads(system, pair, force);
 }
 
-void ContactForces::note_dyads(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
-                               const Mat2 &beyond) {
+void PairForces::note_dyads(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
+                            const Mat2 &beyond) {
   if (!system.is_deformable(pair.lower.value) && !system.is_deformable(pair.higher.value)) {
     return;
   }
@@ -292,14 +322,14 @@ void ContactForces::note_dyads(const BlockSystem &system, const CandidatePair &p
 }
 
 // Region and memory join those of the evaluation.
-void ContactForces::load_found(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
-                               const FoundRegion &found) {
+void PairForces::load_found(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                            const FoundRegion &found) {
   const Region &region = *found.region;
   RegionForce &force = append_force(found.force);
   force.pair = number;
   force.born = found.known == nullptr;
   damping_dyad_ = {};
-  RegionMemory &memory = next_.regions.emplace_back();
+  RegionMemory &memory = memory_.emplace_back();
   if (!force.born) {
     memory = *found.known;
   }
@@ -314,16 +344,16 @@ void ContactForces::load_found(const BlockSystem &system, const CandidatePair &p
     return;
   }
   if (force.born) {
-    memory.law = law_at_birth(system, parameters_.joints, pair, overlap_.pieces(), region);
+    memory.law = law_at_birth(system, parameters_->joints, pair, overlap_.pieces(), region);
   }
-  load_region(system, constants_of(system, parameters_, pair, memory.law), region, share, memory, force);
+  load_region(system, constants_of(system, *parameters_, pair, memory.law), region, share, memory, force);
 }
 
 // With the opening that its law gives it in this evaluation.
-void ContactForces::evaluate_opened(const BlockSystem &system, const CandidatePair &pair,
-                                    std::uint32_t number, const RegionMemory &known) {
-  const CandidatePair constants = constants_of(system, parameters_, pair, known.law);
-  const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(constants.law)];
+void PairForces::evaluate_opened(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                                 const RegionMemory &known) {
+  const CandidatePair constants = constants_of(system, *parameters_, pair, known.law);
+  const JointLaw &law = parameters_->joints.laws[static_cast<std::size_t>(constants.law)];
   const bool opens = law.dilates() && known.longest > 0.0 && known.slip < law.dilation_limit;
   RegionForce force;
   const Region *region = nullptr;
@@ -353,22 +383,21 @@ void ContactForces::evaluate_opened(const BlockSystem &system, const CandidatePa
     memory.position = reference_point(system, pair.lower.value, force.point);
   }
   append_force(force);
-  next_.regions.push_back(memory);
+  memory_.push_back(memory);
   const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, *region);
-  load_region(system, constants, *region, share, next_.regions.back(), forces_[num_forces_ - 1]);
+  load_region(system, constants, *region, share, memory_.back(), forces_[num_forces_ - 1]);
 }
 
-void ContactForces::find_regions(const BlockSystem &system, const Candidates &candidates,
-                                 std::uint32_t number, std::span<RegionMemory> old) {
-  const CandidatePair &pair = candidates.pairs[number];
+void PairForces::find_regions(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
+                              std::span<RegionMemory> old) {
   opened_.clear();
   std::copy_if(old.begin(), old.end(), std::back_inserter(opened_),
                [](const RegionMemory &m) { return m.is_opened(); });
   const bool all_opened = pair.is_convex && !opened_.empty(); // its only region
-  const bool touches = !all_opened &&
-                       system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) &&
-                       overlap_.find(view_of(system, pair.lower.value, outlines_[0]),
-                                     view_of(system, pair.higher.value, outlines_[1]), parameters_.potential);
+  const bool touches =
+      !all_opened && system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) &&
+      overlap_.find(view_of(system, pair.lower.value, outlines_[0]),
+                    view_of(system, pair.higher.value, outlines_[1]), parameters_->potential);
   const auto first_bond =
       std::find_if(old.begin(), old.end(), [](const RegionMemory &m) { return m.is_bond(); });
   const std::span<RegionMemory> bonds(first_bond, old.end());
@@ -395,9 +424,9 @@ void ContactForces::find_regions(const BlockSystem &system, const Candidates &ca
   }
 }
 
-void ContactForces::load_region(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-                                const BondShare &bonds, RegionMemory &memory, RegionForce &force) {
-  const double half_stiffness = parameters_.constants(pair.law).half_stiffness;
+void PairForces::load_region(const BlockSystem &system, const CandidatePair &pair, const Region &region,
+                             const BondShare &bonds, RegionMemory &memory, RegionForce &force) {
+  const double half_stiffness = parameters_->constants(pair.law).half_stiffness;
   force.force = half_stiffness * force.force;
   force.dyad = half_stiffness * force.dyad;
   force.normal_force *= half_stiffness;
@@ -412,7 +441,7 @@ void ContactForces::load_region(const BlockSystem &system, const CandidatePair &
     const Vec2 opening_before = memory.opening;
     add_friction(system, pair, velocity, bonds, memory, force);
     if (memory.opening != opening_before) { // what slip opens does not part the surfaces that touch
-      const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(pair.law)];
+      const JointLaw &law = parameters_->joints.laws[static_cast<std::size_t>(pair.law)];
       const double sliding = dot(velocity.at(force.grip - force.origin), perp(force.normal));
       velocity.at_origin -= law.tan_dilation * std::abs(sliding) * force.normal;
     }
@@ -422,6 +451,13 @@ void ContactForces::load_region(const BlockSystem &system, const CandidatePair &
   }
   finish_region(system, pair, force);
   note(system, pair, force);
+}
+
+void PairForces::note(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force) {
+  report_.normals_undefined += force.normal_undefined ? 1 : 0;
+  report_.max_overlap = std::max(report_.max_overlap, force.overlap);
+  report_.max_overlap_share = std::max(report_.max_overlap_share, 0.5 * force.overlap / pair.allowed_overlap);
+  report_.note_depth(system, pair, force.overlap);
 }
 
 } // namespace gcpdda

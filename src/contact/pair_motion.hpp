@@ -2,7 +2,8 @@
 
 // How the two blocks of a pair move against each other at a point.
 
-#include "contact/contact_forces.hpp"
+#include "contact/candidates.hpp"
+#include "contact/region_sums.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -35,7 +36,7 @@ inline void add_force(RegionForce &force, Vec2 at, Vec2 f) {
 }
 
 /// Relative velocity of two blocks as a field: v(x) = at_origin + gradient (x - origin).
-struct ContactForces::RelativeVelocity {
+struct RelativeVelocity {
   Vec2 at_origin;
   Mat2 gradient;
 

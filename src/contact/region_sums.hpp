@@ -11,6 +11,9 @@
 
 namespace gcpdda {
 
+/// Normals of a region cancel when the resultant falls below this share of the total pressure.
+inline constexpr double least_resultant = 0.1;
+
 /// Torques of a region on the lower and the higher block of its pair, about their trial centroids, N.
 using PairTorques = std::array<double, 2>;
 

@@ -285,6 +285,37 @@ TEST(Files, OpenWithTheirPurpose) {
   }
 }
 
+/// Whether the header of a source stands beside it or among the public ones. A copy of a source for some
+/// instruction set has the header of that source.
+bool has_its_header(const std::string &path, const std::map<std::string, std::string> &texts) {
+  static const std::regex ending(R"((_avx(2|512))?\.cpp$)");
+  const std::string header = std::regex_replace(path, ending, ".hpp");
+  const std::string name = "/" + fs::path(header).filename().string();
+  return texts.contains(header) || std::any_of(texts.begin(), texts.end(), [&](const auto &text) {
+           return text.first.starts_with("include/") && text.first.ends_with(name);
+         });
+}
+
+// What a stranger finds declared in a header is in the source of its name.
+TEST(Files, SourcesHaveTheHeaderOfTheirName) {
+  EXPECT_TRUE(has_its_header("src/io/a_avx2.cpp", {{"src/io/a.hpp", ""}}));
+  EXPECT_TRUE(has_its_header("src/io/b/a.cpp", {{"include/gcpdda/io/a.hpp", ""}}));
+  EXPECT_FALSE(has_its_header("src/io/a.cpp", {{"src/io/b/a.hpp", ""}}));
+  const std::set<std::string> have_none{
+      "src/app/main.cpp", "partition/tool/main.cpp",
+      "src/app/large_pages.cpp"}; // operators new and delete of the language
+  const auto texts = sources();
+  std::size_t found = 0;
+  for (const auto &[path, text] : texts) {
+    if (!path.ends_with(".cpp") || have_none.contains(path)) {
+      continue;
+    }
+    ++found;
+    EXPECT_TRUE(has_its_header(path, texts)) << path;
+  }
+  EXPECT_GE(found, 100U);
+}
+
 struct Planted {
   const char *path;
   const char *line;

@@ -2,7 +2,7 @@
 
 // What is known of the contact regions of as many pairs as there are lanes, once their normal pressure is
 // integrated: resultant, friction, dashpots and the torques of it all. The laws are those of
-// contact_forces.hpp.
+// pair_forces.hpp.
 
 #include "base/lanes.hpp"
 #include "contact/lanes/lane_grip.hpp"
@@ -171,7 +171,7 @@ private:
 
 inline void LaneRegions::find_resultant() {
   const Lanes resultant = sqrt(dot(force_, force_));
-  undefined = touches & (resultant <= Lanes(ContactForces::least_resultant) * pressure_);
+  undefined = touches & (resultant <= Lanes(least_resultant) * pressure_);
   const Mask defined = touches & !undefined;
   const Lanes whole = select(touches, pressure_, 1.0);
   point_ = origin + LaneVec{pressure_moment_.x / whole, pressure_moment_.y / whole};

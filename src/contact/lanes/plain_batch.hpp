@@ -1,9 +1,13 @@
 #pragma once
 
 // Contact forces of plain pairs (candidates.hpp), several at a time. The laws are those of
-// contact_forces.hpp, for convex blocks: one region a pair.
+// pair_forces.hpp, for convex blocks: one region a pair.
 
-#include "contact/contact_forces.hpp"
+#include "base/instructions.hpp"
+#include "contact/candidates.hpp"
+#include "contact/region_sums.hpp"
+#include "model/block_system.hpp"
+#include "model/contact_history.hpp"
 
 #include <array>
 #include <bit>

@@ -1,14 +1,14 @@
 #pragma once
 
-// A bond of the pair at hand during an evaluation (contact_forces.hpp, bonds.hpp).
+// A bond of the pair at hand during an evaluation (pair_forces.hpp, bonds.hpp).
 
-#include "contact/contact_forces.hpp"
 #include "contact/laws/bonds.hpp"
+#include "contact/pair_forces.hpp"
 #include "contact/pair_motion.hpp"
 
 namespace gcpdda {
 
-struct ContactForces::BondAtWork {
+struct PairForces::BondAtWork {
   RegionMemory memory;
   LawConstants constants; ///< of its law
   double damping = 0.0;   ///< CandidatePair::damping for it

@@ -177,15 +177,15 @@ void bond_joints(const BlockSystem &system, const Candidates &candidates, const 
   }
 }
 
-void ContactForces::find_bonds(const BlockSystem &system, const CandidatePair &pair,
-                               std::span<const Piece> pieces, std::span<const RegionMemory> memory) {
+void PairForces::find_bonds(const BlockSystem &system, const CandidatePair &pair,
+                            std::span<const Piece> pieces, std::span<const RegionMemory> memory) {
   for (const RegionMemory &known : memory) {
     BondAtWork &bond = bonds_.emplace_back();
     bond.memory = known;
-    bond.constants = parameters_.constants(known.law);
-    bond.damping = constants_of(system, parameters_, pair, known.law).damping;
+    bond.constants = parameters_->constants(known.law);
+    bond.damping = constants_of(system, *parameters_, pair, known.law).damping;
     bond.stretched = opening_of(system, pair, known, Configuration::trial);
-    const JointLaw &law = parameters_.joints.laws[static_cast<std::size_t>(known.law)];
+    const JointLaw &law = parameters_->joints.laws[static_cast<std::size_t>(known.law)];
     const auto [o0, o1] = bond.stretched.opening;
     const TractionIntegral open = integrate_without_tension(bond.stretched.length, 0.0, 0.0, o0, o1);
     bond.pull = law.normal_stiffness * open.total;
@@ -205,8 +205,7 @@ void ContactForces::find_bonds(const BlockSystem &system, const CandidatePair &p
   }
 }
 
-ContactForces::BondShare ContactForces::share_of_bonds(const CandidatePair &pair,
-                                                       const Region &region) const {
+PairForces::BondShare PairForces::share_of_bonds(const CandidatePair &pair, const Region &region) const {
   const std::span<const Piece> pieces = overlap_.pieces().subspan(region.begin, region.end - region.begin);
   BondShare share;
   for (const BondAtWork &bond : bonds_) {
@@ -220,7 +219,7 @@ ContactForces::BondShare ContactForces::share_of_bonds(const CandidatePair &pair
 }
 
 // The dashpot of both sides' pieces, where the joint is open.
-TractionIntegral ContactForces::BondAtWork::drag(const RelativeVelocity &velocity, Vec2 along) const {
+TractionIntegral PairForces::BondAtWork::drag(const RelativeVelocity &velocity, Vec2 along) const {
   const auto [first, last] = positive_part(stretched.opening[0], stretched.opening[1]);
   const auto at = [&](double share) {
     const Vec2 arm = (share - 0.5) * stretched.length * along;
@@ -231,14 +230,14 @@ TractionIntegral ContactForces::BondAtWork::drag(const RelativeVelocity &velocit
   return sum;
 }
 
-void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number) {
+void PairForces::append_bonds(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number) {
   for (const BondAtWork &bond : bonds_) {
     if (bond.broken) {
       continue;
     }
     const BondOpening &stretched = bond.stretched;
     RegionForce &force = append_force();
-    next_.regions.push_back(bond.memory);
+    memory_.push_back(bond.memory);
     damping_dyad_ = {};
     force.pair = number;
     force.bonded = true;
@@ -266,10 +265,10 @@ void ContactForces::append_bonds(const BlockSystem &system, const CandidatePair 
     force.dyad += outer(drag_moment, stretched.normal);
     add_damping(force, drag.total * stretched.normal, drag_moment, stretched.normal);
     double viscous = 0.0;
-    if (parameters_.has_dashpots()) {
+    if (parameters_->has_dashpots()) {
       const double stiffness = bond.constants.tangential_stiffness * bond.memory.longest;
-      viscous = (2.0 * parameters_.damping_ratio * std::sqrt(stiffness * pair.mass) +
-                 parameters_.stiffness_damping * stiffness) *
+      viscous = (2.0 * parameters_->damping_ratio * std::sqrt(stiffness * pair.mass) +
+                 parameters_->stiffness_damping * stiffness) *
                 dot(velocity.at({}), perp(force.normal));
     }
     add_shear(force, bond.memory.shear, viscous);

@@ -1,6 +1,5 @@
 #include "contact/laws/dilation.hpp"
 
-#include "contact/contact_forces.hpp"
 #include "contact/pair_motion.hpp"
 
 #include <algorithm>

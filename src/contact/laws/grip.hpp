@@ -42,7 +42,8 @@
 // LaneGrip (lane_grip.hpp) is the same in SIMD lanes.
 
 #include "contact/block_view.hpp"
-#include "contact/contact_forces.hpp"
+#include "contact/candidates.hpp"
+#include "contact/region_sums.hpp"
 
 #include <algorithm>
 

@@ -1,22 +1,16 @@
-// Frames of bolts.
+#include "io/results/bolt_frame_writer.hpp"
 
-#include "gcpdda/io/frame_rows.hpp"
-#include "gcpdda/io/frame_writer.hpp"
-
-#include "io/hdf5/hdf5_collective_file.hpp"
 #include "io/results/hdf5_vtk_layout.hpp"
-
-#include <fmt/format.h>
 
 #include <type_traits>
 
 namespace gcpdda {
 
-// A few rows, which the root writes.
-void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
-  const BoltFrame mine = communicator_.is_root() ? frame : BoltFrame{};
-  const RowRange cells = rows_in_rank_order(communicator_, std::ssize(mine.rows));
-  const RowRange points = rows_in_rank_order(communicator_, std::ssize(mine.points));
+void write_bolt_frame(const Communicator &communicator, CollectiveFile &file, double time,
+                      const BoltFrame &frame) {
+  const BoltFrame mine = communicator.is_root() ? frame : BoltFrame{};
+  const RowRange cells = rows_in_rank_order(communicator, std::ssize(mine.rows));
+  const RowRange points = rows_in_rank_order(communicator, std::ssize(mine.points));
   const auto values_of = [&](auto get) {
     std::vector<std::decay_t<decltype(get(BoltRow{}))>> values;
     for (const BoltRow &row : mine.rows) {
@@ -28,8 +22,6 @@ void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
   for (const Vec2 &point : mine.points) {
     coordinates.insert(coordinates.end(), {point.x, point.y, 0.0});
   }
-  const std::filesystem::path path = directory_ / "frames" / fmt::format("bolts_{:06}.hdf", index);
-  CollectiveFile file(communicator_, path);
   vtk::write_header(file, time);
   vtk::CellTables(file, cells.total, points.total, vtk::CellType::poly_line)
       .write(cells.first, points.first, values_of([](const BoltRow &row) { return row.num_points; }));
@@ -44,9 +36,6 @@ void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
   column("shear_force", [](const BoltRow &row) { return row.shear_force; });
   column("extension", [](const BoltRow &row) { return row.extension; });
   column("slide", [](const BoltRow &row) { return row.slide; });
-  publish_behind(file, path);
-  bolt_frames_.emplace_back(index, time);
-  write_indices_behind();
 }
 
 } // namespace gcpdda

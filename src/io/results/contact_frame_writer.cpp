@@ -1,13 +1,7 @@
-// Frames of contacts.
-
-#include "gcpdda/io/frame_rows.hpp"
-#include "gcpdda/io/frame_writer.hpp"
+#include "io/results/contact_frame_writer.hpp"
 
 #include "io/results/frame_fields.hpp"
-#include "io/results/frame_strips.hpp"
 #include "io/results/hdf5_vtk_layout.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
@@ -158,17 +152,15 @@ bool write_regions(CollectiveFile &file, ContactStrips &strips, const std::vecto
 
 } // namespace
 
-void FrameWriter::write_contacts(int index, double time, const ContactSource &source) {
-  ContactStrips strips(communicator_, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
-  const std::vector<std::int64_t> counts = strips.count();
+void write_contact_frame(const Communicator &communicator, CollectiveFile &file, double time,
+                         const Strips &strips, const ContactSource &source) {
+  ContactStrips regions(communicator, strips, source);
+  const std::vector<std::int64_t> counts = regions.count();
   const RowRange slab =
-      rows_in_rank_order(communicator_, std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
-  const std::filesystem::path path = directory_ / "frames" / fmt::format("contacts_{:06}.hdf", index);
-  CollectiveFile file(communicator_, path);
+      rows_in_rank_order(communicator, std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
   vtk::write_header(file, time);
-  expect_on_all_ranks(communicator_, write_regions(file, strips, counts, slab),
+  expect_on_all_ranks(communicator, write_regions(file, regions, counts, slab),
                       "as many contacts as the source has counted");
-  publish_behind(file, path);
 }
 
 } // namespace gcpdda

@@ -8,6 +8,8 @@
 #include "io/hdf5/hdf5_input.hpp"
 #include "io/hdf5/numbered_name.hpp"
 #include "io/hdf5/write_behind.hpp"
+#include "io/results/bolt_frame_writer.hpp"
+#include "io/results/contact_frame_writer.hpp"
 #include "io/results/frame_fields.hpp"
 #include "io/results/frame_strips.hpp"
 #include "io/results/hdf5_vtk_layout.hpp"
@@ -317,6 +319,22 @@ void FrameWriter::write_indices_behind() {
       write_index(directory / name, text);
     }
   });
+}
+
+void FrameWriter::write_contacts(int index, double time, const ContactSource &source) {
+  const std::filesystem::path path = directory_ / "frames" / fmt::format("contacts_{:06}.hdf", index);
+  CollectiveFile file(communicator_, path);
+  write_contact_frame(communicator_, file, time, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
+  publish_behind(file, path);
+}
+
+void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
+  const std::filesystem::path path = directory_ / "frames" / fmt::format("bolts_{:06}.hdf", index);
+  CollectiveFile file(communicator_, path);
+  write_bolt_frame(communicator_, file, time, frame);
+  publish_behind(file, path);
+  bolt_frames_.emplace_back(index, time);
+  write_indices_behind();
 }
 
 void FrameWriter::finish() {
