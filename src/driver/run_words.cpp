@@ -128,9 +128,12 @@ std::string words_on_stage(const std::string &name, const StageResult &result) {
     return fmt::format("stage '{}' at t = {:.9g} s, {} blocks removed", name, result.time, result.removed);
   }
   return fmt::format("stage '{}' {} at t = {:.9g} s after {} steps: unbalanced {:.2e}, largest motion "
-                     "{:.3g} of a block's size",
+                     "{:.3g} of a block's size{}",
                      name, word_of(result.verdict), result.time, result.steps, result.unbalanced_ratio,
-                     result.moved);
+                     result.moved,
+                     result.loose == 0 ? ""
+                                       : fmt::format(", but for {} loose block{}", result.loose,
+                                                     result.loose == 1 ? "" : "s"));
 }
 
 std::string words_on_loads(const std::vector<BoltLoad> &loads) {

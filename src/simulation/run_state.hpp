@@ -54,6 +54,14 @@ struct FidelityReport {
   double worst_deformable = 0.0; ///< what the deformable ones would leave out at most
 };
 
+/// What a look at a stage sees of a block.
+struct BlockLook {
+  double unbalanced = 0.0; ///< net force, local damping left out, N/m
+  double load = 0.0;       ///< weight and applied force, N/m
+  double motion = 0.0;     ///< since the look before, m
+  double kinetic = 0.0;    ///< J/m
+};
+
 struct RunState {
   /// Nothing has been distributed yet.
   RunState(const Communicator &world, Scene given);
@@ -71,6 +79,8 @@ struct RunState {
   Scheme scheme;
   StepBound bound;
   FidelityReport fidelity;
+  std::vector<BlockLook> looks;               ///< at each owned block, of the last look at a stage
+  std::vector<std::int64_t> look_sums;        ///< scratch
   std::optional<statics::PseudoTime> statics; ///< while a stage has the static solver
   StaticState saved_statics;                  ///< of the checkpoint it began with, until the first step
   double local_damping = 0.0;                 ///< of this stage

@@ -6,6 +6,7 @@
 #include "dynamics/frequency_bound.hpp"
 #include "simulation/evaluation.hpp"
 #include "simulation/ground.hpp"
+#include "simulation/loose_blocks.hpp"
 #include "simulation/stage_changes.hpp"
 #include "simulation/static_stage.hpp"
 #include "simulation/step_rows.hpp"
@@ -62,12 +63,13 @@ RigidDof damped_motion(const RunState &run, std::size_t row) {
 
 } // namespace
 
-// Two reductions, now and then; both are exact.
+// Three reductions, now and then; all are exact.
 void look_at_stage(RunState &run) {
   ExactSum kinetic;
   std::array<double, 6> largest{};
   auto &[unbalanced, acting, motion, moved, moved_beyond_sag, overlap] = largest;
   const std::span<BlockMark> marks = mark_rows(run.blocks);
+  run.looks.resize(run.blocks.num_owned);
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     const BlockProperties &block = run.blocks.properties[row];
     if (block.keeps_its_velocity()) {
@@ -76,36 +78,45 @@ void look_at_stage(RunState &run) {
     const AppliedForces applied = applied_forces(run.blocks, row);
     const RigidDof v = damped_motion(run, row);
     const RigidDof force = run.blocks.contact[row].force + applied.anchor;
+    BlockLook &seen = run.looks[row];
     const double along_x = undamped(force.u.x, v.u.x, run.local_damping);
     const double along_y = undamped(force.u.y, v.u.y, run.local_damping);
     const double turning = run.blocks.is_deformable(row)
                                ? norm(unbalanced_on_gradient(run.blocks.deformation_of(row)))
                                : std::abs(undamped(force.r, v.r, run.local_damping));
-    unbalanced = std::max({unbalanced, norm(Vec2{along_x, along_y}), turning / block.radius});
-    acting = std::max({acting, block.heavy_mass() * norm(run.scene.run.gravity), norm(applied.load.u)});
+    seen.unbalanced = std::max(norm(Vec2{along_x, along_y}), turning / block.radius);
+    unbalanced = std::max(unbalanced, seen.unbalanced);
+    const double weight = block.heavy_mass() * norm(run.scene.run.gravity);
+    seen.load = weight + norm(applied.load.u);
+    acting = std::max({acting, weight, norm(applied.load.u)});
     BlockMark &mark = marks[row];
     const RigidDof &now = run.blocks.displacement[row];
-    motion = std::max(motion, motion_between(block, mark.look, now));
+    seen.motion = motion_between(block, mark.look, now);
+    motion = std::max(motion, seen.motion);
     const double way = motion_between(block, mark.stage, now);
     const double share = way / std::sqrt(block.area);
     moved = std::max(moved, share);
     moved_beyond_sag = std::max(moved_beyond_sag, way > run.sag ? share : 0.0);
     mark.look = now;
-    kinetic.add(kinetic_energy_of(run.blocks, row));
+    seen.kinetic = kinetic_energy_of(run.blocks, row);
+    kinetic.add(seen.kinetic);
   }
   acting = std::max(acting, run.contacts.sums().largest_force());
   overlap = run.force_report.max_overlap;
   run.communicator.max(largest);
   run.communicator.sum(kinetic.limbs());
-  const StageLook look{acting > 0.0 ? unbalanced / acting : 0.0,
-                       motion,
-                       overlap,
-                       acting,
-                       kinetic.value(),
-                       moved,
-                       moved_beyond_sag};
+  StageLook look{acting > 0.0 ? unbalanced / acting : 0.0,
+                 motion,
+                 overlap,
+                 acting,
+                 kinetic.value(),
+                 moved,
+                 moved_beyond_sag};
   const Stage &stage = run.clock.stage();
-  run.clock.state.verdict = judge(stage, look, run.clock.state.memory);
+  if (stage.until_verdict && !stage.is_trial()) {
+    look_for_loose_blocks(run, look);
+  }
+  run.clock.state.verdict = judge(stage, look, looks_at_loose_blocks(is_static(run)), run.clock.state.memory);
   if (run.clock.state.verdict == Verdict::undecided && stage.is_trial() && !is_static(run)) {
     run.clock.state.verdict =
         judge_without_drag(stage, look, run.clock.plan.time(run.clock.stage_step()), run.clock.state.memory);
@@ -117,6 +128,11 @@ void look_at_stage(RunState &run) {
   if (unloads || run.clock.time() < run.scene.run.gravity_ramp ||
       run.loads.are_changing(run.scene, run.clock.state, run.clock.time())) { // the loads are not there yet
     run.clock.state.verdict = Verdict::undecided;
+  }
+  if (run.clock.state.verdict == Verdict::settled && run.clock.state.memory.settled_looks < 2) {
+    const std::vector<std::int64_t> loose = loose_blocks(run);
+    run.clock.state.memory.num_loose = std::ssize(loose);
+    note_loose_blocks(run, loose);
   }
   run.clock.state.end_time = run.clock.time();
   run.clock.state.ended = stage.until_verdict && run.clock.state.verdict != Verdict::undecided;
@@ -278,7 +294,8 @@ std::vector<StageResult> stage_results(const RunState &run) {
     const StageLook &last = run.clock.state.memory.last;
     results.push_back({run.clock.state.verdict, run.clock.time(), run.clock.stage_step(),
                        contact_steps - run.clock.state.contact_steps_before, last.unbalanced_ratio,
-                       last.kinetic, last.moved, 0, means_of_verdict(run.clock)});
+                       last.kinetic, last.moved, 0, run.clock.state.memory.num_loose,
+                       means_of_verdict(run.clock)});
   }
   return results;
 }

@@ -7,8 +7,13 @@
 
 namespace gcpdda {
 
-Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory) {
-  constexpr double motion_at_rest = 1e-3;  // of the largest overlap
+std::int64_t looks_at_loose_blocks(bool is_static) {
+  return is_static ? 40 : 4;
+}
+
+Verdict judge(const Stage &stage, const StageLook &look, std::int64_t looks_at_loose, LookMemory &memory) {
+  constexpr double most_loose = 1e-3;      // of the mobile blocks
+  constexpr double most_loose_load = 1e-2; // of the load
   constexpr double energy_at_rest = 1e-12; // of what the largest contact holds
   const StageLook last = memory.last;
   memory.most_kinetic = std::max(memory.most_kinetic, look.kinetic);
@@ -18,10 +23,15 @@ Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory) {
       look.unbalanced_ratio <= stage.tolerance && look.motion <= motion_at_rest * look.overlap &&
       (look.kinetic <= last.kinetic || look.kinetic <= energy_at_rest * look.force * look.overlap);
   memory.settled_looks = is_settled ? memory.settled_looks + 1 : 0;
-  if (memory.settled_looks >= 2) {
+  const bool others_rest = look.loose_share <= most_loose && look.loose_load <= most_loose_load &&
+                           (look.resting_kinetic <= last.resting_kinetic ||
+                            look.resting_kinetic <= energy_at_rest * look.force * look.overlap);
+  memory.loose_looks = others_rest ? memory.loose_looks + 1 : 0;
+  if (memory.settled_looks >= 2 || memory.loose_looks >= looks_at_loose) {
     return Verdict::settled;
   }
-  const bool goes_on = look.motion >= 0.5 * last.motion && look.kinetic >= 0.25 * memory.most_kinetic;
+  const bool goes_on =
+      !others_rest && look.motion >= 0.5 * last.motion && look.kinetic >= 0.25 * memory.most_kinetic;
   return look.moved_beyond_sag >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
 }
 
@@ -79,12 +89,13 @@ namespace {
 /// The same list of fields for both ways.
 template <class State, class Count, class Real> void visit_state(State &state, Count &&count, Real &&real) {
   count(state.index), count(state.first_step), count(state.ended), count(state.contact_steps_before);
-  count(state.more_mobile), count(state.verdict), count(state.memory.settled_looks);
+  count(state.more_mobile), count(state.verdict), count(state.memory.settled_looks),
+      count(state.memory.loose_looks), count(state.memory.num_loose);
   real(state.start_time), real(state.end_time), real(state.memory.most_kinetic),
       real(state.memory.kinetic_before);
   auto &last = state.memory.last;
   real(last.unbalanced_ratio), real(last.motion), real(last.overlap), real(last.force), real(last.kinetic);
-  real(last.moved);
+  real(last.moved), real(last.resting_kinetic);
   auto &iteration = state.iteration;
   count(iteration.evaluations), count(iteration.products), count(iteration.is_left);
   real(iteration.power_before), real(iteration.momentum), real(iteration.longest);
@@ -93,6 +104,7 @@ template <class State, class Count, class Real> void visit_state(State &state, C
 template <class Result, class Count, class Real>
 void visit_result(Result &result, Count &&count, Real &&real) {
   count(result.verdict), count(result.steps), count(result.contact_steps), count(result.removed);
+  count(result.loose);
   real(result.time), real(result.unbalanced_ratio), real(result.kinetic), real(result.moved);
 }
 template <class Load, class Count, class Real> void visit_unloading(Load &u, Count &&count, Real &&real) {

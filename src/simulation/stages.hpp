@@ -13,6 +13,8 @@
 // settled: at two looks in a row r <= tolerance, D <= 1e-3 d, and T does not grow. (A block that creeps
 // because its friction misses the slope by less than the tolerance still gains speed: that it is told from
 // rest is what T is for. Below 1e-12 of f d, the energy in the largest contact, motion is rounding.)
+// A settle stage does not wait for a few loose blocks (loose_blocks.hpp), and has not failed where only they
+// move.
 // failed: M has reached failure_motion, D is at least half of what it was, and T at least a quarter of the
 // most it was: the blocks are not about to come to rest.
 //
@@ -49,7 +51,14 @@ struct StageLook {
   double kinetic = 0.0;          ///< T, J/m
   double moved = 0.0;            ///< M of all blocks
   double moved_beyond_sag = 0.0; ///< M of those that have moved farther than a pile sags
+  // Of a settle stage (loose_blocks.hpp); 1 where nobody has looked.
+  double loose_share = 1.0;     ///< of the mobile blocks, those that are loose
+  double loose_load = 1.0;      ///< their net forces together over the load
+  double resting_kinetic = 0.0; ///< T of the others, J/m
 };
+
+/// D of a block at rest over d.
+inline constexpr double motion_at_rest = 1e-3;
 
 /// Motion of a trial in windows.
 struct MotionWindows {
@@ -75,11 +84,17 @@ struct LookMemory {
   double most_kinetic = 0.0;
   double kinetic_before = 0.0; ///< one step ago, of a stage with kinetic damping
   std::int64_t settled_looks = 0;
-  MotionWindows windows; ///< not in checkpoints, because nothing goes on with a trial
+  std::int64_t loose_looks = 0; ///< in a row at which all but loose blocks were at rest
+  std::int64_t num_loose = 0;   ///< blocks that the stage has not waited for
+  MotionWindows windows;        ///< not in checkpoints, because nothing goes on with a trial
 };
 
+/// Looks in a row after which a stage waits no longer for loose blocks: longer than it takes one that bounces
+/// to come back, 20 to 30 evaluations of the static solver, of which each is a look.
+std::int64_t looks_at_loose_blocks(bool is_static);
+
 /// Verdict of a look; the memory moves on.
-Verdict judge(const Stage &stage, const StageLook &look, LookMemory &memory);
+Verdict judge(const Stage &stage, const StageLook &look, std::int64_t looks_at_loose, LookMemory &memory);
 
 /// Verdict by windows on a trial without local damping.
 /// @param time  since the stage began, s

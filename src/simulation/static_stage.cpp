@@ -227,6 +227,7 @@ void judge_statics(RunState &run) {
     run.clock.state.ended = false;
     run.clock.state.verdict = Verdict::undecided;
     run.clock.state.memory.settled_looks = 0;
+    run.clock.state.memory.loose_looks = 0;
     return;
   }
   if (run.clock.stage().is_trial()) {

@@ -94,6 +94,7 @@ struct StageResult {
   double kinetic = 0.0;     ///< J/m
   double moved = 0.0;       ///< largest motion of a block in the stage, in sizes of that block
   std::int64_t removed = 0; ///< blocks
+  std::int64_t loose = 0;   ///< blocks that kept moving when all others were at rest
   VerdictMeans means = VerdictMeans::dynamic_step; ///< not in checkpoints: of stages of this process
 };
 

@@ -38,7 +38,8 @@ std::vector<JsonObject> stage_objects(const RunSummary &summary) {
                           .add("unbalanced_ratio", result.unbalanced_ratio)
                           .add("kinetic", result.kinetic)
                           .add("moved", result.moved)
-                          .add("removed", result.removed));
+                          .add("removed", result.removed)
+                          .add("loose", result.loose));
   }
   return objects;
 }
