@@ -46,6 +46,13 @@ void ClosedPair::move(const BlockSystem &system, const CandidatePair &pair, Vec2
   }
 }
 
+bool goes_with_opening(const BlockSystem &system, const CandidatePair &pair, const RegionMemory &memory,
+                       Vec2 normal) {
+  constexpr double cosine = 0.7; // of about 45 degrees
+  const Vec2 opening = opening_axes(system, pair)(memory.opening);
+  return dot(opening, normal) >= cosine * norm(opening) * norm(normal);
+}
+
 const Region *region_of(const BlockSystem &system, const CandidatePair &pair, const Overlap &overlap,
                         const RegionMemory &memory) {
   if (pair.is_convex) {
@@ -58,7 +65,7 @@ const Region *region_of(const BlockSystem &system, const CandidatePair &pair, co
       continue;
     }
     const RegionIntegrals sum = overlap.integrate(region);
-    if (!(sum.pressure > 0.0)) {
+    if (!(sum.pressure > 0.0) || !goes_with_opening(system, pair, memory, sum.force)) {
       continue;
     }
     const Vec2 point =

@@ -13,7 +13,10 @@
 // strain.
 //
 // A region of several on a re-entrant block keeps an opening of its own: it is found among those of the moved
-// blocks by its stretches and its place.
+// blocks by its stretches and its place. Moving the blocks towards each other closes their other joints as
+// well, by D along the normal of these; so its normal must also lie within 45 degrees of D. A joint that has
+// parted would otherwise go on in the next one between the same blocks, which is struck at once by all that D
+// closes it.
 //
 // A block that lifts is thrown off its joint where the opening stops, if only by some overlaps, and comes to
 // lie on the same asperities. So a region without overlap is kept (longest = 0, no force, no stick spring)
@@ -43,6 +46,10 @@ private:
   std::array<BlockView, 2> view_;
   std::array<TrialOutline, 2> outline_;
 };
+
+/// Whether a region with this normal, or force along it, may be the one that has been opened by its memory.
+bool goes_with_opening(const BlockSystem &system, const CandidatePair &pair, const RegionMemory &memory,
+                       Vec2 normal);
 
 /// The region of the moved blocks that goes on with the memory of an opened one; null if there is none.
 const Region *region_of(const BlockSystem &system, const CandidatePair &pair, const Overlap &overlap,

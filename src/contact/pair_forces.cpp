@@ -140,7 +140,8 @@ void PairForces::match_memories(const BlockSystem &system, const CandidatePair &
     for (std::size_t m = 0; m < old.size(); ++m) {
       const double distance = norm(old[m].position - found.position);
       if (old[m].lower_stretch == found.region->faces.first &&
-          old[m].higher_stretch == found.region->faces.second && distance <= old[m].longest + extent) {
+          old[m].higher_stretch == found.region->faces.second && distance <= old[m].longest + extent &&
+          (!old[m].is_opened() || goes_with_opening(system, pair, old[m], found.force.normal))) {
         matches_.push_back({distance, k, m});
       }
     }
