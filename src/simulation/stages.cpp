@@ -99,7 +99,8 @@ template <class State, class Count, class Real> void visit_state(State &state, C
   auto &iteration = state.iteration;
   count(iteration.evaluations), count(iteration.products), count(iteration.is_left);
   real(iteration.power_before), real(iteration.momentum), real(iteration.longest);
-  real(iteration.least_ratio), real(iteration.last_least), real(iteration.skipped);
+  real(iteration.least_ratio), real(iteration.last_least), real(iteration.least_loose);
+  real(iteration.last_loose), real(iteration.skipped);
 }
 template <class Result, class Count, class Real>
 void visit_result(Result &result, Count &&count, Real &&real) {

@@ -240,12 +240,17 @@ void judge_statics(RunState &run) {
     leave_statics(run, "a block has moved so far that the stage may have failed");
     return;
   }
-  iteration.least_ratio = std::min(iteration.least_ratio, run.clock.state.memory.last.unbalanced_ratio);
+  const StageLook &look = run.clock.state.memory.last;
+  iteration.least_ratio = std::min(iteration.least_ratio, look.unbalanced_ratio);
+  iteration.least_loose = std::min(iteration.least_loose, look.loose_share);
   if (!run.clock.state.ended && iteration.evaluations % window == 0) {
-    const bool has_stalled = iteration.least_ratio > 0.5 * iteration.last_least;
+    const bool has_stalled = iteration.least_ratio > 0.5 * iteration.last_least &&
+                             iteration.least_loose > 0.5 * iteration.last_loose;
     iteration.last_least = std::exchange(iteration.least_ratio, 1e300);
+    iteration.last_loose = std::exchange(iteration.least_loose, 1.0);
     if (has_stalled) {
-      leave_statics(run, fmt::format("the unbalanced ratio has not fallen by half in {} evaluations: {:.3g}",
+      leave_statics(run, fmt::format("neither the unbalanced ratio nor the number of blocks in motion has "
+                                     "fallen by half in {} evaluations: {:.3g}",
                                      window, iteration.last_least));
     }
   }

@@ -17,8 +17,10 @@
 //
 // A stage that the iteration does not serve, or in which it stalls, goes on with the dynamic solver from
 // where the blocks are. It stalls where, once all of the load acts, the least unbalanced ratio of
-// `stall_window` evaluations is more than half of that of the window before; and where a block has moved so
-// far that the stage may have failed, the dynamic solver is the judge.
+// `stall_window` evaluations is more than half of that of the window before, and so is the least share of
+// blocks that are not at rest (loose_blocks.hpp: in a large model the worst of a few blocks says little of
+// all others); and where a block has moved so far that the stage may have failed, the dynamic solver is the
+// judge.
 
 #include "simulation/run_state.hpp"
 

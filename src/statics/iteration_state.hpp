@@ -17,6 +17,8 @@ struct IterationState {
   double longest = 0.0;         ///< largest overlap so far, m
   double least_ratio = 1e300;   ///< least unbalanced ratio of the window at hand ...
   double last_least = 1e300;    ///< ... and of the one before
+  double least_loose = 1.0;     ///< the same of the share of loose blocks
+  double last_loose = 1.0;
   double skipped = 0.0;         ///< s: the stage begins when its loads are complete
 };
 
