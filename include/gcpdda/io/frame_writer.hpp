@@ -65,7 +65,7 @@ public:
   /// Frame number `index` (0, 1, ...); exactly one rank has each block. From one frame to the next blocks may
   /// go, none may come.
   void write(int index, double time, const FrameSource &source);
-  /// The same for frames/contacts_<index>.hdf; exactly one rank has each region.
+  /// The same for frames/contacts_<index>.hdf and contacts.hdf.series; exactly one rank has each region.
   void write_contacts(int index, double time, const ContactSource &source);
   /// The same for frames/bolts_<index>.hdf, behind write(index), and bolts.hdf.series.
   void write_bolts(int index, double time, const BoltFrame &frame);
@@ -83,6 +83,9 @@ public:
 private:
   void publish_behind(CollectiveFile &file, const std::filesystem::path &path);
   void write_indices_behind();
+  /// @param kind  of the frames: "contacts" or "bolts"
+  void write_series_behind(const char *name, const std::vector<std::pair<int, double>> &frames,
+                           const char *kind);
 
   Communicator communicator_;
   std::filesystem::path directory_;
@@ -114,7 +117,8 @@ private:
   std::vector<ResultFile> files_; ///< without a size until somebody asks
   std::vector<int> lost_;         ///< frames that were not there when a restart went on behind them
   std::vector<std::pair<int, double>> frames_;
-  std::vector<std::pair<int, double>> bolt_frames_; ///< known to the root
+  std::vector<std::pair<int, double>> contact_frames_;
+  std::vector<std::pair<int, double>> bolt_frames_;
 };
 
 } // namespace gcpdda

@@ -304,9 +304,6 @@ void FrameWriter::write_indices_behind() {
   });
   std::vector<std::pair<const char *, std::string>> indices{
       {"run.hdf.series", series_index(frames, "frame")}};
-  if (!bolt_frames_.empty()) {
-    indices.emplace_back("bolts.hdf.series", series_index(bolt_frames_, "bolts"));
-  }
   std::vector<IndexedFrame> indexed;
   for (const auto &[index, time] : frames) {
     const Topology &topology = topology_of(index);
@@ -321,11 +318,20 @@ void FrameWriter::write_indices_behind() {
   });
 }
 
+void FrameWriter::write_series_behind(const char *name, const std::vector<std::pair<int, double>> &frames,
+                                      const char *kind) {
+  if (communicator_.is_root() && !frames.empty()) {
+    behind_->add([path = directory_ / name, text = series_index(frames, kind)] { write_index(path, text); });
+  }
+}
+
 void FrameWriter::write_contacts(int index, double time, const ContactSource &source) {
   const std::filesystem::path path = directory_ / "frames" / fmt::format("contacts_{:06}.hdf", index);
   CollectiveFile file(communicator_, path);
   write_contact_frame(communicator_, file, time, {num_blocks_, communicator_.size(), ids_per_strip_}, source);
   publish_behind(file, path);
+  contact_frames_.emplace_back(index, time);
+  write_series_behind("contacts.hdf.series", contact_frames_, "contacts");
 }
 
 void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
@@ -334,7 +340,7 @@ void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
   write_bolt_frame(communicator_, file, time, frame);
   publish_behind(file, path);
   bolt_frames_.emplace_back(index, time);
-  write_indices_behind();
+  write_series_behind("bolts.hdf.series", bolt_frames_, "bolts");
 }
 
 void FrameWriter::finish() {
@@ -349,6 +355,9 @@ void FrameWriter::sync() {
   on_root(communicator_, [this] {
     sync_file(directory_ / "run.hdf.series");
     sync_file(directory_ / "run.xdmf");
+    if (!contact_frames_.empty()) {
+      sync_file(directory_ / "contacts.hdf.series");
+    }
     if (!bolt_frames_.empty()) {
       sync_file(directory_ / "bolts.hdf.series");
     }
@@ -430,6 +439,9 @@ void FrameWriter::continue_behind(const std::vector<double> &times, const std::v
       if (!std::filesystem::exists(folder / frame_name(index))) {
         lost_.push_back(index);
       }
+      if (std::filesystem::exists(folder / fmt::format("contacts_{:06}.hdf", index))) {
+        contact_frames_.emplace_back(index, time);
+      }
       if (std::filesystem::exists(folder / fmt::format("bolts_{:06}.hdf", index))) {
         bolt_frames_.emplace_back(index, time);
       }
@@ -443,6 +455,8 @@ void FrameWriter::continue_behind(const std::vector<double> &times, const std::v
             [](const Topology &a, const Topology &b) { return a.first_frame < b.first_frame; });
   expect(!topologies_.empty(), "a run that goes on has a topology");
   write_indices_behind();
+  write_series_behind("contacts.hdf.series", contact_frames_, "contacts");
+  write_series_behind("bolts.hdf.series", bolt_frames_, "bolts");
   finish();
   on_root(communicator_, [&] { remove_frames_from(folder, std::ssize(times)); });
 }

@@ -45,8 +45,8 @@ bool is_own_file(const fs::path &folder, const fs::path &path) {
   if (folder == "history") {
     return is_own_history(path);
   }
-  return name == "run.hdf.series" || name == "bolts.hdf.series" || name == "run.xdmf" ||
-         name == "summary.json";
+  return name == "run.hdf.series" || name == "contacts.hdf.series" || name == "bolts.hdf.series" ||
+         name == "run.xdmf" || name == "summary.json";
 }
 
 std::vector<fs::path> own_files(const fs::path &directory) {

@@ -52,7 +52,7 @@ std::vector<fs::path> files_of_run(const fs::path &directory) {
       }
     }
   }
-  for (const char *index : {"run.hdf.series", "run.xdmf", "bolts.hdf.series"}) {
+  for (const char *index : {"run.hdf.series", "run.xdmf", "contacts.hdf.series", "bolts.hdf.series"}) {
     if (fs::exists(directory / index)) {
       files.emplace_back(index);
     }

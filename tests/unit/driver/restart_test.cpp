@@ -302,6 +302,7 @@ TEST_F(CutResults, FramesGoOnAsIfNeverStopped) {
   FrameWriter writer(Communicator::self(), folder_ / "cut", 2);
   writer.continue_behind({0.0, 0.1}, {files.begin(), files.begin() + 7});
   EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/run.hdf.series"), "\"name\""), 2);
+  EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/contacts.hdf.series"), "\"name\""), 2);
   EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/bolts.hdf.series"), "\"name\""), 2);
   EXPECT_EQ(testing::count_of(file_text(folder_ / "cut/run.xdmf"), "<Time "), 2);
   EXPECT_EQ(testing::listing(folder_ / "cut/frames"),

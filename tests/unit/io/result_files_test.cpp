@@ -132,6 +132,7 @@ TEST_F(ResultFiles, OverwriteRemovesOnlyWhatARunWrites) {
                                         "frames/contacts_000000.hdf",
                                         "frames/bolts_000000.hdf",
                                         "frames/topology_000000.h5",
+                                        "contacts.hdf.series",
                                         "bolts.hdf.series",
                                         "history/a.csv",
                                         "decomposition/owners_0.csv"};
