@@ -22,6 +22,7 @@ enum Code : int {
 
 using ExitCode = exit_code::Code;
 
+/// An exit code and what it says.
 struct ExitCodeMeaning {
   ExitCode code;
   const char *meaning;

@@ -36,9 +36,9 @@ public:
   /// Why the run cannot go on, the same on all ranks; nothing where it can.
   [[nodiscard]] std::optional<std::string> fault() const;
 
-  [[nodiscard]] double time() const;      ///< s
-  [[nodiscard]] double time_step() const; ///< s
-  [[nodiscard]] std::int64_t step_count() const;
+  [[nodiscard]] double time() const;             ///< s
+  [[nodiscard]] double time_step() const;        ///< s
+  [[nodiscard]] std::int64_t step_count() const; ///< steps since the beginning of the run
   /// Number of the stage, 0 where the scene has none.
   [[nodiscard]] std::int64_t stage() const;
   [[nodiscard]] std::int64_t num_blocks() const; ///< of all ranks, fixed ones included

@@ -13,10 +13,14 @@ struct Mat2 {
   double yx = 0.0;
   double yy = 0.0;
 
+  /// [1 0; 0 1].
   static constexpr Mat2 identity() { return {1.0, 0.0, 0.0, 1.0}; }
 
+  /// The product with a vector.
   constexpr Vec2 operator()(Vec2 a) const { return {xx * a.x + xy * a.y, yx * a.x + yy * a.y}; }
+  /// By entries.
   constexpr Mat2 &operator+=(const Mat2 &b) { return xx += b.xx, xy += b.xy, yx += b.yx, yy += b.yy, *this; }
+  /// Equal in all entries.
   friend constexpr bool operator==(const Mat2 &, const Mat2 &) = default;
 };
 

@@ -6,12 +6,16 @@
 
 namespace gcpdda {
 
+/// A vector of the plane.
 struct Vec2 {
   double x = 0.0;
   double y = 0.0;
 
+  /// By components.
   constexpr Vec2 &operator+=(Vec2 b) { return x += b.x, y += b.y, *this; }
+  /// By components.
   constexpr Vec2 &operator-=(Vec2 b) { return x -= b.x, y -= b.y, *this; }
+  /// Equal in both components.
   friend constexpr bool operator==(Vec2, Vec2) = default;
 };
 
@@ -49,6 +53,7 @@ struct SmallTurn {
   double sine = 0.0;
   double versine = 0.0;
 
+  /// @param a  rad, at most `largest` in size
   static constexpr SmallTurn of(double a) {
     const double q = a * a;
     return {
@@ -74,6 +79,7 @@ struct Rotation {
     }
     return {std::cos(angle), std::sin(angle)};
   }
+  /// The vector turned by the rotation.
   [[nodiscard]] constexpr Vec2 operator()(Vec2 a) const { return {c * a.x - s * a.y, s * a.x + c * a.y}; }
 };
 

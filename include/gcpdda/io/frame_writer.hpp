@@ -25,6 +25,7 @@ public:
   virtual ~FrameSource() = default;
   FrameSource(const FrameSource &) = delete;
   FrameSource &operator=(const FrameSource &) = delete;
+  /// How many rows this rank has.
   [[nodiscard]] virtual std::int64_t num_rows() const = 0;
   /// This rank's rows with first <= block < last behind `rows`, their current vertices behind `vertices`, in
   /// the same order. Not collective.
@@ -50,6 +51,8 @@ public:
 /// get there while the run goes on. What fails then is told by the next write() or finish().
 class FrameWriter {
 public:
+  /// @param communicator  of all ranks that write
+  /// @param directory  the result folder
   /// @param num_blocks  all blocks of the scene, fixed ones included
   /// @param ids_per_strip  that a rank writes at a time, 0 for the usual number; files do not depend on it
   FrameWriter(const Communicator &communicator, std::filesystem::path directory, std::int64_t num_blocks,
@@ -65,9 +68,9 @@ public:
   /// Frame number `index` (0, 1, ...); exactly one rank has each block. From one frame to the next blocks may
   /// go, none may come.
   void write(int index, double time, const FrameSource &source);
-  /// The same for frames/contacts_<index>.hdf and contacts.hdf.series; exactly one rank has each region.
+  /// The same for frames/contacts_INDEX.hdf and contacts.hdf.series; exactly one rank has each region.
   void write_contacts(int index, double time, const ContactSource &source);
-  /// The same for frames/bolts_<index>.hdf, behind write(index), and bolts.hdf.series.
+  /// The same for frames/bolts_INDEX.hdf, behind write(index), and bolts.hdf.series.
   void write_bolts(int index, double time, const BoltFrame &frame);
   /// All frames have their final names.
   void finish();
@@ -83,7 +86,7 @@ public:
 private:
   void publish_behind(CollectiveFile &file, const std::filesystem::path &path);
   void write_indices_behind();
-  /// @param kind  of the frames: "contacts" or "bolts"
+  /// The index of frames of contacts or bolts, which `kind` says.
   void write_series_behind(const char *name, const std::vector<std::pair<int, double>> &frames,
                            const char *kind);
 

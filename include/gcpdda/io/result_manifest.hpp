@@ -16,6 +16,7 @@ struct ResultFile {
   std::int64_t bytes = 0; ///< a history has at least these by now, every other file just these
   std::int64_t rows = -1; ///< of a history, without its header; -1: it is none
 
+  /// Equal in name, bytes and rows.
   friend bool operator==(const ResultFile &, const ResultFile &) = default;
 };
 

@@ -90,6 +90,7 @@ struct RunSummary {
   std::vector<std::pair<std::string, double>> counters;
   double restarted_at = -1.0; ///< s, negative for a run from t = 0; times and counters "of the run" then are
                               ///< of all of it, wall and CPU times, evaluations and messages of this part
+  /// A stage that has begun.
   struct StageLine {
     std::string name;
     std::string verdict;

@@ -11,6 +11,7 @@
 
 namespace gcpdda {
 
+/// A scene and what is to be said of its text.
 struct SceneReading {
   Scene scene;             ///< complete only if the diagnostics hold no error
   Diagnostics diagnostics; ///< every fault of the text, in file order

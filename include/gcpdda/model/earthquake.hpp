@@ -40,6 +40,7 @@ struct Earthquake {
   double s_wave_speed = 0.0;
   SourcePosition where; ///< of its file in the scene
 
+  /// Whether the scene has a record.
   [[nodiscard]] bool shakes() const { return !file.empty(); }
 };
 

@@ -43,6 +43,7 @@ private:
   [[nodiscard]] double whole_quantile(double p) const;
 };
 
+/// Members of an ensemble: how many, from which seed, and what varies among them.
 struct Ensemble {
   std::int64_t count = 0; ///< members; 0 where the scene has no ensemble
   std::int64_t seed = 0;

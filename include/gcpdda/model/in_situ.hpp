@@ -18,6 +18,7 @@ struct Boundary {
   double reach = 0.0;    ///< m
   double rounding = 0.0; ///< of points on it, m
 
+  /// Whether the point lies on the boundary, to rounding.
   [[nodiscard]] bool holds(Vec2 x) const { return std::abs(dot(normal, x) - reach) <= rounding; }
 };
 
@@ -41,6 +42,7 @@ struct InSituStress {
     return std::any_of(boundaries.begin(), boundaries.end(),
                        [&](const Boundary &boundary) { return boundary.holds(a) && boundary.holds(b); });
   }
+  /// Compressive stress at a point, Pa.
   [[nodiscard]] Mat2 compression_at(Vec2 x) const { return at_level + (level + dot(down, x)) * growth; }
 };
 

@@ -50,10 +50,13 @@ struct JointLaw {
   double strength = 0.0;    ///< JCS, Pa
   bool is_on_edges = false; ///< some edge of some block has it; known once all blocks have been looked at
 
+  /// It resists shear.
   [[nodiscard]] bool has_friction() const { return tan_friction > 0.0 || cohesion > 0.0 || roughness > 0.0; }
   /// The same constants for every contact at all times.
   [[nodiscard]] bool is_constant() const { return !has_bonds && !is_barton_bandis && dilation_limit == 0.0; }
+  /// Slip opens the joint.
   [[nodiscard]] bool dilates() const { return tan_dilation > 0.0; }
+  /// What contacts with this law take from it.
   [[nodiscard]] LawConstants constants() const {
     return {0.5 * normal_stiffness, tangential_ratio * normal_stiffness,
             has_bonds ? residual_tan_friction : tan_friction, has_bonds ? residual_cohesion : cohesion};
@@ -113,6 +116,7 @@ struct JointLaw {
                       &JointLaw::reduction,
                       &JointLaw::strength};
   }
+  /// Its parameters of type bool that a user chooses.
   static constexpr auto choices() { return std::array{&JointLaw::has_bonds, &JointLaw::is_barton_bandis}; }
 };
 // A parameter that is added must join these lists. Each of the three flags fills a place of eight bytes.
@@ -124,6 +128,7 @@ struct JointLaws {
   std::vector<std::int32_t> of_material; ///< (materials, materials), symmetric
   std::int32_t num_materials = 0;
 
+  /// Index of the law between two materials.
   [[nodiscard]] std::int32_t between(std::int32_t a, std::int32_t b) const {
     return of_material[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +
                        static_cast<std::size_t>(b)];

@@ -14,6 +14,7 @@ struct Rise {
   double begin = -std::numeric_limits<double>::infinity(); ///< s
   double duration = 0.0;                                   ///< s; 0: at once
 
+  /// Share at a time (s), from 0 to 1.
   [[nodiscard]] double at(double time) const {
     if (time - begin >= duration) {
       return 1.0;
@@ -21,6 +22,7 @@ struct Rise {
     const double x = std::max(0.0, (time - begin) / duration);
     return time > begin ? x * x * (3.0 - 2.0 * x) : 0.0;
   }
+  /// When it is over, s.
   [[nodiscard]] double end() const { return begin + duration; }
 };
 
@@ -30,6 +32,7 @@ struct LoadRow {
   double time = 0.0; ///< s, 0 in the first row
   double factor = 0.0;
 
+  /// Equal in time and factor.
   friend bool operator==(const LoadRow &, const LoadRow &) = default;
 };
 
@@ -46,6 +49,7 @@ struct LoadCourse {
   Rise in{};
   std::vector<Rise> out{};
 
+  /// What the force is multiplied by at a time (s).
   [[nodiscard]] double factor(double time) const {
     double product = (table.empty() ? Rise{begin, ramp}.at(time) : of_table(time - begin)) * in.at(time);
     for (const Rise &going : out) {

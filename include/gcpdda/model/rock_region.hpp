@@ -99,6 +99,7 @@ struct BrickPattern {
 enum class SliverRule { merge, refuse, keep };
 enum class Side { bottom, left, right, top };
 
+/// A region with all that lies in it; `present()` says whether a scene has one.
 struct RockRegion {
   static constexpr std::size_t num_sides = 4;
 
@@ -119,6 +120,7 @@ struct RockRegion {
   std::vector<BrickPattern> bricks;
   SourcePosition where;
 
+  /// Whether the scene has a region.
   [[nodiscard]] bool present() const { return !outline.empty(); }
 };
 

@@ -32,6 +32,7 @@ enum class InitialFriction { consistent, zero };
 /// Where within the step the elastic force of a deformable block is taken.
 enum class Elasticity { implicit, explicit_ };
 
+/// A rock: density and, where blocks deform, elasticity.
 struct Material {
   std::string name;
   double density = 0.0;        ///< kg/m3
@@ -44,9 +45,11 @@ struct Rayleigh {
   double mass_damping = 0.0;      ///< alpha, 1/s
   double stiffness_damping = 0.0; ///< beta, s
 
+  /// Whether the scene asks for it.
   [[nodiscard]] bool present() const { return mass_damping > 0.0; }
 };
 
+/// Table [run]: time, scheme, gravity, damping, fidelity.
 struct RunSettings {
   double duration = 0.0; ///< s
   Vec2 gravity{0.0, -9.81};
@@ -81,6 +84,7 @@ struct VelocityRow {
   double time = 0.0;                ///< s, 0 in the first row
   std::array<double, 3> velocity{}; ///< vx, vy (m/s), omega (rad/s)
 
+  /// Equal in time and velocities.
   friend bool operator==(const VelocityRow &, const VelocityRow &) = default;
 };
 
@@ -106,6 +110,7 @@ struct SceneBlock {
 /// A wall or pyramid of equal bricks: blocks made from their number, so that nobody has to hold them all
 /// (generators.hpp).
 struct BrickGenerator {
+  /// What the bricks are laid to.
   enum class Kind { wall, pyramid };
   Kind kind = Kind::wall;
   std::string name;
@@ -126,6 +131,7 @@ struct BlockFile {
   SourcePosition where;
 };
 
+/// Table [output]: what is written and when.
 struct OutputSettings {
   double interval = 0.0;            ///< s; 0 until the default is put in
   double history_interval = 0.0;    ///< s

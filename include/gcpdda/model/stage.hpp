@@ -55,6 +55,7 @@ struct BlockSelection {
       openings; ///< numbers in RockRegion::openings: all blocks cut within their outlines
 };
 
+/// What a run changes at once, and how long it then goes on.
 struct Stage {
   std::string name;
   StageKind kind = StageKind::run;
@@ -77,8 +78,11 @@ struct Stage {
   std::shared_ptr<const Scene> after;
   SourcePosition where;
 
+  /// Whether time passes in it.
   [[nodiscard]] bool takes_steps() const { return kind == StageKind::run || kind == StageKind::settle; }
+  /// A trial of gcpdda fos.
   [[nodiscard]] bool is_trial() const { return drag_limit < std::numeric_limits<double>::infinity(); }
+  /// Local damping of the stage: its own, or else that of the run.
   [[nodiscard]] double local_damping_or(double of_run) const {
     return local_damping >= 0.0 ? local_damping : of_run;
   }

@@ -14,6 +14,7 @@ namespace gcpdda {
 
 /// What bolts of one type are made of, for one bolt.
 struct SupportType {
+  /// How it holds the rock: at its ends, or along its length.
   enum class Kind { anchored, grouted };
   static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
@@ -31,9 +32,11 @@ struct SupportType {
   bool plate = false;                ///< the head of a grouted bolt cannot be pulled into the rock
   double spacing = 1.0;              ///< m out of plane
 
+  /// Equal in all parameters.
   friend bool operator==(const SupportType &, const SupportType &) = default;
 };
 
+/// One bolt or cable.
 struct Bolt {
   std::string name;
   std::int32_t support = 0; ///< index into Scene::supports

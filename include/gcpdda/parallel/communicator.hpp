@@ -31,18 +31,26 @@ public:
   /// How many of the ranks share the memory of this one. Collective.
   [[nodiscard]] int ranks_on_node() const;
 
+  /// Number of this rank, from 0.
   [[nodiscard]] int rank() const { return rank_; }
+  /// Number of ranks.
   [[nodiscard]] int size() const { return size_; }
+  /// Whether this is rank 0.
   [[nodiscard]] bool is_root() const { return rank_ == 0; }
 
+  /// Waits for all ranks. Collective.
   void barrier() const;
   /// In place; largest of each entry over all ranks. NaN is not allowed.
   void max(std::span<double> values) const;
+  /// The largest of all ranks.
   [[nodiscard]] double max(double value) const;
+  /// In place; largest of each entry over all ranks.
   void max(std::span<std::int64_t> values) const;
+  /// In place; sum of each entry over all ranks, exact.
   void sum(std::span<std::int64_t> values) const;
   /// Root's bytes to everybody.
   void broadcast(Bytes &bytes) const;
+  /// Root's text to everybody.
   void broadcast(std::string &text) const;
 
   /// Everybody's bytes, by rank, on every rank.
@@ -76,12 +84,14 @@ public:
       message.clear();
     }
   }
+  /// Message k of `send` goes to rank k; returned are those that arrived, by rank. Collective.
   template <class T>
   [[nodiscard]] std::vector<std::vector<T>> all_to_all(std::vector<std::vector<T>> send) const {
     std::vector<std::vector<T>> received;
     all_to_all(send, received);
     return received;
   }
+  /// The lists of all ranks, by rank. Collective.
   template <class T> [[nodiscard]] std::vector<std::vector<T>> all_gather(const std::vector<T> &mine) const {
     std::vector<std::vector<T>> received;
     for (const Bytes &bytes : all_gather(to_bytes(mine))) {
@@ -90,12 +100,13 @@ public:
     return received;
   }
 
-  /// Point-to-point round with known partners: one message to and from each peer.
-  /// Lengths must match on both sides; no collective.
+  /// A message to or from one peer.
   struct Message {
     int peer;
     std::span<std::byte> bytes;
   };
+  /// Point-to-point round with known partners: one message to and from each peer. Lengths must match on both
+  /// sides; not collective.
   void exchange(std::span<const Message> send, std::span<const Message> receive) const;
 
   /// The MPI_Comm behind, for parallel HDF5 only: points to an MPI_Comm.
@@ -141,16 +152,20 @@ private:
 class MessageRound {
 public:
   MessageRound() noexcept; ///< without messages
+  /// Prepares the round.
   MessageRound(const Communicator &communicator, std::span<const Communicator::Message> send,
                std::span<const Communicator::Message> receive);
   ~MessageRound();
+  /// The buffers stay where they are.
   MessageRound(MessageRound &&) noexcept;
+  /// The buffers stay where they are.
   MessageRound &operator=(MessageRound &&) noexcept;
 
   /// Until finish() the buffers belong to the round.
   void start();
   /// Long messages travel only while somebody looks after them: to be called now and then before finish().
   void progress();
+  /// All messages are here, and the buffers are free again.
   void finish();
 
 private:
@@ -162,6 +177,7 @@ private:
 /// all ranks with exit code 1, because the others may be waiting for this one.
 class MpiScope {
 public:
+  /// MPI takes its own arguments out of these.
   MpiScope(int &argc, char **&argv);
   ~MpiScope();
   MpiScope(const MpiScope &) = delete;
