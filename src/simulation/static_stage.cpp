@@ -125,6 +125,12 @@ void find_static_motion(RunState &run) {
 /// The iteration of a stage that begins, or goes on after a restart.
 void open_statics(RunState &run) {
   statics::IterationRules rules;
+  std::int64_t num_mobile = 0;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    num_mobile += run.blocks.properties[row].keeps_its_velocity() ? 0 : 1;
+  }
+  run.communicator.sum(std::span(&num_mobile, 1));
+  rules.mass_share = statics::mass_share(num_mobile);
   // Boxes of two blocks that are this near meet within what each may move before the next refresh.
   rules.springs.reach = share_of_skin_kept * run.neighbours.base_skin;
   run.statics.emplace(run.communicator, rules);

@@ -76,6 +76,13 @@ double row_product(const std::array<double, 6> &v, const double *f, std::size_t 
 
 } // namespace
 
+double mass_share(std::int64_t num_blocks) {
+  constexpr double share = 5e-4;
+  constexpr double few_blocks = 2000.0;
+  return share *
+         std::sqrt(std::min(1.0, few_blocks / static_cast<double>(std::max<std::int64_t>(1, num_blocks))));
+}
+
 double length_of_step(const BlockSystem &system, std::size_t row) {
   const std::array<double, 6> &v = system.pseudo[row].velocity;
   const double turning = system.is_deformable(row) ? norm(Mat2{v[2], v[3], v[4], v[5]}) : std::abs(v[2]);

@@ -10,6 +10,12 @@
 // is gone. rho D is a share of the stiffness that a block could have; it moves what nothing touches. In
 // central differences, with v the motion of a step and q = (K + rho D) v its momentum,
 //     v = a v + b (K + rho D)^-1 f,   q = a q + b f,   x = x + v,   a = (2 - c)/(2 + c),   b = 2/(2 + c).
+// The slowest motion of a pile of L layers is a wave of a quarter of its length in it, for which K is about
+// (pi/2L)^2 D: it keeps a frequency near 1 as long as rho is no more than that, about 2.5/N for N blocks. A
+// block that nothing touches wants rho large, or it flies. Between the two, by runs of 2,000 to 100,000
+// blocks,
+//     rho = 5e-4 min(1, (2000/N)^(1/2)).
+//
 // Damping follows the frequency of the motion that goes on, c = c_share 2 w (1 is critical damping of that
 // motion), with Rayleigh's quotient of the step behind,
 //     w^2 = v.(f_before - f)/(v.q),   cut to [0, 3.9], where central differences are stable.
@@ -48,6 +54,9 @@ struct IterationRules {
   std::int64_t stall_window = 100; ///< evaluations in which the least ratio has to fall by half
   SpringRules springs;
 };
+
+/// rho of a model of so many mobile blocks.
+double mass_share(std::int64_t num_blocks);
 
 class PseudoTime {
 public:
