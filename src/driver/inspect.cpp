@@ -135,18 +135,23 @@ private:
     return line("fidelity", text);
   }
 
+  static std::string origin_of_stiffness(const JointLaw &law) {
+    if (law.rock_mass_modulus > 0.0) {
+      return fmt::format(" (from rock_mass_modulus = {:g}, intact_modulus = {:g}, spacing = {:g})",
+                         law.rock_mass_modulus, law.intact_modulus, law.spacing);
+    }
+    return law.allowed_overlap > 0.0 ? fmt::format(" (from allowed_overlap = {:g})", law.allowed_overlap)
+                                     : "";
+  }
+
   std::string joint_lines() {
     std::string text;
     for (const JointLaw &law : simulation_.scene().joints.laws) {
-      text +=
-          line("joint", fmt::format("'{}': k_n {:.6g} Pa/m{}, k_t/k_n {:g}, friction angle {:g} deg, "
-                                    "cohesion {:g} Pa",
-                                    law.name, law.normal_stiffness,
-                                    law.allowed_overlap > 0.0
-                                        ? fmt::format(" (from allowed_overlap = {:g})", law.allowed_overlap)
-                                        : "",
-                                    law.tangential_ratio,
-                                    std::atan(law.tan_friction) * 180.0 / std::numbers::pi, law.cohesion));
+      text += line("joint",
+                   fmt::format("'{}': k_n {:.6g} Pa/m{}, k_t/k_n {:g}, friction angle {:g} deg, "
+                               "cohesion {:g} Pa",
+                               law.name, law.normal_stiffness, origin_of_stiffness(law), law.tangential_ratio,
+                               std::atan(law.tan_friction) * 180.0 / std::numbers::pi, law.cohesion));
       text += sinking_line(law);
     }
     return text;

@@ -119,6 +119,9 @@ std::string words_on_law(const JointLaw &law) {
       law.name, law.normal_stiffness,
       law.allowed_overlap > 0.0
           ? fmt::format(" for an allowed overlap of {:g} block sizes", law.allowed_overlap)
+      : law.rock_mass_modulus > 0.0
+          ? fmt::format(" for a rock mass of {:g} Pa with joints every {:g} m in rock of {:g} Pa",
+                        law.rock_mass_modulus, law.spacing, law.intact_modulus)
           : "",
       law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion);
 }

@@ -107,9 +107,11 @@ Besides these values the following is warned of, each kind in one line with the 
 - Barton, N., Choubey, V. (1977): The shear strength of rock joints in theory and practice. Rock Mech. 10, 1-54.
 - Bowles, J. E. (1996): Foundation Analysis and Design, 5th ed., McGraw-Hill.
 - Brown, E. T., Hoek, E. (1978): Trends in relationships between measured in-situ stresses and depth. Int. J. Rock Mech. Min. Sci. 15, 211-215.
+- Deere, D. U., Miller, R. P. (1966): Engineering Classification and Index Properties for Intact Rock, AFWL-TR-65-116.
 - EN 1538 (slurry walls), EN 1991-1-1 (Eurocode 1, densities and loads), EN 1992-1-1 (Eurocode 2, concrete), EN 1993-1-1 (Eurocode 3, steel), EN 10138 (prestressing steel).
 - Hoek, E., Bray, J. W. (1981): Rock Slope Engineering, 3rd ed., Institution of Mining and Metallurgy.
 - Hoek, E., Brown, E. T. (1980): Underground Excavations in Rock, Institution of Mining and Metallurgy.
+- Hoek, E., Diederichs, M. S. (2006): Empirical estimation of rock mass modulus. Int. J. Rock Mech. Min. Sci. 43, 203-215.
 - Hoek, E., Kaiser, P. K., Bawden, W. F. (1995): Support of Underground Excavations in Hard Rock, Balkema.
 - ISRM (1978): Suggested methods for the quantitative description of discontinuities in rock masses. Int. J. Rock Mech. Min. Sci. 15, 319-368.
 - Kramer, S. L. (1996): Geotechnical Earthquake Engineering, Prentice Hall.

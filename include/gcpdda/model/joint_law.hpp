@@ -45,9 +45,14 @@ struct JointLaw {
   /// Friction angle by Barton and Bandis, see tan_friction_at(); tan_friction is then that of the residual
   /// angle.
   bool is_barton_bandis = false;
-  double roughness = 0.0;   ///< JRC
-  double reduction = 1.0;   ///< its tangent is divided by this
-  double strength = 0.0;    ///< JCS, Pa
+  double roughness = 0.0; ///< JRC
+  double reduction = 1.0; ///< its tangent is divided by this
+  double strength = 0.0;  ///< JCS, Pa
+  /// Whence normal_stiffness follows where the scene gives a rock mass modulus, else zero: moduli of rock
+  /// mass and intact rock (Pa) and spacing of the joints (m).
+  double rock_mass_modulus = 0.0;
+  double intact_modulus = 0.0;
+  double spacing = 0.0;
   bool is_on_edges = false; ///< some edge of some block has it; known once all blocks have been looked at
 
   /// It resists shear.
@@ -119,8 +124,10 @@ struct JointLaw {
   /// Its parameters of type bool that a user chooses.
   static constexpr auto choices() { return std::array{&JointLaw::has_bonds, &JointLaw::is_barton_bandis}; }
 };
-// A parameter that is added must join these lists. Each of the three flags fills a place of eight bytes.
-static_assert(sizeof(JointLaw) == sizeof(std::string) + sizeof(double) * (JointLaw::numbers().size() + 3));
+// A parameter that is added must join these lists. Each of the three flags fills a place of eight bytes; the
+// three numbers from which normal_stiffness may follow are represented by it.
+static_assert(sizeof(JointLaw) ==
+              sizeof(std::string) + sizeof(double) * (JointLaw::numbers().size() + 3 + 3));
 
 /// All laws of a scene and which one a pair of materials takes.
 struct JointLaws {

@@ -1,6 +1,7 @@
 #include "io/scene/scene_joints.hpp"
 
 #include "io/scene/joint_parameters.hpp"
+#include "io/scene/scene_joint_stiffness.hpp"
 
 #include "base/edit_distance.hpp"
 #include "io/scene/scene_materials.hpp"
@@ -32,11 +33,7 @@ using MaterialPair = std::pair<std::int32_t, std::int32_t>;
 class JointReader {
 public:
   JointReader(const SceneSource &source, const MaterialIndex &materials)
-      : source_(source), materials_(&materials) {
-    const Section run = section(source.root, "run", source.faulty);
-    Vec2 gravity = RunSettings{}.gravity;
-    run.read("gravity", gravity);
-    weightless_ = run.known("gravity") && gravity == Vec2{};
+      : source_(source), materials_(&materials), stiffness_(source) {
     laws_.num_materials = static_cast<std::int32_t>(materials.size());
     laws_.of_material.assign(materials.size() * materials.size(), 0);
   }
@@ -75,10 +72,6 @@ private:
     if (const toml::node *materials = law.given("materials")) {
       fault(materials->source(), law.subject("materials") + " has no meaning",
             "the default law is for all pairs without their own", "leave it out");
-    }
-    if (law.given("normal_stiffness") == nullptr && law.given("allowed_overlap") == nullptr) {
-      fault(law.source(), law.label() + " gives neither normal_stiffness nor allowed_overlap",
-            "exactly one of them is needed", "for example normal_stiffness = 1e9");
     }
     read_values(law, laws_.laws.front());
   }
@@ -133,25 +126,7 @@ private:
   }
 
   void read_values(const Section &law, JointLaw &values) {
-    const toml::node *stiffness = law.given("normal_stiffness");
-    const toml::node *overlap = law.given("allowed_overlap");
-    if (stiffness != nullptr && overlap != nullptr) {
-      const Origins &origins = source_.faults.origins();
-      const bool stiffness_last = origins.order(overlap->source()) < origins.order(stiffness->source());
-      fault((stiffness_last ? stiffness : overlap)->source(),
-            law.label() + " gives both normal_stiffness and allowed_overlap", "one follows from the other",
-            "leave one of them out");
-    } else if (stiffness != nullptr) {
-      values.allowed_overlap = 0.0;
-      law.read("normal_stiffness", values.normal_stiffness);
-    } else if (overlap != nullptr) {
-      values.normal_stiffness = 0.0;
-      law.read("allowed_overlap", values.allowed_overlap);
-      if (weightless_) {
-        fault(overlap->source(), law.subject("allowed_overlap") + " has no meaning without gravity",
-              "the stiffness follows from the weight of the blocks", "give normal_stiffness instead");
-      }
-    }
+    stiffness_.read(law, values.name == "default", values);
     law.read("tangential_ratio", values.tangential_ratio);
     law.read("cohesion", values.cohesion);
     read_angle(law, "friction_angle_deg", values.tan_friction);
@@ -302,7 +277,7 @@ private:
 
   SceneSource source_;
   const MaterialIndex *materials_;
-  bool weightless_ = false;
+  StiffnessReader stiffness_;
   JointLaws laws_;
   bool residual_given_ = false; ///< in default
   std::map<MaterialPair, Section> law_of_pair_;
@@ -316,12 +291,21 @@ std::span<const JointParameter> joint_parameters() {
     {{"joint", Kind::named_tables, required, any, "", "", "[joint.default]", "Contact laws: default for every pair of materials, further ones for the pair they name or for the edges of blocks that name them."}, nullptr, {}},
     {{"joint.*", Kind::table, optional, any, "", "", "[joint.default]", "One contact law; keys missing in another law than default are taken from default."}, nullptr, {}},
     {{"joint.*.materials", Kind::pair_of_names, optional, any, "", "<none: a law for edges that name it>", "[\"granite\", \"clay\"]", "The pair of materials that takes this law."}, nullptr, {}},
-    {{"joint.*.normal_stiffness", Kind::number, optional, above_to(0, 1e20), "", "<exactly one of this and allowed_overlap>", "1e9", "[Pa/m] Normal stiffness k_n = 2 p_n/H."},
+    {{"joint.*.normal_stiffness", Kind::number, optional, above_to(0, 1e20), "", "<exactly one of this, allowed_overlap and rock_mass_modulus>", "1e9", "[Pa/m] Normal stiffness k_n = 2 p_n/H."},
      [](const JointLaw &law) { return law.normal_stiffness; },
      {"", "Pa/m", 1e6, 1e14, 5e9, {{1e6, "MPa/m"}, {1e9, "GPa/m"}}, "clay-filled to tight rock joints, and what stands for a rigid contact, have", "Bandis, Lumsden & Barton (1983); Lama & Vutukuri (1978)"}},
-    {{"joint.*.allowed_overlap", Kind::number, optional, between(0, 1), "", "<exactly one of this and normal_stiffness>", "0.001", "Overlap under the weight of the scene relative to the block size, from which the normal stiffness follows."},
+    {{"joint.*.allowed_overlap", Kind::number, optional, between(0, 1), "", "<exactly one of this, normal_stiffness and rock_mass_modulus>", "0.001", "Overlap under the weight of the scene relative to the block size, from which the normal stiffness follows."},
      [](const JointLaw &law) { return law.allowed_overlap; },
      {"", "", 1e-8, 0.05, 1e-3, of_share, "overlaps that are small against a block have", "an overlap at rest above 5 % of a block is refused"}},
+    {{"joint.*.rock_mass_modulus", Kind::number, optional, above_to(0, 1e20), "", "<exactly one of this, normal_stiffness and allowed_overlap>", "10e9", "[Pa] Modulus E_m of the rock mass across these joints, from which the normal stiffness E_m E_i/(s (E_i - E_m)) follows with intact_modulus E_i and spacing s: joints and intact rock in series."},
+     [](const JointLaw &law) { return law.rock_mass_modulus; },
+     {"", "Pa", 1e6, 1e11, 1e10, {{1e6, "MPa"}, {1e9, "GPa"}}, "fault zones to massive rock have", "Hoek & Diederichs (2006): 0.1 to 80 GPa"}},
+    {{"joint.*.intact_modulus", Kind::number, optional, above_to(0, 1e20), "", "<youngs_modulus of the materials>", "40e9", "[Pa] Modulus E_i of the rock between the joints, above rock_mass_modulus; needed where the materials of the law (all of the scene, without a pair) have none or several."},
+     [](const JointLaw &law) { return law.intact_modulus; },
+     {"", "Pa", 1e7, 4e11, 4e10, {{1e6, "MPa"}, {1e9, "GPa"}}, "weak to very stiff intact rock has", "Deere & Miller (1966); Lama & Vutukuri (1978)"}},
+    {{"joint.*.spacing", Kind::number, optional, above_to(0, 1e9), "", "<required with rock_mass_modulus>", "0.5", "[m] Mean spacing s of the joints that make the rock mass softer than intact rock."},
+     [](const JointLaw &law) { return law.spacing; },
+     {"", "m", 0.001, 500, 1, of_length, "joint sets have", "ISRM (1978): extremely close below 0.02 m, extremely wide above 6 m"}},
     {{"joint.*.tangential_ratio", Kind::number, optional, above_to(0, 1000), "", "0.5", "0.5", "Tangential stiffness over normal stiffness."},
      [](const JointLaw &law) { return law.tangential_ratio; },
      {"", "", 1e-3, 10, 0.5, {}, "rock joints and contacts have", "Bandis, Lumsden & Barton (1983)"}},

@@ -215,10 +215,20 @@ scheme = "central-difference"
 spectral_radius = 0.5)",
      {R"(4:19: error: 'spectral_radius' in [run] has no meaning for this scheme, it belongs to generalized-alpha and explicit-generalized-alpha, leave it out)"}},
     {"NeitherStiffness", 8, R"()",
-     {R"(7:1: error: [joint.default] gives neither normal_stiffness nor allowed_overlap, exactly one of them is needed, for example normal_stiffness = 1e9)"}},
+     {R"(7:1: error: [joint.default] gives none of normal_stiffness, allowed_overlap and rock_mass_modulus, exactly one of them is needed, for example normal_stiffness = 1e9)"}},
     {"BothStiffnesses", 8, R"(allowed_overlap = 0.001
 normal_stiffness = 1e9)",
      {R"(9:20: error: [joint.default] gives both normal_stiffness and allowed_overlap, one follows from the other, leave one of them out)"}},
+    {"StiffnessAndModulus", 8, R"(normal_stiffness = 1e9
+rock_mass_modulus = 1e10)",
+     {R"(9:21: error: [joint.default] gives normal_stiffness and keys of rock_mass_modulus, one follows from the other, keep normal_stiffness, or rock_mass_modulus with spacing)"}},
+    {"ModulusWithoutItsCompanions", 8, R"(rock_mass_modulus = 1e10)",
+     {R"(7:1: error: 'spacing' in [joint.default] is missing, the stiffness follows from rock_mass_modulus, spacing and the modulus of intact rock, for example spacing = 0.5)",
+      R"(7:1: error: 'intact_modulus' in [joint.default] is missing, [material.clay] has no youngs_modulus, for example intact_modulus = 40e9)"}},
+    {"MassStifferThanRock", 8, R"(rock_mass_modulus = 4e10
+intact_modulus = 4e10
+spacing = 1)",
+     {R"(8:21: error: [joint.default] has a rock mass of 4e+10 Pa and intact rock of 4e+10 Pa, joints make rock softer, and the stiffness E_m E_i/(s (E_i - E_m)) would not be positive, use a rock_mass_modulus below 4e+10)"}},
     {"AllowedOverlapWithoutGravity", 1, R"([joint.soft]
 materials = ["clay", "clay"]
 allowed_overlap = 0.001

@@ -48,6 +48,10 @@ residual_friction_angle_deg = 28.0
 [joint.soft]
 materials = ["clay", "clay"]
 allowed_overlap = 1e-3
+[joint.mass]
+rock_mass_modulus = 10e9
+intact_modulus = 40e9
+spacing = 1.0
 [[block]]
 name = "ram"
 material = "clay"
@@ -166,6 +170,11 @@ const std::vector<Slip> slips{
      "if it is in GPa/m, write 2e+10; if it is in MPa/m, write 2e+07"},
     {"joint.soft.allowed_overlap=0.1", "joint.soft.allowed_overlap is 0.1",
      "if it is in per cent, write 0.001"},
+    {"joint.mass.rock_mass_modulus=10", "joint.mass.rock_mass_modulus is 10 Pa",
+     "if it is in GPa, write 1e+10; if it is in MPa, write 1e+07"},
+    {"joint.mass.intact_modulus=4e12", "joint.mass.intact_modulus is 4e+12 Pa", ""},
+    {"joint.mass.spacing=800", "joint.mass.spacing is 800 m",
+     "if it is in mm, write 0.8; if it is in cm, write 8"},
     {"joint.default.tangential_ratio=500", "joint.default.tangential_ratio is 500",
      "check its unit; gcpdda reference --values has the range and its source"},
     {"joint.default.residual_friction_angle_deg=0.5",
