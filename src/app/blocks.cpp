@@ -8,6 +8,7 @@
 #include "blockgen/joint_map.hpp"
 #include "blockgen/quality.hpp"
 #include "blockgen/region_cutter.hpp"
+#include "blockgen/set_statistics.hpp"
 #include "gcpdda/blockgen/region_blocks.hpp"
 #include "geometry/polygon.hpp"
 #include "io/blocks/block_file_writer.hpp"
@@ -50,7 +51,8 @@ struct Report {
   double region_area = 0.0;
   double excavated_area = 0.0;
   double median_area = 0.0;
-  std::vector<std::int64_t> in_opening; ///< blocks, by opening
+  std::vector<std::int64_t> in_opening;      ///< blocks, by opening
+  std::vector<blockgen::SetStatistics> sets; ///< on the root only
 
   /// Of the areas that should be equal, relative.
   [[nodiscard]] double difference() const { return (area + excavated_area - region_area) / region_area; }
@@ -119,6 +121,9 @@ Report survey(const Communicator &world, const Scene &scene, const RegionCutter 
   report.excavated_area = agreed_sum(world, cut.excavated_area);
   report.region_area = signed_area(scene.region.outline);
   agree(world, report.quality);
+  if (world.is_root()) {
+    report.sets = blockgen::set_statistics(scene.region);
+  }
   report.cut.merged_slivers = agreed_sum(world, cut.merged_slivers);
   report.cut.cut_rings = agreed_sum(world, cut.cut_rings);
   report.cut.t_junctions = agreed_sum(world, cut.t_junctions);
@@ -184,6 +189,10 @@ std::string text_of(const Report &report, const Scene &scene) {
                                 ? fmt::format("'{}': excavated", opening.name)
                                 : fmt::format("'{}': {} blocks", opening.name, report.in_opening[k]));
   }
+  const std::vector<std::string> set_words = blockgen::words_on_sets(scene.region, report.sets);
+  for (const std::string &words : set_words) {
+    text += line(&words == &set_words.front() ? "joint sets" : "", words);
+  }
   text += histogram_lines("areas", q.areas, "m2");
   text += histogram_lines("edges", q.edges, "m");
   text += line("corners", fmt::format("{} blocks with one below {:g} degrees", q.num_needles,
@@ -242,6 +251,7 @@ std::string json_of(const Report &report, const Scene &scene) {
   add("needles", q.num_needles);
   add("slivers", q.num_slivers);
   add("openings", "{" + openings + "}");
+  add("joint_sets", blockgen::json_of_sets(scene.region, report.sets));
   add("areas_from", json_of(q.areas));
   add("edges_from", json_of(q.edges));
   add("sharpest", json_of(q.sharpest));
@@ -271,6 +281,15 @@ void draw(const Communicator &world, const Scene &scene, const std::vector<Scene
 }
 
 } // namespace
+
+std::string words_on_joint_sets(const Scene &scene) {
+  std::string text;
+  for (const std::string &words :
+       blockgen::words_on_sets(scene.region, blockgen::set_statistics(scene.region))) {
+    text += fmt::format("{:<11} {}\n", text.empty() ? "joint sets" : "", words);
+  }
+  return text;
+}
 
 void prepare_region(const Communicator &world, Scene &scene) {
   if (!scene.region.present()) {

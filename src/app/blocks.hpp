@@ -21,6 +21,9 @@ struct BlocksOptions {
 /// @throws SceneError, FileError
 void prepare_region(const Communicator &world, Scene &scene);
 
+/// Lines of a report on what the joint sets of the region ask and draw; empty without joint sets.
+std::string words_on_joint_sets(const Scene &scene);
+
 /// Cuts the region of a prepared scene, checks and draws its blocks and prints a report on the root.
 /// Collective.
 /// @throws SceneError, FileError, InternalError where the areas of the blocks do not add up to that of the

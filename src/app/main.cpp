@@ -254,7 +254,7 @@ ExitCode inspect(const Communicator &world, const Arguments &arguments) {
     judge_before_work(world, arguments, scene);
     const std::string report = inspect_scene(world, scene, {arguments.ranks, arguments.svg});
     if (world.is_root()) {
-      std::cout << report << std::flush;
+      std::cout << report << words_on_joint_sets(scene) << std::flush;
     }
     return exit_code::done;
   });

@@ -2,6 +2,7 @@
 
 #include "blockgen/sampling.hpp"
 #include "geometry/holds_point.hpp"
+#include "model/joint_plane.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -106,6 +107,8 @@ public:
   }
 
   std::vector<Trace> take() { return std::move(traces_); }
+  /// Joints of sets go there.
+  void draw_to(DrawnSet &drawn) { drawn_ = &drawn; }
 
 private:
   void add(const Trace &trace) {
@@ -115,6 +118,10 @@ private:
   }
 
   void add(const JointSet &set, const Trace &trace) {
+    if (drawn_ != nullptr) {
+      drawn_->joints.push_back(trace);
+      return;
+    }
     if (!trace.meets(box_)) {
       return;
     }
@@ -157,6 +164,12 @@ private:
     }
   }
 
+  /// The direction of one joint.
+  static Vec2 own_direction(const JointSet &set, const Draw &draw) {
+    const bool in_space = set.plane && set.plane->fisher > 0.0;
+    return direction_of(in_space ? sample_trace_angle(*set.plane, draw) : sample_angle(set.dip, draw));
+  }
+
   /// How far a joint may reach across its line: three deviations of its angle.
   [[nodiscard]] double reach_of_turn(const JointSet &set) const {
     double turn = 0.0;
@@ -164,13 +177,19 @@ private:
       turn = 3.0 * set.dip.width;
     } else if (set.dip.spread == Spread::fisher) {
       turn = 3.0 / std::sqrt(set.dip.width);
+    } else if (set.is_turned()) {
+      turn = 3.0 / (std::sqrt(set.plane->fisher) * share_in_section(pole_of(*set.plane)));
     }
-    const double arm = set.through_going ? 0.5 * norm(around_.extent()) : set.trace.mean;
+    const double longest = set.trace.spread == Spread::power_law ? set.trace.high : set.trace.mean;
+    const double arm = set.through_going ? 0.5 * norm(around_.extent()) : longest;
     return arm * std::sin(std::min(turn, 0.5 * std::numbers::pi));
   }
 
   void add_traces_of_line(const JointSet &set, std::uint64_t number, std::int64_t line, Vec2 on_line) {
     const Vec2 direction = direction_of(set.dip.mean);
+    if (drawn_ != nullptr) {
+      drawn_->offsets.push_back(dot(on_line - set.origin, perp(direction)));
+    }
     const Extent reach = extent_along(around_, on_line, direction);
     if (set.through_going) {
       add_through_going(set, number, line, on_line + (0.5 * (reach.low + reach.high)) * direction);
@@ -179,24 +198,24 @@ private:
     const double period = set.trace.mean + set.gap.mean;
     const double phase = set.stagger ? *set.stagger * static_cast<double>(line)
                                      : Draw(set.seed, number, line, 0, phase_of).uniform();
-    // The pattern begins one period or two before the region.
+    // The pattern begins one period or two before the region, that of a power law before its longest joint.
+    const double before = set.trace.spread == Spread::power_law ? std::ceil(set.trace.high / period) : 0.0;
     double at = (phase - std::floor(phase)) * period;
-    at += (std::floor((reach.low - at) / period) - 1.0) * period;
+    at += (std::floor((reach.low - at) / period) - 1.0 - before) * period;
     for (std::int64_t joint = 0; at <= reach.high; ++joint) {
       const double length = sample_length(set.trace, {set.seed, number, line, joint, trace_of});
-      const double turned = sample_angle(set.dip, {set.seed, number, line, joint, dip_of});
-      const Vec2 own = set.dip.spread == Spread::none ? direction : direction_of(turned);
+      const bool is_turned = set.is_turned();
+      const Vec2 own = is_turned ? own_direction(set, {set.seed, number, line, joint, dip_of}) : direction;
       const Vec2 middle = on_line + (at + 0.5 * length) * direction;
       const double half = 0.5 * length;
-      add(set, set.dip.spread == Spread::none
-                   ? Trace{on_line + at * direction, on_line + (at + length) * direction, set.joint}
-                   : Trace{middle - half * own, middle + half * own, set.joint});
+      add(set, is_turned ? Trace{middle - half * own, middle + half * own, set.joint}
+                         : Trace{on_line + at * direction, on_line + (at + length) * direction, set.joint});
       at += length + sample_length(set.gap, {set.seed, number, line, joint, gap_of});
     }
   }
 
   void add_through_going(const JointSet &set, std::uint64_t number, std::int64_t line, Vec2 middle) {
-    const Vec2 own = direction_of(sample_angle(set.dip, {set.seed, number, line, 0, dip_of}));
+    const Vec2 own = own_direction(set, {set.seed, number, line, 0, dip_of});
     const Extent reach = extent_along(around_, middle, own);
     const Extent aside = extent_along(around_, middle, perp(own));
     if (aside.low > 0.0 || aside.high < 0.0) {
@@ -208,6 +227,7 @@ private:
   Aabb around_;
   Aabb box_;
   std::vector<Trace> traces_;
+  DrawnSet *drawn_ = nullptr;
 };
 
 } // namespace
@@ -257,6 +277,14 @@ std::vector<Trace> traces_in(const RockRegion &region, const Aabb &box) {
     collector.add_set(region.joint_sets[i], i);
   }
   return collector.take();
+}
+
+DrawnSet drawn_set(const RockRegion &region, std::size_t number) {
+  Collector collector(region, bounding_box(region.outline));
+  DrawnSet drawn;
+  collector.draw_to(drawn);
+  collector.add_set(region.joint_sets[number], number);
+  return drawn;
 }
 
 std::vector<Vec2> voronoi_sites(const VoronoiCells &cells, const RockRegion &region, const Aabb &box) {

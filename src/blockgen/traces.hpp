@@ -27,6 +27,13 @@ struct Trace {
 /// Each trace depends on the region alone.
 std::vector<Trace> traces_in(const RockRegion &region, const Aabb &box);
 
+/// A joint set as it is drawn over the bounding box of the region.
+struct DrawnSet {
+  std::vector<double> offsets; ///< of its lines from the origin, across the mean dip, m
+  std::vector<Trace> joints;   ///< whole, also where the set is for a part of the region only
+};
+DrawnSet drawn_set(const RockRegion &region, std::size_t number);
+
 /// One point of each Voronoi cell whose grid cell meets `box`.
 std::vector<Vec2> voronoi_sites(const VoronoiCells &cells, const RockRegion &region, const Aabb &box);
 

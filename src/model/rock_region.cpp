@@ -23,10 +23,6 @@ double crossings(const Density &a, const Density &b) {
   return a.length * b.length * sine;
 }
 
-double share_of_traces(const JointSet &set) {
-  return set.through_going ? 1.0 : set.trace.mean / (set.trace.mean + set.gap.mean);
-}
-
 /// Width of a polygon in a direction.
 double width_along(const std::vector<Vec2> &outline, Vec2 direction) {
   double low = dot(outline[0], direction);
@@ -49,7 +45,18 @@ double width_across(const RockRegion &region, const JointSet &set) {
   return width > far * compact ? width : compact;
 }
 
+/// Integral of x^power from 1 to `end`.
+double integral_of_power(double power, double end) {
+  const double exponent = (power + 1.0) * std::log(end);
+  return exponent == 0.0 ? std::log(end) : std::log(end) * std::expm1(exponent) / exponent;
+}
+
 } // namespace
+
+double Scattered::mean_of_power_law() const {
+  const double ratio = high / low;
+  return low * integral_of_power(1.0 - width, ratio) / integral_of_power(-width, ratio);
+}
 
 double expected_traces(const JointSet &set, const RockRegion &region) {
   const Vec2 extent = bounding_box(region.outline).extent();
@@ -75,8 +82,8 @@ double expected_blocks(const RockRegion &region) {
   std::vector<Density> families;
   double blocks = 1.0;
   for (const JointSet &set : region.joint_sets) {
-    families.push_back({share_of_traces(set) / set.spacing.mean, set.dip.mean});
-    blocks += share_of_traces(set) * width_across(region, set) / set.spacing.mean;
+    families.push_back({set.persistence() / set.spacing.mean, set.dip.mean});
+    blocks += set.persistence() * width_across(region, set) / set.spacing.mean;
   }
   for (const VoronoiCells &cells : region.voronoi) {
     families.push_back({2.0 / cells.size, {}});

@@ -226,7 +226,12 @@ void judge_cutters(Doubts &doubts) {
   const RockRegion &region = doubts.scene().region;
   for (const JointSet &set : region.joint_sets) {
     const std::string path = "joint_set." + name_in(set.name);
-    doubts.judge("joint_set.*.spacing", path + ".spacing", set.spacing.mean, set.where);
+    if (set.intensity > 0.0) {
+      doubts.judge("joint_set.*.p21", path + ".p21", set.intensity, set.where);
+    } else {
+      doubts.judge("joint_set.*.spacing", path + ".spacing",
+                   set.plane ? set.plane->spacing : set.spacing.mean, set.where);
+    }
     if (!set.through_going) {
       doubts.judge("joint_set.*.trace_length", path + ".trace_length", set.trace.mean, set.where);
       doubts.judge("joint_set.*.gap", path + ".gap", set.gap.mean, set.where);

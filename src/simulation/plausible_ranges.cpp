@@ -39,6 +39,7 @@ const std::vector<PlausibleRange> ranges_after_joints{
   {"pyramid.*.block_size", "m", 1e-3, 200, 0.5, of_length, "bricks and blocks have", "grains of sand to blocks of a mountain"},
   {"region.size", "m", 0.02, 1e4, 50, of_length, "the root of the area of a sample or a mountain side is", "a shear box to a mountain side"},
   {"joint_set.*.spacing", "m", 1e-3, 500, 2, of_length, "joints have", "ISRM (1978): extremely close below 0.02 m, extremely wide above 6 m"},
+  {"joint_set.*.p21", "m/m2", 0.002, 1000, 1, {}, "joint sets have", "ISRM (1978): the inverse of the spacing"},
   {"joint_set.*.trace_length", "m", 0.01, 5000, 10, of_length, "joints have", "ISRM (1978): persistence from below 1 m to above 20 m"},
   {"joint_set.*.gap", "m", 1e-3, 5000, 5, of_length, "rock bridges have", "ISRM (1978)"},
   {"opening.*.size", "m", 0.02, 300, 10, of_length, "boreholes to caverns have widths of", "Hoek & Brown (1980)"},

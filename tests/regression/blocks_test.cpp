@@ -82,6 +82,11 @@ TEST_F(Blocks, AreReportedAndDrawnAlikeOnAnyNumberOfRanks) {
   const std::string json = file_text(folder_ / "1.json");
   EXPECT_EQ(count_of(json, "\"region_area\": 60,"), 1) << json;
   EXPECT_EQ(count_of(json, "\"first_id\": 1,"), 1) << json;
+  EXPECT_EQ(count_of(one.out, "'joint_set1' asks spacing 1 m, P21 0.8571 m/m2, mean trace length 3 m"), 1)
+      << one.out;
+  EXPECT_EQ(count_of(one.out, " has  spacing 1 m"), 2) << one.out;
+  EXPECT_EQ(count_of(json, "\"joint_sets\": [{\"name\": \"joint_set0\", \"asked\": {\"spacing\": 1,"), 1)
+      << json;
   EXPECT_EQ(count_of(one.err, "error"), 0);
 }
 
@@ -151,6 +156,7 @@ TEST_F(Blocks, InspectKnowsThem) {
   const Outcome outcome = run_gcpdda(2, {"inspect", "scene.toml"}, folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(count_of(outcome.out, " mobile, 1 fixed, "), 1) << outcome.out;
+  EXPECT_EQ(count_of(outcome.out, " has  spacing 1 m"), 2) << outcome.out;
 }
 
 } // namespace

@@ -14,17 +14,31 @@
 
 namespace gcpdda {
 
-enum class Spread { none, normal, lognormal, exponential, fisher };
+enum class Spread { none, normal, lognormal, exponential, power_law, fisher };
 
 /// A quantity of a joint set that may vary from joint to joint. Values outside [lowest_share, highest_share]
-/// times the mean are drawn again (not of angles).
+/// times the mean are drawn again (not of angles, and not of a power law, which has its own limits).
 struct Scattered {
   static constexpr double lowest_share = 0.01;
   static constexpr double highest_share = 100.0;
   double mean = 0.0;
   Spread spread = Spread::none;
-  /// Standard deviation in the unit of the mean (normal, lognormal) or Fisher's concentration.
+  /// Standard deviation in the unit of the mean (normal, lognormal), Fisher's concentration, or the exponent
+  /// a of a power law, density ~ x^-a.
   double width = 0.0;
+  double low = 0.0; ///< limits of a power law, m
+  double high = 0.0;
+
+  /// Mean between the limits.
+  [[nodiscard]] double mean_of_power_law() const;
+};
+
+/// A joint plane in space. Angles are those of the plane against the section.
+struct JointPlane {
+  double dip = 0.0;     ///< rad, 0 to pi/2
+  double bearing = 0.0; ///< from the x axis to the dip direction, clockwise from above, rad
+  double fisher = 0.0;  ///< Fisher's constant of the scatter of the poles; 0: all planes are parallel
+  double spacing = 0.0; ///< mean, across the planes, m
 };
 
 /// Parallel joints: lines `spacing` apart, the first through `origin`, on each of them traces and gaps.
@@ -32,7 +46,9 @@ struct JointSet {
   std::string name;
   std::int32_t joint = -1; ///< index into JointLaws::laws, -1: by the materials
   Scattered dip;           ///< rad
-  Scattered spacing;       ///< m, across the mean dip
+  Scattered spacing;       ///< m, across the mean dip, in the section
+  double intensity = 0.0;  ///< length of traces per area as the scene gives it, m/m2; 0: by the spacing
+  std::optional<JointPlane> plane; ///< where the scene gives the set in space; dip has its mean trace
   bool through_going = true;
   Scattered trace; ///< m, where not through-going
   Scattered gap;   ///< m
@@ -43,6 +59,15 @@ struct JointSet {
   std::int64_t seed = 0;
   std::vector<Vec2> within; ///< only here; empty: everywhere
   SourcePosition where;
+
+  /// Mean share of a line that is joint.
+  [[nodiscard]] double persistence() const {
+    return through_going ? 1.0 : trace.mean / (trace.mean + gap.mean);
+  }
+  /// Its joints differ in direction.
+  [[nodiscard]] bool is_turned() const {
+    return dip.spread != Spread::none || (plane && plane->fisher > 0.0);
+  }
 };
 
 /// A single joint or fault.
@@ -53,9 +78,10 @@ struct FaultLine {
   SourcePosition where;
 };
 
-/// Joint traces in a file (CSV or GeoJSON).
+/// Joint traces in a file (CSV, GeoJSON or DXF).
 struct JointMap {
-  std::string path; ///< as the program opens it
+  std::string path;  ///< as the program opens it
+  std::string layer; ///< of a drawing; empty: all of them
   std::int32_t joint = -1;
   std::vector<std::vector<Vec2>> lines; ///< empty until the file has been read
   SourcePosition where;
@@ -105,6 +131,7 @@ struct RockRegion {
 
   std::vector<Vec2> outline; ///< counter-clockwise; empty: the scene has no region
   std::int32_t material = 0; ///< where no layer says otherwise
+  double azimuth = 0.0;      ///< direction of the x axis, clockwise from north, rad
   double min_width = 0.0;    ///< m; a narrower block is a sliver
   double min_area = 0.0;     ///< m2; so is a smaller one
   SliverRule slivers = SliverRule::merge;

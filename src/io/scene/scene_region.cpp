@@ -2,9 +2,9 @@
 
 #include "geometry/aabb.hpp"
 #include "geometry/polygon.hpp"
+#include "io/scene/scene_joint_sets.hpp"
 #include "io/scene/scene_joints.hpp"
 #include "io/scene/scene_materials.hpp"
-#include "io/scene/scene_outline.hpp"
 #include "io/scene/scene_shapes.hpp"
 
 #include <fmt/format.h>
@@ -38,7 +38,9 @@ public:
     region_.where = position(section);
     region_.material = std::max(0, materials_->find(section));
     read_outline(section);
-    read_joint_sets();
+    region_.joint_sets = read_joint_sets(source_, section, *joints_);
+    section.read("azimuth", region_.azimuth);
+    region_.azimuth *= per_degree;
     read_lines();
     read_openings();
     read_layers();
@@ -72,26 +74,6 @@ private:
     }
   }
 
-  /// Of the region, an opening or a layer; left as it is where it is at fault.
-  bool read_polygon(const Section &section, const char *key, std::vector<Vec2> &outline) {
-    const toml::node *node = section.sound(key);
-    if (node == nullptr) {
-      return false;
-    }
-    std::vector<Vec2> vertices;
-    section.read(key, vertices);
-    std::vector<std::int32_t> no_joints;
-    const std::vector<OutlineFault> faults = check_outline(vertices, no_joints, section.subject(key));
-    for (const OutlineFault &f : faults) {
-      fault(f.vertex ? (*node->as_array())[*f.vertex].source() : node->source(), f.what, f.why,
-            f.vertex ? f.hint : "list the vertices in order around the polygon");
-    }
-    if (faults.empty()) {
-      outline = std::move(vertices);
-    }
-    return faults.empty();
-  }
-
   void read_outline(const Section &section) {
     const bool has_polygon = section.given("polygon") != nullptr;
     const bool has_slope = section.given("slope") != nullptr;
@@ -104,7 +86,7 @@ private:
                         : "for example polygon = [[0, 0], [20, 0], [20, 10], [0, 10]]");
       return;
     }
-    read_polygon(section, "polygon", region_.outline);
+    read_polygon(source_, section, "polygon", region_.outline);
     if (const auto slope = section.table("slope")) {
       region_.outline = read_slope(*slope);
     }
@@ -139,93 +121,6 @@ private:
     return name == nullptr ? -1 : find_joint(source_, *name, *joints_).value_or(-1);
   }
 
-  /// @param deviation  key of the width of normal and lognormal
-  void read_scatter(const Section &section, const char *key, const char *deviation, Scattered &scattered) {
-    const auto table = section.table(key);
-    if (!table) {
-      return;
-    }
-    table->read_choice(fmt::format("joint_set[].{}", key), "kind", scattered.spread);
-    const bool by_deviation = scattered.spread == Spread::normal || scattered.spread == Spread::lognormal;
-    const bool is_angle = std::string_view(key) == "dip_scatter";
-    if (is_angle && (scattered.spread == Spread::lognormal || scattered.spread == Spread::exponential)) {
-      fault(table->given("kind")->source(), fmt::format("{} is no distribution of angles", table->label()),
-            "angles have no smallest value", "use normal or fisher");
-      return;
-    }
-    expect_width(*table, deviation, by_deviation);
-    table->read(deviation, scattered.width);
-    if (is_angle) {
-      scattered.width *= per_degree;
-      expect_width(*table, "concentration", scattered.spread == Spread::fisher);
-      table->read("concentration", scattered.width);
-    }
-  }
-
-  void expect_width(const Section &table, const char *key, bool needed) {
-    const toml::node *given = table.given(key);
-    if (table.sound("kind") == nullptr || (given != nullptr) == needed) {
-      return;
-    }
-    if (needed) {
-      fault(
-          table.source(), fmt::format("{} is missing", table.subject(key)), "this kind of scatter needs it",
-          fmt::format("for example {} = {}", key, std::string_view(key) == "concentration" ? "200" : "0.5"));
-    } else {
-      fault(given->source(), fmt::format("{} has no meaning", table.subject(key)),
-            "this kind of scatter does not have it", "leave it out");
-    }
-  }
-
-  void read_joint_sets() {
-    for (const Section &section : all("joint_set")) {
-      JointSet set;
-      set.name = section.label();
-      set.where = position(section);
-      set.joint = joint_of(section);
-      section.read("dip_deg", set.dip.mean);
-      set.dip.mean *= per_degree;
-      read_scatter(section, "dip_scatter", "deviation_deg", set.dip);
-      section.read("spacing", set.spacing.mean);
-      read_scatter(section, "spacing_scatter", "deviation", set.spacing);
-      read_traces(section, set);
-      section.read("origin", set.origin);
-      section.read("seed", set.seed);
-      const bool has_window =
-          section.given("within") == nullptr || read_polygon(section, "within", set.within);
-      if (section.sound("dip_deg") != nullptr && section.sound("spacing") != nullptr && has_window &&
-          section.known("trace_length") && section.known("gap")) {
-        region_.joint_sets.push_back(std::move(set));
-      }
-    }
-  }
-
-  void read_traces(const Section &section, JointSet &set) {
-    const bool has_trace = section.given("trace_length") != nullptr;
-    const bool has_gap = section.given("gap") != nullptr;
-    if (has_trace != has_gap) {
-      const char *missing = has_trace ? "gap" : "trace_length";
-      fault(section.source(), fmt::format("{} is missing", section.subject(missing)),
-            "joints that end have a length and gaps between them",
-            fmt::format("for example {} = 5.0, or leave both out", missing));
-    }
-    set.through_going = !has_trace || !has_gap;
-    section.read("trace_length", set.trace.mean);
-    read_scatter(section, "trace_scatter", "deviation", set.trace);
-    section.read("gap", set.gap.mean);
-    read_scatter(section, "gap_scatter", "deviation", set.gap);
-    if (double stagger = 0.0; section.sound("stagger") != nullptr) {
-      section.read("stagger", stagger);
-      set.stagger = stagger;
-    }
-    for (const char *key : {"trace_scatter", "gap_scatter", "stagger"}) {
-      if (!has_trace && !has_gap && section.given(key) != nullptr) {
-        fault(section.given(key)->source(), fmt::format("{} has no meaning", section.subject(key)),
-              "the joints are through-going", "give trace_length and gap, or leave it out");
-      }
-    }
-  }
-
   void read_lines() {
     for (const Section &section : all("fault")) {
       FaultLine line{section.label(), joint_of(section), {}, position(section)};
@@ -237,7 +132,7 @@ private:
       region_.faults.push_back(std::move(line));
     }
     for (const Section &section : all("joint_map")) {
-      JointMap map{"", joint_of(section), {}, position(section)};
+      JointMap map{"", "", joint_of(section), {}, position(section)};
       if (const auto path = section.text("file")) {
         map.path = (std::filesystem::path(scene_file_).parent_path() / *path).string();
         map.where = source_.faults.origins().position(section.given("file")->source());
@@ -281,7 +176,7 @@ private:
     sound &= expect_given(section, "height", false, has_height);
     sound &= expect_given(section, "chords", false, !is_polygon);
     if (is_polygon) {
-      read_polygon(section, "polygon", opening.outline);
+      read_polygon(source_, section, "polygon", opening.outline);
       return;
     }
     section.read("centre", shape.centre);
@@ -323,7 +218,7 @@ private:
       layer.joint = joint_of(section);
       layer.material = std::max(0, materials_->find(section));
       layer.where = position(section);
-      if (read_polygon(section, "polygon", layer.outline)) {
+      if (read_polygon(source_, section, "polygon", layer.outline)) {
         region_.layers.push_back(std::move(layer));
       }
     }

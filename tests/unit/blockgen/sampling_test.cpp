@@ -67,6 +67,34 @@ TEST(SampleLength, HasTheMomentsAsked) {
   EXPECT_EQ(sample_length({2.0, Spread::none, 0.0}, Draw(0, 0, 0, 0, 0)), 2.0);
 }
 
+// Moments of the density ~ x^-a from 1 to 50 m: int x^(n-a) dx over int x^-a dx, by hand below for each
+// exponent a, among them those where one of the integrals is a logarithm.
+TEST(SampleLength, OfAPowerLawHasItsMoments) {
+  struct Case {
+    double exponent;
+    double mean;
+    double square;
+  };
+  const double log50 = std::log(50.0);
+  const double root = std::sqrt(50.0);
+  for (const Case &c : {Case{0.0, 25.5, (50.0 * 50.0 * 50.0 - 1.0) / 3.0 / 49.0},
+                        Case{1.0, 49.0 / log50, 2499.0 / 2.0 / log50},
+                        Case{2.0, log50 / (1.0 - 1.0 / 50.0), 49.0 / (1.0 - 1.0 / 50.0)},
+                        Case{2.5, 2.0 * (1.0 - 1.0 / root) / ((2.0 / 3.0) * (1.0 - 1.0 / (50.0 * root))),
+                             2.0 * (root - 1.0) / ((2.0 / 3.0) * (1.0 - 1.0 / (50.0 * root)))}}) {
+    const Scattered length{0.0, Spread::power_law, c.exponent, 1.0, 50.0};
+    EXPECT_NEAR(length.mean_of_power_law() / c.mean, 1.0, 1e-13) << c.exponent;
+    const double deviation = std::sqrt(c.square - c.mean * c.mean);
+    const Statistics s = statistics([&](Draw draw) { return sample_length(length, draw); });
+    EXPECT_NEAR(s.mean, c.mean, deviation * five_sigma) << c.exponent;
+    EXPECT_NEAR(s.deviation, deviation, 3.0 * deviation * five_sigma) << c.exponent; // long tails
+  }
+  for (int k = 0; k < 1000; ++k) {
+    const double x = sample_length({5.0, Spread::power_law, 3.0, 2.0, 1000.0}, Draw(0, 0, k, 0, 0));
+    EXPECT_TRUE(x >= 2.0 && x <= 1000.0) << x;
+  }
+}
+
 TEST(SampleLength, StaysNearItsMean) {
   for (int k = 0; k < 1000; ++k) {
     EXPECT_GE(sample_length({1.0, Spread::normal, 2.0}, Draw(0, 0, k, 0, 0)), 0.01);
@@ -91,6 +119,22 @@ TEST(SampleAngle, HasTheMomentsAsked) {
                 return sample_angle({0.0, Spread::fisher, k}, draw);
               }).mean,
               0.0, five_sigma * std::sqrt(2.0 / k));
+}
+
+// Near their mean, poles scatter by 1/sqrt(k) in each of two directions. The trace of a level plane turns by
+// the tilt in the section; that of an upright plane 60 degrees off the section by twice its tilt.
+TEST(SampleTraceAngle, ScattersByThePartOfThePoleInTheSection) {
+  constexpr double k = 10000.0;
+  constexpr double degree = std::numbers::pi / 180.0;
+  const Statistics level = statistics([](Draw draw) { return sample_trace_angle({0.0, 0.4, k, 1.0}, draw); });
+  EXPECT_NEAR(level.mean, 0.0, five_sigma / std::sqrt(k));
+  EXPECT_NEAR(level.deviation, 1.0 / std::sqrt(k), five_sigma / std::sqrt(k));
+  const Statistics oblique = statistics([](Draw draw) {
+    const double angle = sample_trace_angle({90.0 * degree, 60.0 * degree, k, 1.0}, draw);
+    return std::remainder(angle - 0.5 * std::numbers::pi, std::numbers::pi); // about the upright
+  });
+  EXPECT_NEAR(oblique.mean, 0.0, 2.0 * five_sigma / std::sqrt(k));
+  EXPECT_NEAR(oblique.deviation, 2.0 / std::sqrt(k), 2.0 * five_sigma / std::sqrt(k));
 }
 
 } // namespace

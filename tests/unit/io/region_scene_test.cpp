@@ -190,6 +190,84 @@ TEST(RegionScene, SetReachesJointSetsByName) {
   EXPECT_EQ(good(text, {"joint_set.beds.spacing=2"}).region.joint_sets.at(0).spacing.mean, 2.0);
 }
 
+// tan(60) cos(60) = tan(40.893395), and the part of the pole in the section is sqrt(3/16 + 1/4) = 0.661438.
+TEST(RegionScene, SetsInSpaceBecomeTheirTraces) {
+  const std::string text = head + region + "azimuth = 90\n[[joint_set]]\nname = \"beds\"\ndip = 60\n" +
+                           "dip_direction = 150\nfisher_k = 300\n";
+  const JointSet set = good(text + "spacing = 2\nspacing_scatter = {kind = \"normal\", deviation = 0.5}\n")
+                           .region.joint_sets.at(0);
+  constexpr double share = 0.66143782776614764;
+  EXPECT_NEAR(set.dip.mean, -40.893394649 * std::numbers::pi / 180.0, 1e-10);
+  EXPECT_NEAR(set.spacing.mean, 2.0 / share, 1e-13);
+  EXPECT_NEAR(set.spacing.width, 0.5 / share, 1e-13);
+  ASSERT_TRUE(set.plane);
+  EXPECT_EQ(set.plane->fisher, 300.0);
+  EXPECT_NEAR(set.plane->spacing, 2.0, 1e-14);
+  EXPECT_TRUE(set.is_turned());
+  // Its intensity is that of the section.
+  const JointSet dense = good(text + "p21 = 0.5\n").region.joint_sets.at(0);
+  EXPECT_NEAR(dense.spacing.mean, 2.0, 1e-14);
+  EXPECT_NEAR(dense.plane->spacing, 2.0 * share, 1e-13);
+}
+
+TEST(RegionScene, IntensityGivesTheSpacingWithPersistence) {
+  const std::string text = head + region + "[[joint_set]]\ndip_deg = 10\np21 = 0.5\n";
+  EXPECT_EQ(good(text).region.joint_sets.at(0).spacing.mean, 2.0);
+  EXPECT_EQ(good(text + "trace_length = 6\ngap = 2\n").region.joint_sets.at(0).spacing.mean, 1.5);
+  // From 1 to 4 m with the exponent 2: mean ln(4)/(1 - 1/4).
+  const JointSet set =
+      good(text + "trace_scatter = {kind = \"power-law\", exponent = 2, min = 1, max = 4}\ngap = 2\n")
+          .region.joint_sets.at(0);
+  EXPECT_EQ(set.trace.spread, Spread::power_law);
+  EXPECT_NEAR(set.trace.mean, std::log(4.0) / 0.75, 1e-14);
+  EXPECT_NEAR(set.spacing.mean, set.trace.mean / (set.trace.mean + 2.0) / 0.5, 1e-14);
+}
+
+TEST(RegionScene, FaultsOfDirectionsAndIntensitiesAreNamed) {
+  EXPECT_EQ(
+      faults(head + region + "[[joint_set]]\nspacing = 1\n[[joint_set]]\ndip_deg = 10\n"),
+      (Strings{"14:1: error: joint_set 'joint_set0' gives neither dip_deg nor dip and dip_direction, the "
+               "joints need a direction, for example dip_deg = -35.0",
+               "16:1: error: joint_set 'joint_set1' gives neither spacing nor p21, exactly one of them "
+               "says how many joints there are, for example spacing = 2.0"}));
+  EXPECT_EQ(
+      faults(head + region + "[[joint_set]]\ndip_deg = 10\ndip = 20\nfisher_k = 9\nspacing = 1\np21 = 1\n"),
+      (Strings{
+          "14:1: error: 'dip_direction' in joint_set 'joint_set0' is missing, a plane in space has dip and "
+          "dip_direction, for example dip_direction = 120.0, or dip_deg alone for the angle in the section",
+          "14:1: error: 'azimuth' in [region] is missing for joint_set 'joint_set0', the trace of a plane "
+          "depends on the direction of the x axis, for example azimuth = 90.0 for a section from west to "
+          "east",
+          "16:7: error: joint_set 'joint_set0' gives both dip_deg and dip or dip_direction, the angle in the "
+          "section follows from dip, dip_direction and region.azimuth, leave dip_deg out, or the other two",
+          "19:7: error: joint_set 'joint_set0' gives both spacing and p21, exactly one of them says how many "
+          "joints there are, leave one of them out"}));
+  EXPECT_EQ(
+      faults(head + region + "azimuth = 90\n[[joint_set]]\ndip = 90\ndip_direction = 0\nspacing = 1\n"),
+      (Strings{"17:17: error: joint_set 'joint_set0' is parallel to the section, planes that dip by 90 "
+               "degrees towards 0 meet a section towards 90 nowhere, or at less than 1 degree, leave the "
+               "set out, or choose another azimuth"}));
+  EXPECT_EQ(
+      faults(head + region +
+             "azimuth = 90\n[[joint_set]]\ndip = 9\ndip_direction = 0\nspacing = 1\ndip_scatter = {kind = "
+             "\"fisher\", concentration = 9}\n[[joint_set]]\ndip_deg = 0\nfisher_k = 9\nspacing = 1\n"),
+      (Strings{
+          "19:15: error: 'dip_scatter' in joint_set 'joint_set0' has no meaning with dip and dip_direction, "
+          "planes in space scatter in all directions, give fisher_k instead, for example fisher_k = 200",
+          "22:12: error: 'fisher_k' in joint_set 'joint_set1' has no meaning, it scatters planes in space, "
+          "which dip and dip_direction give, give these, or dip_scatter = {kind = \"fisher\", "
+          "concentration = 200}"}));
+  EXPECT_EQ(
+      faults(head + region +
+             "[[joint_set]]\ndip_deg = 10\nspacing = 1\ngap = 1\ntrace_length = 3\ntrace_scatter = {kind = "
+             "\"power-law\", exponent = 2, min = 4, max = 4}\n"),
+      (Strings{
+          "18:16: error: 'trace_length' in joint_set 'joint_set0' has no meaning with a power law, the mean "
+          "follows from its exponent, min and max, leave it out",
+          "19:67: error: 'max' in trace_scatter of joint_set 'joint_set0' is not above min, lengths lie "
+          "between min and max, exchange them"}));
+}
+
 // A wrong coordinate makes a wide box of a small region.
 TEST(RegionScene, SizeIsJudgedByExtentAndSpacing) {
   const std::string needle = "[region]\nmaterial = \"rock\"\npolygon = [[0, 0], [1, 0], [1e6, 1e6]]\n";

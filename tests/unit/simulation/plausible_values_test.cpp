@@ -80,6 +80,10 @@ dip_deg = 10
 spacing = 2.0
 trace_length = 10.0
 gap = 5.0
+[[joint_set]]
+name = "cross"
+dip_deg = 100
+p21 = 0.1
 [[fault]]
 name = "f1"
 points = [[0, 2], [39, 20]]
@@ -170,6 +174,7 @@ const std::vector<Slip> slips{
      "if it is in GPa/m, write 2e+10; if it is in MPa/m, write 2e+07"},
     {"joint.soft.allowed_overlap=0.1", "joint.soft.allowed_overlap is 0.1",
      "if it is in per cent, write 0.001"},
+    {"joint_set.cross.p21=0.001", "joint_set.cross.p21 is 0.001 m/m2", ""},
     {"joint.mass.rock_mass_modulus=10", "joint.mass.rock_mass_modulus is 10 Pa",
      "if it is in GPa, write 1e+10; if it is in MPa, write 1e+07"},
     {"joint.mass.intact_modulus=4e12", "joint.mass.intact_modulus is 4e+12 Pa", ""},
