@@ -3,7 +3,9 @@
 
 #include "app/blocks.hpp"
 
+#include "app/joint_drawing.hpp"
 #include "app/root_file.hpp"
+#include "base/input_file.hpp"
 #include "blockgen/drawing.hpp"
 #include "blockgen/joint_map.hpp"
 #include "blockgen/quality.hpp"
@@ -280,6 +282,29 @@ void draw(const Communicator &world, const Scene &scene, const std::vector<Scene
                 "the picture");
 }
 
+/// Traces of a map, the same on all ranks.
+JointMapReading read_map(const Communicator &world, const JointMap &map) {
+  if (!is_drawing(map.path)) {
+    return read_joint_map(read_on_root(world, map.path, "the joint map", longest_map), map.path);
+  }
+  std::string trouble;
+  DrawnLines drawn;
+  if (world.is_root()) {
+    trouble = look_at_input_file(map.path).trouble;
+    drawn = trouble.empty() ? lines_of_drawing(map) : DrawnLines();
+  }
+  for (std::string *text : {&trouble, &drawn.what, &drawn.why, &drawn.hint, &drawn.geojson}) {
+    world.broadcast(*text);
+  }
+  if (!trouble.empty()) {
+    throw FileError(map.path + ": error: cannot open the joint map, " + trouble + ", check the path");
+  }
+  if (!drawn.what.empty()) {
+    return {{}, {{Severity::error, map.where, drawn.what, drawn.why, drawn.hint}}};
+  }
+  return read_joint_map(drawn.geojson, map.path + ".geojson");
+}
+
 } // namespace
 
 std::string words_on_joint_sets(const Scene &scene) {
@@ -297,8 +322,7 @@ void prepare_region(const Communicator &world, Scene &scene) {
   }
   Diagnostics faults;
   for (JointMap &map : scene.region.maps) {
-    JointMapReading reading =
-        read_joint_map(read_on_root(world, map.path, "the joint map", longest_map), map.path);
+    JointMapReading reading = read_map(world, map);
     map.lines = std::move(reading.lines);
     faults.insert(faults.end(), reading.faults.begin(), reading.faults.end());
   }

@@ -32,7 +32,11 @@ std::vector<std::string> clean_environment(const std::vector<std::string> &added
     for (const char *prefix : {"OMPI_", "PMIX_", "PMI_", "ORTE_", "OPAL_", "SLURM_"}) {
       of_launcher = of_launcher || text.starts_with(prefix);
     }
-    if (!of_launcher) {
+    // Of a variable that is there twice some programs see the first, others the last.
+    const bool is_replaced = std::any_of(added.begin(), added.end(), [&](const std::string &other) {
+      return text.starts_with(std::string_view(other).substr(0, other.find('=') + 1));
+    });
+    if (!of_launcher && !is_replaced) {
       variables.emplace_back(text);
     }
   }

@@ -136,6 +136,13 @@ private:
       if (const auto path = section.text("file")) {
         map.path = (std::filesystem::path(scene_file_).parent_path() / *path).string();
         map.where = source_.faults.origins().position(section.given("file")->source());
+        map.layer = section.text("layer").value_or("");
+        const std::string end = std::filesystem::path(*path).extension().string();
+        if (const toml::node *layer = section.given("layer");
+            layer != nullptr && end != ".dxf" && end != ".DXF") {
+          fault(layer->source(), fmt::format("{} has no meaning", section.subject("layer")),
+                "only a .dxf drawing has layers", "leave it out");
+        }
       }
       region_.maps.push_back(std::move(map));
     }
