@@ -1,7 +1,7 @@
 #!/bin/sh
 # Joint traces from a DXF drawing, as a map for [[joint_map]]: run/dxf_to_geojson.sh IN.dxf OUT.geojson [LAYER]
 # Lines, polylines, arcs and splines (the curves as chords) of all layers or of one; units stay those of the
-# drawing, which must be m. Needs ogr2ogr (Debian package gdal-bin), which gcpdda itself does not.
+# drawing, which must be m. Needs ogr2ogr (Debian package gdal-bin); where that is installed, [[joint_map]] reads .dxf itself.
 # A drawing without such lines ends with exit code 4, and OUT.geojson stays as it was.
 set -eu
 case ${1:-} in

@@ -345,7 +345,8 @@ private:
     contacts_at_end_ = count_contacts();
     on_root(communicator_, [&] {
       for (std::size_t m = 0; m < rows.size(); ++m) {
-        if (simulation_.is_removed(simulation_.scene().monitors[m].block)) {
+        const std::int64_t block = simulation_.scene().monitors[m].block;
+        if (block < 0 || simulation_.is_removed(block)) {
           continue;
         }
         histories_->write_monitor(m, simulation_.time(), rows[m]);

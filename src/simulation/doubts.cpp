@@ -417,7 +417,7 @@ void doubt_monitors(RunState &run) {
   for (const Stage &stage : run.clock.stages) {
     const std::vector<std::int64_t> ids = select_blocks(run, stage.excavated);
     for (const Monitor &monitor : run.scene.monitors) {
-      if (std::binary_search(ids.begin(), ids.end(), monitor.block)) {
+      if (!monitor.is_on_profile && std::binary_search(ids.begin(), ids.end(), monitor.block)) {
         run.notes.push_back({Severity::warning, monitor.where,
                              fmt::format("monitor '{}' follows block '{}', which stage '{}' excavates",
                                          monitor.name, block_name(run.scene, monitor.block), stage.name),

@@ -1,5 +1,6 @@
 #include "simulation/monitors.hpp"
 
+#include "geometry/aabb.hpp"
 #include "geometry/holds_point.hpp"
 #include "io/results/id_slabs.hpp"
 
@@ -7,6 +8,8 @@
 #include <array>
 #include <fmt/format.h>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace gcpdda {
 
@@ -65,13 +68,58 @@ void check_named_block(RunState &run, std::span<const SceneBlock> slab, const Mo
   }
 }
 
+/// Finds the blocks of all points of a profile, in one pass over the blocks.
+void place_profile(RunState &run, std::span<const SceneBlock> slab, std::span<Monitor> points) {
+  const std::int64_t first =
+      slab_begin(num_blocks(run.scene), run.communicator.size(), run.communicator.rank());
+  constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
+  std::vector<std::int64_t> minus_ids(2 * points.size(), none); // mobile, then fixed ones, by point
+  Aabb line;
+  line.include(points.front().point);
+  line.include(points.back().point);
+  for (std::size_t k = 0; k < slab.size(); ++k) {
+    const Aabb box = bounding_box(slab[k].vertices);
+    for (std::size_t i = 0; box.meets(line) && i < points.size(); ++i) {
+      if (box.holds(points[i].point) && holds_point(slab[k].vertices, points[i].point)) {
+        std::int64_t &minus_id = minus_ids[2 * i + (slab[k].fixed ? 1 : 0)];
+        minus_id = std::max(minus_id, -(first + static_cast<std::int64_t>(k)));
+      }
+    }
+  }
+  run.communicator.max(minus_ids);
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::int64_t minus_id = minus_ids[2 * i] > none ? minus_ids[2 * i] : minus_ids[2 * i + 1];
+    points[i].block = minus_id > none ? -minus_id : -1;
+    outside += minus_id > none ? 0 : 1;
+  }
+  if (outside > 0) {
+    const bool is_empty = outside == points.size();
+    run.notes.push_back({is_empty ? Severity::error : Severity::info, points.front().where,
+                         fmt::format("{} of the {} points of profile '{}' {} in no block",
+                                     is_empty ? "all" : std::to_string(outside), points.size(),
+                                     points.front().name, outside == 1 ? "lies" : "lie"),
+                         is_empty ? "a point follows the block that holds it" : "they have no rows",
+                         is_empty ? "check 'along'" : "move the line, if they should lie in rock"});
+  }
+}
+
 } // namespace
 
 // A point follows the block that the scene names for it, else the first mobile block that holds it, else the
 // first fixed one.
 void place_monitors(RunState &run, std::span<const SceneBlock> slab) {
-  for (Monitor &monitor : run.scene.monitors) {
-    if (monitor.block >= num_blocks(run.scene)) {
+  std::vector<Monitor> &monitors = run.scene.monitors;
+  for (std::size_t m = 0; m < monitors.size(); ++m) {
+    Monitor &monitor = monitors[m];
+    if (monitor.is_on_profile) {
+      std::size_t end = m + 1;
+      while (end < monitors.size() && monitors[end].is_on_profile && monitors[end].name == monitor.name) {
+        ++end;
+      }
+      place_profile(run, slab, std::span(monitors).subspan(m, end - m));
+      m = end - 1;
+    } else if (monitor.block >= num_blocks(run.scene)) {
       run.notes.push_back(
           {Severity::error, monitor.where,
            fmt::format("no block is named '{}'", monitor.is_point ? monitor.block_name : monitor.name),

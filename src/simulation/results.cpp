@@ -5,6 +5,7 @@
 #include "dynamics/deformable.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace gcpdda {
@@ -46,7 +47,7 @@ std::vector<Reaction> collect_reactions(Simulation &simulation) {
   return reactions;
 }
 
-/// Position and velocity at t_n of the material point that was at `start` at t = 0.
+/// Position, displacement and velocity at t_n of the material point that was at `start` at t = 0.
 BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 start) {
   const Vec2 reference = start - blocks.properties[index].centroid;
   const RigidDof &v = blocks.velocity[index];
@@ -55,10 +56,12 @@ BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 sta
   if (blocks.is_deformable(index)) {
     const Deformation &d = blocks.deformation_of(index);
     row.position = blocks.centroid(index) + d.gradient(reference);
+    row.displacement = blocks.displacement[index].u + (d.gradient(reference) - reference);
     velocity = v.u + d.rate(reference);
   } else {
     const Vec2 arm = Rotation::of(blocks.displacement[index].r)(reference);
     row.position = blocks.centroid(index) + arm;
+    row.displacement = blocks.displacement[index].u + (arm - reference);
     velocity = v.u + v.r * perp(arm);
   }
   row.velocity = {velocity.x, velocity.y, 0.0};
@@ -228,6 +231,16 @@ void SimulationContacts::append(std::int64_t first, std::int64_t last,
   }
 }
 
+/// The row of a block among those of this rank and the fixed ones.
+std::optional<std::size_t> row_here(const BlockSystem &blocks, std::int64_t block) {
+  const std::size_t owned = first_row_from(blocks, 0, blocks.num_owned, block);
+  const std::size_t row = owned < blocks.num_owned && blocks.properties[owned].id.value == block
+                              ? owned
+                              : first_row_from(blocks, blocks.first_fixed(), blocks.num_rows(), block);
+  return row < blocks.num_rows() && blocks.properties[row].id.value == block ? std::optional(row)
+                                                                             : std::nullopt;
+}
+
 std::vector<BlockHistoryRow> collect_monitors(Simulation &simulation) {
   struct Found {
     std::int64_t monitor;
@@ -242,25 +255,37 @@ std::vector<BlockHistoryRow> collect_monitors(Simulation &simulation) {
   const BlockSystem &blocks = simulation.blocks();
   const SimulationFrame frame(simulation);
   std::vector<FrameRow> found_rows;
+  std::int64_t found_block = -1; // whose rows these are
   std::vector<Vec2> vertices;
   for (std::size_t m = 0; m < monitors.size(); ++m) {
     const std::int64_t block = monitors[m].block;
-    if (monitors[m].is_point) {
-      const std::size_t owned = first_row_from(blocks, 0, blocks.num_owned, block);
-      const std::size_t row = owned < blocks.num_owned && blocks.properties[owned].id.value == block
-                                  ? owned
-                                  : first_row_from(blocks, blocks.first_fixed(), blocks.num_rows(), block);
-      if (row < blocks.num_rows() && blocks.properties[row].id.value == block) {
-        mine.push_back({static_cast<std::int64_t>(m), point_row(blocks, row, monitors[m].point)});
-      }
+    const std::optional<std::size_t> here = monitors[m].is_point ? row_here(blocks, block) : std::nullopt;
+    if (here && !monitors[m].is_on_profile) {
+      mine.push_back({static_cast<std::int64_t>(m), point_row(blocks, *here, monitors[m].point)});
+    }
+    if (block < 0 || (monitors[m].is_point && !monitors[m].is_on_profile)) {
       continue;
     }
-    found_rows.clear();
-    frame.append(block, block + 1, found_rows, vertices);
+    if (block != found_block) { // neighbours on a profile often share a block
+      found_block = block;
+      found_rows.clear();
+      vertices.clear();
+      frame.append(block, block + 1, found_rows, vertices);
+    }
     for (const FrameRow &row : found_rows) {
-      mine.push_back({static_cast<std::int64_t>(m),
-                      {row.centroid, row.rotation, row.velocity, row.stress,
-                       Vec2{row.contact_force[0], row.contact_force[1]}}});
+      BlockHistoryRow found{row.centroid,
+                            row.rotation,
+                            row.velocity,
+                            row.stress,
+                            Vec2{row.contact_force[0], row.contact_force[1]},
+                            row.displacement,
+                            block};
+      if (monitors[m].is_on_profile) {
+        found = point_row(blocks, here.value(), monitors[m].point);
+        found.stress = row.stress;
+        found.block = block;
+      }
+      mine.push_back({static_cast<std::int64_t>(m), found});
     }
   }
   for (const auto &found : simulation.communicator().all_gather(mine)) {

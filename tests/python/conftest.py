@@ -27,6 +27,7 @@ def leaning(tmp_path_factory):
     scene.table("support.cable", kind="anchored", axial_stiffness=1e7, pretension=1e5)
     scene.add("bolt", support="cable", **{"from": [3.83, 3.37], "to": [4.83, 1.63]})
     scene.table("water.low", phreatic=[[-20.0, 0.0], [140.0, 60.0]])
+    scene.monitor(name="chain", along=[[3.83, 3.37], [60.0, 33.0]], points=12)
     return gcpdda.run(scene, ranks=1, out=tmp_path_factory.mktemp("runs") / "leaning")
 
 

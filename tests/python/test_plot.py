@@ -11,6 +11,7 @@ from conftest import SOURCE
 
 from gcpdda.plot import ARROWS, FIELDS, HISTORIES, JOINTS, style
 from gcpdda.plot.layers import Arrows, Blocks, Crosses, JointLines, Shown
+from gcpdda.plot.over_time import PROFILES
 
 
 def texts_of(figure):
@@ -70,6 +71,16 @@ def test_curves(opening, leaning):
         opening.plot.bolts()
     with pytest.raises(ValueError, match="run.rayleigh"):
         opening.plot.rayleigh()
+
+
+def test_profiles(leaning, opening):
+    for quantity in PROFILES:
+        figure = leaning.plot.profile("chain", quantity, times=None if quantity == "x" else [0.0, leaning.reached])
+        assert "distance along chain (m)" in texts_of(figure)
+        assert len(figure.axes[0].lines) == (6 if quantity == "x" else 3)  # and the line at zero
+        plt.close(figure)
+    with pytest.raises(ValueError, match="no profile"):
+        opening.plot.profile()
 
 
 def test_energies_balance(opening, leaning):

@@ -38,6 +38,19 @@ def test_names_areas_and_centroids(opening):
     assert monitored["y[m]"].iloc[-1] == pytest.approx(row["y"], abs=1e-9)
 
 
+def test_profiles_are_lines_of_points(leaning, opening):
+    assert leaning.profiles == ["chain"] and "chain" not in leaning.histories and not opening.profiles
+    table = leaning.history("chain")
+    last = table[table["time[s]"] == leaning.reached]
+    assert 2 < len(last) <= 12 and (np.diff(last["distance[m]"]) > 0.0).all()
+    start = table[table["time[s]"] == 0.0]
+    assert (start[["ux[m]", "uy[m]"]] == 0.0).all(axis=None)
+    moved = last[["x[m]", "y[m]"]].to_numpy() - start[["x[m]", "y[m]"]].to_numpy()
+    assert moved == pytest.approx(last[["ux[m]", "uy[m]"]].to_numpy(), abs=1e-12)
+    blocks = leaning.frame("last").blocks
+    assert (blocks.loc[last["block"], "sxx"].to_numpy() == last["sxx[Pa]"].to_numpy()).all()
+
+
 def test_contact_forces_add_up_to_those_of_blocks(leaning):
     """Directions and signs: at rest, without dashpot forces, the contacts of a block give its contact_force."""
     frame = leaning.frame("last")

@@ -52,6 +52,10 @@ centre = [6, 3]
 width = 2
 [[monitor]]
 block = "b5"
+[[monitor]]
+name = "line"
+along = [[0.5, 3], [9.5, 4]]
+points = 7
 [output]
 interval = 0.01
 checkpoint_interval = 0.01
@@ -96,6 +100,7 @@ TEST_F(Blocks, RunAndGoOnTheSameOnAnyNumberOfRanks) {
   EXPECT_EQ(three.exit_code, 0) << three.err;
   EXPECT_EQ(compare_runs(folder_ / "one", folder_ / "three"), std::vector<std::string>());
   EXPECT_GT(file_text(folder_ / "one/history/b5.csv").size(), 100U);
+  EXPECT_EQ(count_of(file_text(folder_ / "one/history/line.csv"), "\n"), 1 + 3 * 7); // t = 0, 0.01, 0.02
   // From half way, on other ranks, in another folder than that of the joint map.
   EXPECT_EQ(
       run_gcpdda(2, {"run", "scene.toml", "--out", "half", "--set", "run.duration=0.01"}, folder_).exit_code,

@@ -444,7 +444,7 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
       {"[output]", {"interval", "history_interval", "checkpoint_interval", "contacts"}},
       {"[fos]",
        {"families", "from", "to", "tolerance", "limit", "patience", "failure_motion", "local_damping"}},
-      {"[[monitor]]", {"block", "name", "point"}}};
+      {"[[monitor]]", {"block", "name", "point", "along", "points"}}};
   for (const auto &[title, keys] : contract) {
     const std::string text = section(title);
     for (const std::string &key : keys) {

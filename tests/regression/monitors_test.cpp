@@ -29,8 +29,11 @@ using testing::run_gcpdda;
 using testing::WorkFolder;
 
 const std::string block_header = "time[s],x[m],y[m],rotation[rad],vx[m/s],vy[m/s],omega[rad/s],"
-                                 "sxx[Pa],syy[Pa],sxy[Pa],fx[N/m],fy[N/m]";
-const std::string point_header = "time[s],x[m],y[m],vx[m/s],vy[m/s]";
+                                 "sxx[Pa],syy[Pa],sxy[Pa],fx[N/m],fy[N/m],ux[m],uy[m]";
+const std::string point_header = "time[s],x[m],y[m],vx[m/s],vy[m/s],ux[m],uy[m]";
+const std::string profile_header =
+    "time[s],distance[m],x[m],y[m],ux[m],uy[m],vx[m/s],vy[m/s],sxx[Pa],syy[Pa],"
+    "sxy[Pa],block";
 
 /// Rows of a history below its header line, which is checked.
 std::vector<std::vector<double>> rows_of(const fs::path &history, const std::string &header) {
@@ -53,6 +56,8 @@ constexpr Vec2 rotor_centre{6.5, 4.5};
 constexpr Vec2 on_rotor{7.25, 4.75};
 constexpr Vec2 on_wall{-3.7, 0.95};
 constexpr Vec2 on_soft{3.25, 0.75};
+constexpr Vec2 line_begin{3.25, 0.75}; // in the soft block, then nothing, then the rotor
+constexpr Vec2 line_end{7.25, 4.75};
 
 /// A wall on the floor, a deformable square, and a driven rotor that nothing touches.
 std::string scene() {
@@ -66,6 +71,8 @@ std::string scene() {
          "block_size = [1.0, 0.5]\n[[monitor]]\nblock = \"wall0.1.2\"\n[[monitor]]\nblock = \"soft\"\n" +
          monitor("on_rotor", on_rotor) + monitor("on_wall", on_wall) + monitor("on_soft", on_soft) +
          monitor("on_floor", {0.5, -1.0}) +
+         fmt::format("[[monitor]]\nname = \"line\"\nalong = [[{}, {}], [{}, {}]]\npoints = 9\n", line_begin.x,
+                     line_begin.y, line_end.x, line_end.y) +
          block_toml("floor", rectangle({-8.0, -2.0}, {8.0, 0.0}), "fixed = true") +
          block_toml("soft", rectangle({3.0, 0.0}, {4.0, 1.0}), "fidelity = \"deformable\"") +
          block_toml("rotor", rectangle(rotor_centre - Vec2{1.0, 0.5}, rotor_centre + Vec2{1.0, 0.5}),
@@ -101,8 +108,8 @@ Outcome Monitors::three_;
 
 TEST_F(Monitors, AreTheSameOnThreeRanks) {
   const std::vector<std::string> files = testing::listing(*folder_ / "out/history");
-  EXPECT_EQ(files, (std::vector<std::string>{"energy.csv", "on_floor.csv", "on_rotor.csv", "on_soft.csv",
-                                             "on_wall.csv", "soft.csv", "wall0.1.2.csv"}));
+  EXPECT_EQ(files, (std::vector<std::string>{"energy.csv", "line.csv", "on_floor.csv", "on_rotor.csv",
+                                             "on_soft.csv", "on_wall.csv", "soft.csv", "wall0.1.2.csv"}));
   for (const std::string &file : files) {
     EXPECT_EQ(file_text(*folder_ / "out/history" / file), file_text(*folder_ / "three/history" / file))
         << file;
@@ -136,6 +143,8 @@ TEST_F(Monitors, FollowAPointOfADrivenRotor) {
     EXPECT_NEAR(row[2], rotor_centre.y + drift.y * row[0] + turned.y, 1e-13) << row[0];
     EXPECT_NEAR(row[3], drift.x - spin * turned.y, 1e-13) << row[0];
     EXPECT_NEAR(row[4], drift.y + spin * turned.x, 1e-13) << row[0];
+    EXPECT_NEAR(row[5], drift.x * row[0] + turned.x - arm.x, 1e-13) << row[0];
+    EXPECT_NEAR(row[6], drift.y * row[0] + turned.y - arm.y, 1e-13) << row[0];
   }
 }
 
@@ -153,7 +162,53 @@ TEST_F(Monitors, FollowPointsOfOtherBlocks) {
   EXPECT_LT(further, 0.0);
   EXPECT_GT(further, -0.25 * 2.0 * 2600.0 * 9.81 / 1e8);
   for (const std::vector<double> &row : rows_of(history("on_floor"), point_header)) {
-    EXPECT_EQ(std::vector<double>(row.begin() + 1, row.end()), (std::vector<double>{0.5, -1.0, 0.0, 0.0}));
+    EXPECT_EQ(std::vector<double>(row.begin() + 1, row.end()),
+              (std::vector<double>{0.5, -1.0, 0.0, 0.0, 0.0, 0.0}));
+  }
+  for (const std::vector<double> &row : soft) { // of the centroid
+    EXPECT_NEAR(row[12], row[1] - soft[0][1], 1e-15);
+    EXPECT_NEAR(row[13], row[2] - soft[0][2], 1e-15);
+  }
+  EXPECT_EQ(soft[0][13], 0.0);
+  EXPECT_LT(soft.back()[13], 0.0);
+}
+
+// Points 0 and 1, at (3.75, 1.25) no longer in the soft square, of nine on a line that ends in the rotor,
+// which covers x from 5.5 to 7.5 and y from 4 to 5: points 0, 7 and 8 have rows, the same as points of their
+// own.
+TEST_F(Monitors, FollowPointsAlongALine) {
+  const auto line = rows_of(history("line"), profile_header);
+  const auto soft_point = rows_of(history("on_soft"), point_header);
+  const auto soft = rows_of(history("soft"), block_header);
+  const auto rotor_point = rows_of(history("on_rotor"), point_header);
+  ASSERT_EQ(line.size(), 3U * soft_point.size());
+  for (std::size_t k = 0; k < soft_point.size(); ++k) {
+    for (const auto &[row, point, distance] :
+         {std::tuple(line[3 * k], soft_point[k], 0.0),
+          std::tuple(line[3 * k + 2], rotor_point[k], 4.0 * std::sqrt(2.0))}) {
+      EXPECT_EQ(row[0], point[0]);
+      EXPECT_NEAR(row[1], distance, 1e-14);
+      EXPECT_EQ(std::vector<double>(row.begin() + 2, row.begin() + 8),
+                (std::vector<double>{point[1], point[2], point[5], point[6], point[3], point[4]}));
+    }
+    EXPECT_EQ(std::vector<double>(line[3 * k].begin() + 8, line[3 * k].begin() + 11),
+              std::vector<double>(soft[k].begin() + 7, soft[k].begin() + 10))
+        << "the stress of its block";
+    EXPECT_NEAR(line[3 * k + 1][1], 3.5 * std::sqrt(2.0), 1e-14);
+    EXPECT_EQ(line[3 * k + 1][11], line[3 * k + 2][11]) << "both on the rotor";
+  }
+  EXPECT_EQ(count_of(plain_.err, "6 of the 9 points of profile 'line' lie in no block, they have no rows"), 1)
+      << plain_.err;
+}
+
+TEST_F(Monitors, ALineInNoBlockIsAFault) {
+  for (const int ranks : {0, 2}) {
+    const Outcome outcome = run_gcpdda(
+        ranks, {"run", "scene.toml", "--out", "bad", "--set", "monitor=[{name='l',along=[[0,90],[1,91]]}]"},
+        *folder_);
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_EQ(count_of(outcome.err, "error: all of the 21 points of profile 'l' lie in no block"), 1)
+        << outcome.err;
   }
 }
 

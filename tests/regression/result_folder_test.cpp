@@ -85,10 +85,10 @@ TEST_F(ResultFolder, HasHistoriesWithTheirColumns) {
   for (const char *name : {"slider", "floor"}) {
     const auto lines = lines_of(file_text(out() / "history" / (std::string(name) + ".csv")));
     EXPECT_EQ(lines.at(0), "time[s],x[m],y[m],rotation[rad],vx[m/s],vy[m/s],omega[rad/s],sxx[Pa],syy[Pa],"
-                           "sxy[Pa],fx[N/m],fy[N/m]");
+                           "sxy[Pa],fx[N/m],fy[N/m],ux[m],uy[m]");
     EXPECT_EQ(lines.size(), 10U) << "header, t = 0 and 8 rows";
     for (const std::string &line : lines) {
-      EXPECT_EQ(count_of(line, ","), 11) << line;
+      EXPECT_EQ(count_of(line, ","), 13) << line;
     }
   }
   const auto energy = lines_of(file_text(out() / "history/energy.csv"));

@@ -147,6 +147,10 @@ struct Monitor {
   Vec2 point; ///< world coordinates at t = 0
   SourcePosition where;
   std::string block_name = {}; ///< block that the scene names for a point; empty where it names none
+  /// A point of a profile, which one history holds: the points follow each other under its name. One in no
+  /// block keeps `block` -1 and has no rows.
+  bool is_on_profile = false;
+  double distance = 0.0; ///< from the begin of the profile, m
 };
 
 /// Blocks that have a name together: those within an opening.

@@ -43,6 +43,8 @@ def _plot_parser():
     parser.add_argument("--history", choices=HISTORIES,
                         help="draw a quantity of the monitors over time instead of blocks")
     parser.add_argument("--monitors", help="names of the monitors to draw: crest,toe (default: all)")
+    parser.add_argument("--profile", metavar="NAME",
+                        help="draw a monitored line instead of blocks: displacement, or what --history says")
     parser.add_argument("--energy", action="store_true", help="draw energies over time instead of blocks")
     parser.add_argument("--bolts", action="store_true", help="draw the tension of bolts over time instead of blocks")
     parser.add_argument("--rayleigh", action="store_true",
@@ -83,6 +85,8 @@ def _draw(result, chosen):
         plots.energy(**file)
     elif chosen.bolts:
         plots.bolts(**file)
+    elif chosen.profile:
+        plots.profile(chosen.profile, chosen.history or "displacement", **file)
     elif chosen.history:
         plots.history(chosen.history, chosen.monitors.split(",") if chosen.monitors else None, **file)
     else:

@@ -39,6 +39,7 @@ class Result(Folder):
     frames, frame(WHICH)       `Frame`s: a number, "first", "last", or the one at or before a time: at(TIME)
     times                      of the frames, in s
     histories, history(NAME)   names of the monitors; the table of one. energy, bolts: tables of the same kind
+    profiles                   names of the monitored lines
     summary                    summary.json as a dictionary, None while the run goes on; verdict, stages come from it
     scene, log                 the resolved scene as a dictionary; what the program has printed
     plot                       pictures: result.plot.field("stress", out="stress.png")
@@ -140,13 +141,26 @@ class Result(Folder):
     @property
     def histories(self):
         """Names of the monitored blocks and points."""
+        return [name for name in self._monitors if name not in self.profiles]
+
+    @property
+    def profiles(self):
+        """Names of the monitored lines; history(NAME) is the table of one, a row for each time and point."""
+        return [name for name in self._monitors if self._is_profile(name)]
+
+    @property
+    def _monitors(self):
         names = sorted(path.stem for path in (self.path / "history").glob("*.csv"))
         return [name for name in names if name not in ("energy", "bolts")]
+
+    def _is_profile(self, name):
+        with open(self.path / "history" / f"{name}.csv") as file:
+            return file.readline().startswith("time[s],distance[m],")
 
     def history(self, name):
         path = self.path / "history" / f"{name}.csv"
         if not path.exists():
-            raise KeyError(f"no history {name}: there are {', '.join(self.histories) or 'none'}")
+            raise KeyError(f"no history {name}: there are {', '.join(self._monitors) or 'none'}")
         return read_csv(path)
 
     @property

@@ -98,9 +98,10 @@ class Scene:
     def stage(self, name, kind, /, **keys):
         return self.add("stage", name=name, kind=kind, **keys)
 
-    def monitor(self, name=None, point=None, block=None):
-        """Records the history of a block, or of a point that follows the block that holds it."""
-        entry = {"name": name, "point": point, "block": block}
+    def monitor(self, name=None, point=None, block=None, along=None, points=None):
+        """Records the history of a block, of a point that follows the block that holds it, or of `points` such points
+        along a line."""
+        entry = {"name": name, "point": point, "block": block, "along": along, "points": points}
         return self.add("monitor", **{key: value for key, value in entry.items() if value is not None})
 
     def toml(self):

@@ -23,8 +23,12 @@ namespace gcpdda {
 namespace {
 
 constexpr const char *block_header = "time[s],x[m],y[m],rotation[rad],vx[m/s],vy[m/s],omega[rad/s],"
-                                     "sxx[Pa],syy[Pa],sxy[Pa],fx[N/m],fy[N/m]\n";
-constexpr const char *point_header = "time[s],x[m],y[m],vx[m/s],vy[m/s]\n";
+                                     "sxx[Pa],syy[Pa],sxy[Pa],fx[N/m],fy[N/m]";
+constexpr const char *point_header = "time[s],x[m],y[m],vx[m/s],vy[m/s]";
+constexpr const char *displacement_columns = ",ux[m],uy[m]";
+constexpr const char *profile_header =
+    "time[s],distance[m],x[m],y[m],ux[m],uy[m],vx[m/s],vy[m/s],sxx[Pa],syy[Pa],"
+    "sxy[Pa],block\n";
 constexpr const char *energy_header =
     "time[s],kinetic[J/m],strain[J/m],contact_normal[J/m],contact_stick[J/m],gravity[J/m],friction_loss[J/m],"
     "damping_loss[J/m],boundary_work[J/m],residual[J/m],unbalanced_ratio[-],max_speed[m/s]\n";
@@ -41,6 +45,12 @@ void append_row(std::string &text, std::initializer_list<double> values) {
     separator = ",";
   }
   text += '\n';
+}
+
+bool begins_with(const std::filesystem::path &path, const std::string &line) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string first;
+  return std::getline(stream, first) && first + "\n" == line;
 }
 
 void write_to(const std::filesystem::path &path, const std::string &text, std::ios::openmode mode) {
@@ -83,20 +93,33 @@ HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monito
 
 HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time,
                              bool has_bolts)
-    : directory_(std::move(directory)), monitors_(std::move(monitors)), has_bolts_(has_bolts),
-      pending_(monitors_.size() + (has_bolts ? 2 : 1)) {
+    : directory_(std::move(directory)), monitors_(std::move(monitors)), has_bolts_(has_bolts) {
+  for (std::size_t m = 0; m < monitors_.size(); ++m) {
+    const bool goes_on = m > 0 && monitors_[m].is_on_profile && monitors_[m - 1].is_on_profile &&
+                         monitors_[m].name == monitors_[m - 1].name;
+    if (!goes_on) {
+      first_of_.push_back(m);
+    }
+    history_of_.push_back(first_of_.size() - 1);
+  }
+  is_short_.assign(first_of_.size(), false);
+  pending_.resize(first_of_.size() + (has_bolts ? 2 : 1));
   expect(std::none_of(monitors_.begin(), monitors_.end(),
                       [](const Monitor &monitor) { return monitor.name == energy_name; }),
          "no monitor by the name of the energy history");
   make_directory(directory_ / "history");
   for (std::size_t i = 0; i < pending_.size(); ++i) {
+    if (i < first_of_.size() && std::isfinite(last_time)) {
+      is_short_[i] = true;
+      is_short_[i] = begins_with(path_of(i), header_of(i)) && !monitors_[first_of_[i]].is_on_profile;
+    }
     const std::string header = header_of(i);
     files_.push_back({"history/" + path_of(i).filename().string(), std::ssize(header), 0});
     if (std::isfinite(last_time)) {
       const std::string rows = rows_until(path_of(i), header, last_time);
       note_appended(files_.back(), rows);
       write_file(path_of(i), header + rows);
-      if (i > monitors_.size()) {
+      if (i > first_of_.size()) {
         note_bolts(rows);
       }
     } else {
@@ -106,10 +129,13 @@ HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monito
 }
 
 std::string HistoryWriter::header_of(std::size_t history) const {
-  if (history < monitors_.size()) {
-    return monitors_[history].is_point ? point_header : block_header;
+  if (history < first_of_.size()) {
+    const Monitor &monitor = monitors_[first_of_[history]];
+    return monitor.is_on_profile ? profile_header
+                                 : fmt::format("{}{}\n", monitor.is_point ? point_header : block_header,
+                                               is_short_[history] ? "" : displacement_columns);
   }
-  if (history > monitors_.size()) {
+  if (history > first_of_.size()) {
     return bolt_header;
   }
   std::string header = energy_header;
@@ -117,25 +143,39 @@ std::string HistoryWriter::header_of(std::size_t history) const {
 }
 
 std::filesystem::path HistoryWriter::path_of(std::size_t history) const {
-  const std::string name = history < monitors_.size()    ? monitors_[history].name
-                           : history == monitors_.size() ? energy_name
+  const std::string name = history < first_of_.size()    ? monitors_[first_of_[history]].name
+                           : history == first_of_.size() ? energy_name
                                                          : bolts_name;
   return directory_ / "history" / (name + ".csv");
 }
 
 void HistoryWriter::write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row) {
   expect(monitor < monitors_.size(), "a monitor that exists");
-  if (monitors_[monitor].is_point) {
-    append_row(pending_[monitor], {time, row.position.x, row.position.y, row.velocity[0], row.velocity[1]});
+  const std::size_t history = history_of_[monitor];
+  std::string &text = pending_[history];
+  if (monitors_[monitor].is_on_profile) {
+    append_row(text, {time, monitors_[monitor].distance, row.position.x, row.position.y, row.displacement.x,
+                      row.displacement.y, row.velocity[0], row.velocity[1], row.stress[0], row.stress[1],
+                      row.stress[2]});
+    text.pop_back();
+    text += fmt::format(",{}\n", row.block);
     return;
   }
-  append_row(pending_[monitor], {time, row.position.x, row.position.y, row.rotation, row.velocity[0],
-                                 row.velocity[1], row.velocity[2], row.stress[0], row.stress[1],
-                                 row.stress[2], row.contact_force.x, row.contact_force.y});
+  if (monitors_[monitor].is_point) {
+    append_row(text, {time, row.position.x, row.position.y, row.velocity[0], row.velocity[1]});
+  } else {
+    append_row(text, {time, row.position.x, row.position.y, row.rotation, row.velocity[0], row.velocity[1],
+                      row.velocity[2], row.stress[0], row.stress[1], row.stress[2], row.contact_force.x,
+                      row.contact_force.y});
+  }
+  if (!is_short_[history]) {
+    text.pop_back();
+    text += fmt::format(",{:.17g},{:.17g}\n", row.displacement.x, row.displacement.y);
+  }
 }
 
 void HistoryWriter::write_energy(double time, const EnergyRow &row) {
-  std::string &text = pending_[monitors_.size()];
+  std::string &text = pending_[first_of_.size()];
   append_row(text, {time, row.kinetic, row.strain, row.contact_normal, row.contact_stick, row.gravity,
                     row.friction_loss, row.damping_loss, row.boundary_work, row.residual,
                     row.unbalanced_ratio, row.max_speed});

@@ -16,13 +16,16 @@
 
 namespace gcpdda {
 
-/// One row of history/<name>.csv, without its time; a point has position and the first two velocities only.
+/// One row of history/<name>.csv, without its time; a point has position, displacement and the first two
+/// velocities only, a point of a profile stress, too.
 struct BlockHistoryRow {
   Vec2 position;
   double rotation = 0.0;
   std::array<double, 3> velocity{};
   std::array<double, 3> stress{};
   Vec2 contact_force;
+  Vec2 displacement = {};  ///< since the start, m
+  std::int64_t block = -1; ///< id; of a point that is on no profile -1
 };
 
 /// Writes history/*.csv. Lives on the root rank only; no member is collective.
@@ -54,6 +57,9 @@ private:
 
   std::filesystem::path directory_;
   std::vector<Monitor> monitors_;
+  std::vector<std::size_t> first_of_;   ///< by history of monitors, its first monitor
+  std::vector<std::size_t> history_of_; ///< by monitor
+  std::vector<bool> is_short_; ///< by history of monitors: begun by a version without displacements, kept so
   bool has_bolts_;
   std::vector<BoltLoad> bolt_loads_;
   std::unordered_map<std::string, std::size_t> load_of_; ///< by name

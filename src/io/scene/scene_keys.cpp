@@ -286,10 +286,12 @@ constexpr Key keys_after_joints[] = {
   {"ensemble.correlation[].keys", Kind::pair_of_names, required, any, "", "", "[\"joint.bedding.friction_angle_deg\", \"joint.bedding.cohesion\"]", "Two keys that vary."},
   {"ensemble.correlation[].coefficient", Kind::number, required, between(-1, 1), "", "", "-0.5", "Correlation of the normal variables behind the two (Gaussian copula): that of two normal values themselves."},
 
-  {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks and points whose history is written to history/<name>.csv: either a block alone, or a point with its name and, if wished, the block it follows."},
-  {"monitor[].block", Kind::name, optional, any, "", "<required without point>", "\"slider\"", "Name of the block, also of a generated one or one of the block file. Beside name and point it is the block that the point follows, which must hold it."},
-  {"monitor[].name", Kind::name, optional, any, "", "<required with point>", "\"roof\"", "Name of the monitored point."},
-  {"monitor[].point", Kind::vector2, optional, from_to(-1e9, 1e9), "", "<required without block>", "[0.0, 1.0]", "[m] Point at the start; it follows the block that holds it. Where several blocks hold it, at a shared edge or vertex, it follows a mobile one, of several the first in the order of the scene, unless block names another."},
+  {"monitor[]", Kind::table_list, optional, any, "", "", "[[monitor]]", "Blocks, points and profiles whose history is written to history/<name>.csv: a block alone, a point with its name and, if wished, the block it follows, or points along a line with their name."},
+  {"monitor[].block", Kind::name, optional, any, "", "<required without point or along>", "\"slider\"", "Name of the block, also of a generated one or one of the block file. Beside name and point it is the block that the point follows, which must hold it."},
+  {"monitor[].name", Kind::name, optional, any, "", "<required with point or along>", "\"roof\"", "Name of the monitored point or profile."},
+  {"monitor[].point", Kind::vector2, optional, from_to(-1e9, 1e9), "", "<required without block or along>", "[0.0, 1.0]", "[m] Point at the start; it follows the block that holds it. Where several blocks hold it, at a shared edge or vertex, it follows a mobile one, of several the first in the order of the scene, unless block names another."},
+  {"monitor[].along", Kind::points, optional, from_to(-1e9, 1e9), "", "<none>", "[[0.0, 2.0], [8.0, 2.0]]", "[m] Both ends of a profile at the start: displacement, velocity and stress at points along the line, each of which follows the block that holds it, as a point does. Points in no block have no rows."},
+  {"monitor[].points", Kind::count, optional, from_to(2, 10000), "", "<21>", "41", "Number of points of a profile, both ends among them, evenly spaced."},
 };
 // clang-format on
 

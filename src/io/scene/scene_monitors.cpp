@@ -28,8 +28,23 @@ public:
     }
   }
 
-  /// Nothing where there is no history to write.
-  std::optional<Monitor> read(const Section &section) {
+  /// One for a block or a point, those of all points for a profile; none where there is no history to write.
+  std::vector<Monitor> read(const Section &section) {
+    if (section.given("along") != nullptr) {
+      return read_profile(section);
+    }
+    if (const toml::node *points = section.given("points")) {
+      fault(points->source(), "'points' in [[monitor]] has no meaning without along",
+            "it is the number of points of a profile",
+            "add along = [[0.0, 2.0], [8.0, 2.0]], or write point = [0.0, 2.0]");
+      return {};
+    }
+    const std::optional<Monitor> one = read_one(section);
+    return one ? std::vector<Monitor>{*one} : std::vector<Monitor>();
+  }
+
+private:
+  std::optional<Monitor> read_one(const Section &section) {
     const toml::node *block = section.given("block");
     const toml::node *name = section.given("name");
     const toml::node *point = section.given("point");
@@ -63,7 +78,6 @@ public:
     return is_sound ? read_point(section) : std::nullopt;
   }
 
-private:
   void fault(const toml::source_region &where, std::string what, std::string why, std::string hint) {
     source_.faults.add(where, std::move(what), std::move(why), std::move(hint));
   }
@@ -126,19 +140,12 @@ private:
   }
 
   std::optional<Monitor> read_point(const Section &section) {
-    const toml::source_region &where = section.given("name")->source();
     Monitor monitor;
     monitor.name = *section.text("name");
     monitor.is_point = true;
     section.read("point", monitor.point);
     monitor.where = source_.faults.origins().position(section.given("point")->source());
-    if (is_taken(monitor.name)) {
-      fault(where, fmt::format("a point named '{}' cannot be monitored", monitor.name),
-            why_taken(monitor.name), "choose another name");
-      return std::nullopt;
-    }
-    if (const auto [first, is_new] = first_of_name_.emplace(monitor.name, First{where, true}); !is_new) {
-      report_shared_file(where, monitor.name, first->second.where);
+    if (!takes_name(section, monitor.name, "point")) {
       return std::nullopt;
     }
     if (const toml::node *block = section.given("block")) {
@@ -148,6 +155,67 @@ private:
       }
     }
     return monitor;
+  }
+
+  std::vector<Monitor> read_profile(const Section &section) {
+    for (const char *other : {"block", "point"}) {
+      if (const toml::node *node = section.given(other)) {
+        fault(node->source(), fmt::format("[[monitor]] gives both along and {}", other),
+              "a profile is a line of points, each of which follows the block that holds it",
+              fmt::format("leave {} out, or write another [[monitor]] for it", other));
+        return {};
+      }
+    }
+    if (section.given("name") == nullptr) {
+      fault(section.source(), "'name' in [[monitor]] is missing", "a profile has name and along",
+            "for example name = \"wall\"");
+      return {};
+    }
+    std::vector<Vec2> ends;
+    section.read("along", ends);
+    if (section.sound("along") != nullptr && (ends.size() != 2 || ends[0] == ends[1])) {
+      fault(section.given("along")->source(),
+            fmt::format("'along' in [[monitor]] has {}",
+                        ends.size() != 2 ? fmt::format("{} points", ends.size()) : "the same point twice"),
+            "a profile is a straight line between two points",
+            "for example along = [[0.0, 2.0], [8.0, 2.0]]");
+      return {};
+    }
+    if (section.sound("along") == nullptr || section.sound("name") == nullptr || !section.known("points")) {
+      return {};
+    }
+    std::int64_t num_points = 21;
+    section.read("points", num_points);
+    Monitor monitor;
+    monitor.name = *section.text("name");
+    monitor.is_point = true;
+    monitor.is_on_profile = true;
+    monitor.where = source_.faults.origins().position(section.given("along")->source());
+    if (!takes_name(section, monitor.name, "profile")) {
+      return {};
+    }
+    std::vector<Monitor> profile(static_cast<std::size_t>(num_points), monitor);
+    for (std::size_t k = 0; k < profile.size(); ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(num_points - 1);
+      profile[k].distance = share * norm(ends[1] - ends[0]);
+      profile[k].point = k + 1 == profile.size() ? ends[1] : ends[0] + share * (ends[1] - ends[0]);
+    }
+    return profile;
+  }
+
+  /// False, and reported, where another history has the name.
+  bool takes_name(const Section &section, const std::string &name, const char *what) {
+    const toml::source_region &where = section.given("name")->source();
+    if (is_taken(name)) {
+      fault(where, fmt::format("a {} named '{}' cannot be monitored", what, name), why_taken(name),
+            "choose another name");
+      return false;
+    }
+    const auto [first, is_new] = first_of_name_.emplace(name, First{where, true});
+    if (!is_new) {
+      report_shared_file(where, name, first->second.where);
+    }
+    return is_new;
   }
 
   void report_shared_file(const toml::source_region &where, const std::string &name,
@@ -194,9 +262,8 @@ std::vector<Monitor> read_monitors(const SceneSource &source, const Scene &scene
   MonitorReader reader(source, scene);
   std::vector<Monitor> monitors;
   for (const Section &section : listed_sections(source.root, "monitor", source.faulty)) {
-    if (auto monitor = reader.read(section)) {
-      monitors.push_back(std::move(*monitor));
-    }
+    const std::vector<Monitor> read = reader.read(section);
+    monitors.insert(monitors.end(), read.begin(), read.end());
   }
   return monitors;
 }

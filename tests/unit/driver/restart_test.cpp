@@ -181,18 +181,41 @@ TEST_F(CutResults, HistoriesKeepWholeRowsUpToTheTime) {
   Monitor fresh;
   fresh.name = "fresh";
   fresh.is_point = true;
-  const std::string header = "time[s],x[m],y[m],vx[m/s],vy[m/s]\n";
-  const std::string kept = "0,1,2,3,4\n0.1,1,2,3,4\n0.20000000000000001,5,6,7,8\n";
-  for (const std::string rest : {"", "0.3", "0.30000000000000004,1,2,3,4\n0.4,1,2,3,4\n", "0.2", "0.2,5"}) {
+  const std::string header = "time[s],x[m],y[m],vx[m/s],vy[m/s],ux[m],uy[m]\n";
+  const std::string kept = "0,1,2,3,4,0,0\n0.1,1,2,3,4,0,0\n0.20000000000000001,5,6,7,8,4,4\n";
+  for (const std::string rest :
+       {"", "0.3", "0.30000000000000004,1,2,3,4,0,0\n0.4,1,2,3,4,0,0\n", "0.2", "0.2,5"}) {
     write("history/roof.csv", header + kept + rest);
     HistoryWriter writer(folder_, {point, fresh}, 0.2 + 0.5e-3);
     EXPECT_EQ(file_text(folder_ / "history/roof.csv"), header + kept) << rest;
     EXPECT_EQ(file_text(folder_ / "history/fresh.csv"), header) << "a monitor that was not there before";
     writer.write_monitor(0, 0.5, {});
     writer.flush();
-    EXPECT_EQ(file_text(folder_ / "history/roof.csv"), header + kept + "0.5,0,0,0,0\n");
+    EXPECT_EQ(file_text(folder_ / "history/roof.csv"), header + kept + "0.5,0,0,0,0,0,0\n");
     EXPECT_NO_THROW(writer.sync());
   }
+}
+
+// One from a version whose histories had no displacements: its columns stay those of its header, or the file
+// that a checkpoint knows would have changed.
+TEST_F(CutResults, HistoriesKeepTheirColumns) {
+  Monitor point;
+  point.name = "roof";
+  point.is_point = true;
+  Monitor block;
+  block.name = "b0";
+  const std::string roof = "time[s],x[m],y[m],vx[m/s],vy[m/s]\n0,1,2,3,4\n";
+  const std::string b0 =
+      "time[s],x[m],y[m],rotation[rad],vx[m/s],vy[m/s],omega[rad/s],sxx[Pa],syy[Pa],sxy[Pa],"
+      "fx[N/m],fy[N/m]\n0,1,2,3,4,5,6,7,8,9,10,11\n";
+  write("history/roof.csv", roof + "0.3,1,2,3,4\n");
+  write("history/b0.csv", b0);
+  HistoryWriter writer(folder_, {point, block}, 0.25);
+  writer.write_monitor(0, 0.5, {});
+  writer.write_monitor(1, 0.5, {});
+  writer.flush();
+  EXPECT_EQ(file_text(folder_ / "history/roof.csv"), roof + "0.5,0,0,0,0\n");
+  EXPECT_EQ(file_text(folder_ / "history/b0.csv"), b0 + "0.5,0,0,0,0,0,0,0,0,0,0,0\n");
 }
 
 TEST_F(CutResults, AreToldByTheirSizesAndRows) {

@@ -328,6 +328,31 @@ interval = 1e-6)",
 [[monitor]]
 block = "slidr")",
      {R"(15:9: error: no block is named 'slidr', did you mean 'slider'?)"}},
+    {"ProfileWithFaults", 1, R"([[monitor]]
+along = [[0, 0], [1, 1]]
+[[monitor]]
+name = "a"
+along = [[0, 0], [1, 1], [2, 2]]
+[[monitor]]
+name = "b"
+along = [[1, 1], [1, 1]]
+[[monitor]]
+name = "c"
+along = [[0, 0], [1, 1]]
+point = [0, 0]
+[[monitor]]
+name = "d"
+points = 9
+[[monitor]]
+name = "energy"
+along = [[0, 0], [1, 1]]
+[run])",
+     {R"(1:1: error: 'name' in [[monitor]] is missing, a profile has name and along, for example name = "wall")",
+      R"(5:9: error: 'along' in [[monitor]] has 3 points, a profile is a straight line between two points, for example along = [[0.0, 2.0], [8.0, 2.0]])",
+      R"(8:9: error: 'along' in [[monitor]] has the same point twice, a profile is a straight line between two points, for example along = [[0.0, 2.0], [8.0, 2.0]])",
+      R"(12:9: error: [[monitor]] gives both along and point, a profile is a line of points, each of which follows the block that holds it, leave point out, or write another [[monitor]] for it)",
+      R"(15:10: error: 'points' in [[monitor]] has no meaning without along, it is the number of points of a profile, add along = [[0.0, 2.0], [8.0, 2.0]], or write point = [0.0, 2.0])",
+      R"(17:8: error: a profile named 'energy' cannot be monitored, history/energy.csv holds the energies of the scene, choose another name)"}},
     {"MonitorTwice", 13, R"(fixed = true
 [[monitor]]
 block = "slider"

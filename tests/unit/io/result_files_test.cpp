@@ -55,7 +55,7 @@ TEST_F(ResultFiles, HistoryHasUnitsAndSeventeenDigits) {
   HistoryWriter writer(folder_, {slider});
   EXPECT_EQ(std::count_if(fs::directory_iterator(folder_ / "history"), {}, [](const auto &) { return true; }),
             2);
-  writer.write_monitor(0, 0.1, {{1.0, -2.0}, 1.0 / 3.0, {4, 5, 6}, {7, 8, 9}, {1e-300, 1e10}});
+  writer.write_monitor(0, 0.1, {{1.0, -2.0}, 1.0 / 3.0, {4, 5, 6}, {7, 8, 9}, {1e-300, 1e10}, {12, -13}});
   writer.flush();
   writer.write_monitor(0, 0.25, {});
   writer.write_energy(0.5, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
@@ -63,9 +63,9 @@ TEST_F(ResultFiles, HistoryHasUnitsAndSeventeenDigits) {
   writer.flush();
   EXPECT_EQ(read_text(folder_ / "history/slider.csv"),
             "time[s],x[m],y[m],rotation[rad],vx[m/s],vy[m/s],omega[rad/s],sxx[Pa],syy[Pa],sxy[Pa],fx[N/m],"
-            "fy[N/m]\n"
-            "0.10000000000000001,1,-2,0.33333333333333331,4,5,6,7,8,9,1e-300,10000000000\n"
-            "0.25,0,0,0,0,0,0,0,0,0,0,0\n");
+            "fy[N/m],ux[m],uy[m]\n"
+            "0.10000000000000001,1,-2,0.33333333333333331,4,5,6,7,8,9,1e-300,10000000000,12,-13\n"
+            "0.25,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
   EXPECT_EQ(read_text(folder_ / "history/energy.csv"),
             "time[s],kinetic[J/m],strain[J/m],contact_normal[J/m],contact_stick[J/m],gravity[J/m],"
             "friction_loss[J/m],damping_loss[J/m],boundary_work[J/m],residual[J/m],unbalanced_ratio[-],"

@@ -130,6 +130,11 @@ class Plots:
         """A quantity of monitored blocks and points over time, all of them or some `names`."""
         return _finished(over_time.draw_history(self.result, _known(quantity, HISTORIES, "history"), names), out, dpi)
 
+    def profile(self, name=None, quantity="displacement", times=None, *, dpi=160, out=None):
+        """A quantity along a monitored line, at some `times` in s or at five of its rows, the last among them."""
+        quantity = _known(quantity, over_time.PROFILES, "profile of")
+        return _finished(over_time.draw_profile(self.result, name, quantity, times), out, dpi)
+
     def energy(self, *, dpi=160, out=None):
         """Where the energy is and where it went, and how far the model is from rest, over time."""
         return _finished(over_time.draw_energy(self.result), out, dpi)

@@ -86,6 +86,43 @@ def draw_history(result, quantity, names=None):
     return figure
 
 
+# name: (label, unit, values of the rows of a profile)
+PROFILES = {
+    "displacement": ("displacement", "m", lambda t: np.hypot(t["ux[m]"], t["uy[m]"])),
+    "x": ("displacement in x", "m", lambda t: t["ux[m]"]),
+    "y": ("displacement in y", "m", lambda t: t["uy[m]"]),
+    "speed": HISTORIES["speed"], "sxx": HISTORIES["sxx"], "syy": HISTORIES["syy"], "sxy": HISTORIES["sxy"],
+}
+
+
+def draw_profile(result, name, quantity, times=None):
+    """Points in no block interrupt a curve."""
+    name = name if name is not None or not result.profiles else result.profiles[0]
+    if name not in result.profiles:
+        raise ValueError(f"no profile {name}: there are {', '.join(result.profiles) or 'none'}")
+    label, unit, values_of = PROFILES[quantity]
+    table = result.history(name)
+    known = table["time[s]"].unique()
+    if times is None:
+        chosen = known[np.unique(np.linspace(0, len(known) - 1, 6).round().astype(int))[1 if len(known) > 1 else 0:]]
+    else:
+        chosen = [known[np.abs(known - time).argmin()] for time in np.atleast_1d(times)]
+    values = values_of(table)
+    factor, unit = style.unit_prefix(unit, float(np.abs(values).max()))
+    step = np.diff(np.sort(table["distance[m]"].unique())).min(initial=np.inf)
+    figure, (axes,) = curve_figure()
+    for colour, time in zip(plt.get_cmap("viridis")(np.linspace(0.85, 0.0, len(chosen))), chosen):
+        rows = table["time[s]"] == time
+        along, height = table["distance[m]"][rows].to_numpy(), values[rows].to_numpy() * factor
+        gaps = np.flatnonzero(np.diff(along) > 1.5 * step) + 1
+        axes.plot(np.insert(along, gaps, np.nan), np.insert(height, gaps, np.nan), color=colour, lw=1.2, marker=".",
+                  ms=4, label=f"t = {time:.4g} s")
+    axes.set(xlabel=f"distance along {name} (m)", ylabel=f"{label} ({unit})")
+    axes.axhline(0.0, color="#d8d8d8", lw=0.6, zorder=0)
+    legend_beside(axes)
+    return figure
+
+
 # column without unit: (label, sign, colour); what is stored or taken up adds to what the first row has
 ENERGIES = {
     "kinetic": ("kinetic", "#d9822b"), "strain": ("strain of blocks", "#7b5aa6"), "contact": ("contacts", "#1f6f9f"),

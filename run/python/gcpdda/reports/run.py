@@ -192,6 +192,10 @@ def _end(page, result):
 
 
 def _histories(page, result):
+    if result.profiles:
+        page.section("Profiles")
+        page.pictures(*((picture(result.plot.profile(name)), f"Displacement along {name}.")
+                        for name in result.profiles))
     if not result.histories:
         return
     page.section("Histories")
