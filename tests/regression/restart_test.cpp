@@ -143,8 +143,9 @@ TEST_F(Restart, WithoutAValidCheckpointIsRefused) {
                   last + ": it is an HDF5 file, but no checkpoint of gcpdda"});
   fs::remove(files_[0]);
   std::ofstream(files_[1], std::ios::binary) << good;
-  overwrite(files_[1], good.find("version 9") + 8, '8');
-  expect_refusal(0, {"restart", "run"}, 4, {last + ": it has format version 8, this gcpdda reads version 9"});
+  overwrite(files_[1], good.find("version 10") + 9, '1');
+  expect_refusal(0, {"restart", "run"}, 4,
+                 {last + ": it has format version 11, this gcpdda reads version 10"});
   fs::remove_all(folder_ / "run/checkpoints");
   fs::remove(folder_ / "run/summary.json");
   expect_refusal(0, {"restart", "run"}, 4, {"there is no checkpoint in run/checkpoints"});

@@ -59,7 +59,8 @@ std::unique_ptr<WorkFolder> ResultFolder::folder_;
 Outcome ResultFolder::outcome_;
 
 TEST_F(ResultFolder, HoldsTheFilesOfTheContractAndNoOthers) {
-  std::set<std::string> expected{"decomposition",
+  std::set<std::string> expected{"contacts.hdf.series",
+                                 "decomposition",
                                  "decomposition/owners_0.csv",
                                  "frames",
                                  "frames/topology_000000.h5",
