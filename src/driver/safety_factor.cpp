@@ -33,6 +33,7 @@ namespace fs = std::filesystem;
 struct TrialFacts {
   double factor = 0.0;
   std::int64_t verdict = 0;
+  std::int64_t first_block = 0; ///< the verdict on any block
   std::int64_t means = 0;
   std::int64_t is_confirmed = 0; ///< by a stage of its own
   double time = 0.0;
@@ -49,7 +50,8 @@ std::int64_t sum_of(const std::vector<std::int64_t> &counts) {
   return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
 }
 
-TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time) {
+/// @param watches  the verdict is that of a part of the blocks
+TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time, bool watches) {
   TrialFacts facts;
   facts.factor = factor;
   facts.exit_code = outcome.exit_code;
@@ -61,6 +63,9 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time)
     const StageResult &stage = outcome.summary.stages.back().result;
     facts.verdict =
         static_cast<std::int64_t>(outcome.exit_code == exit_code::done ? stage.verdict : Verdict::undecided);
+    facts.first_block = watches && outcome.exit_code == exit_code::done
+                            ? static_cast<std::int64_t>(stage.first_block)
+                            : facts.verdict;
     facts.moved = stage.moved;
     facts.unbalanced_ratio = stage.unbalanced_ratio;
     facts.steps = stage.steps;
@@ -132,8 +137,12 @@ private:
   ExitCode search() {
     const std::size_t at_once = choose_groups();
     while (true) {
-      const std::vector<double> factors = next_factors(
+      std::vector<double> factors = next_factors(
           scene_.reduction, [&](double factor) { return verdict_of(factor); }, at_once);
+      if (factors.empty() && watches_mechanism()) {
+        factors = next_factors(
+            scene_.reduction, [&](double factor) { return verdict_on_first_block(factor); }, at_once);
+      }
       if (factors.empty()) {
         break;
       }
@@ -202,7 +211,7 @@ private:
     RunOptions options{settled_directory(), overwrite, false, {}, options_.quiet};
     options.prepare = prepare;
     const RunOutcome outcome = run_and_tell(world_, settling_scene(scene_, factor), options);
-    report_.settled = trial_of(facts_of(factor, outcome, 0.0));
+    report_.settled = trial_of(facts_of(factor, outcome, 0.0, false));
     report_.settled.steps = outcome.summary.steps;
     start_time_ = outcome.summary.time;
     num_blocks_ = outcome.summary.blocks;
@@ -233,7 +242,7 @@ private:
                       ? ""
                       : outcome.summary.message;
         if (group_->is_root()) {
-          mine.push_back(facts_of(factor, outcome, start_time_));
+          mine.push_back(facts_of(factor, outcome, start_time_, watches_mechanism()));
         }
       } catch (const std::exception &error) { // of the whole group; the others must not wait for it
         trouble = fmt::format("the trial at factor {:g} cannot run: {}", factor, error.what());
@@ -314,6 +323,7 @@ private:
     StrengthTrial trial;
     trial.factor = facts.factor;
     trial.verdict = static_cast<Verdict>(facts.verdict);
+    trial.first_block = static_cast<Verdict>(facts.first_block);
     trial.decided_by = words_on_means(facts);
     trial.time = facts.time;
     trial.moved = facts.moved;
@@ -331,6 +341,14 @@ private:
                                                                : std::optional(trial->second.verdict);
   }
 
+  [[nodiscard]] std::optional<Verdict> verdict_on_first_block(double factor) const {
+    return verdict_of(factor) ? std::optional(trials_.at(factor).first_block) : std::nullopt;
+  }
+  /// The factor is that of a mechanism, besides which that of the first block is found.
+  [[nodiscard]] bool watches_mechanism() const {
+    return scene_.reduction.ignored_area > 0.0 || !scene_.reduction.region.empty();
+  }
+
   [[nodiscard]] fs::path settled_directory() const {
     return options_.settled.empty() ? options_.directory / "settled" : options_.settled;
   }
@@ -344,6 +362,14 @@ private:
     report_.holds = search.holds;
     report_.fails = search.fails;
     report_.undecided = search.undecided;
+    std::vector<double> decisive = search.decisive;
+    if (watches_mechanism()) {
+      const SafetySearch first =
+          follow(scene_.reduction, [&](double factor) { return verdict_on_first_block(factor); });
+      report_.first_block = FirstBlock{first.holds, first.fails, {}};
+      report_.ignored_area = scene_.reduction.ignored_area;
+      decisive.insert(decisive.end(), first.decisive.begin(), first.decisive.end());
+    }
     for (std::size_t i = 0; i < scene_.joints.laws.size(); ++i) {
       if (is_weakened(scene_.reduction, i)) {
         report_.families.push_back(scene_.joints.laws[i].name);
@@ -352,25 +378,33 @@ private:
     for (const auto &[factor, trial] : trials_) {
       report_.trials.push_back(trial);
       report_.trials.back().decisive =
-          std::count(search.decisive.begin(), search.decisive.end(), factor) > 0 || stopped_.contains(factor);
+          std::count(decisive.begin(), decisive.end(), factor) > 0 || stopped_.contains(factor);
     }
     if (!options_.quiet) {
       on_root(world_, [&] {
+        SafetyPictures pictures;
         if (report_.fails) {
-          find_mechanism(*report_.fails);
+          report_.mechanism = motions_in_trial(*report_.fails);
+          mark_moving(scene_.reduction.ignored_area, report_.mechanism);
+          pictures.mechanism = draw_mechanism(report_.mechanism, *report_.fails);
         }
-        write_safety_report(options_.directory, report_,
-                            report_.mechanism.empty() ? std::string() : draw_mechanism(report_));
+        if (report_.first_block && report_.first_block->fails) {
+          std::vector<FailingBlock> &blocks = report_.first_block->blocks;
+          blocks = motions_in_trial(*report_.first_block->fails);
+          mark_moving(0.0, blocks);
+          pictures.first_block = draw_mechanism(blocks, *report_.first_block->fails);
+        }
+        write_safety_report(options_.directory, report_, pictures);
         std::cout << to_text(report_) << std::flush;
       });
     }
   }
 
   // Root alone. What each block has done since the trial began, by the frames of both runs.
-  void find_mechanism(double factor) {
+  [[nodiscard]] std::vector<FailingBlock> motions_in_trial(double factor) const {
+    std::vector<FailingBlock> blocks;
     const FrameContent begin = last_frame(settled_directory());
     const FrameContent end = last_frame(trial_directory(factor));
-    double farthest = 0.0;
     for (std::size_t row = 0; row < end.block.size(); ++row) {
       const auto found = std::lower_bound(begin.block.begin(), begin.block.end(), end.block[row]);
       const auto before = static_cast<std::size_t>(found - begin.block.begin());
@@ -385,17 +419,35 @@ private:
       block.displacement = {end.displacement[row][0] - begin.displacement[before][0],
                             end.displacement[row][1] - begin.displacement[before][1]};
       block.rotation = end.rotation[row] - begin.rotation[before];
-      const Vec2 centroid = polygon_moments(block.vertices).centroid;
+      const Moments moments = polygon_moments(block.vertices);
+      const Vec2 centroid = moments.centroid;
+      block.area = moments.area;
       double radius = 0.0;
       for (const Vec2 vertex : block.vertices) {
         radius = std::max(radius, norm(vertex - centroid));
       }
       block.motion = block.fixed ? 0.0 : norm(block.displacement) + radius * std::abs(block.rotation);
-      farthest = std::max(farthest, block.motion);
-      report_.mechanism.push_back(std::move(block));
+      blocks.push_back(std::move(block));
     }
-    for (FailingBlock &block : report_.mechanism) {
-      block.moves = !block.fixed && block.motion >= 0.1 * farthest;
+    return blocks;
+  }
+
+  /// Those that have moved at least a tenth as far as the block with which the area of the ones that have
+  /// moved farthest reaches `area`.
+  static void mark_moving(double area, std::vector<FailingBlock> &blocks) {
+    std::vector<FailingBlock *> by_motion;
+    for (FailingBlock &block : blocks) {
+      by_motion.push_back(&block);
+    }
+    std::stable_sort(by_motion.begin(), by_motion.end(),
+                     [](const FailingBlock *a, const FailingBlock *b) { return a->motion > b->motion; });
+    double sum = 0.0;
+    const auto reaches = [&](const FailingBlock *block) { return (sum += block->area) >= area; };
+    const auto first = std::find_if(by_motion.begin(), by_motion.end(), reaches);
+    std::for_each(by_motion.begin(), first, [](FailingBlock *block) { block->left_out = true; });
+    const double least = first == by_motion.end() ? 0.0 : 0.1 * (*first)->motion;
+    for (FailingBlock &block : blocks) {
+      block.moves = !block.fixed && block.motion >= least && block.motion > 0.0;
     }
   }
 

@@ -222,6 +222,8 @@ Scene weakened_scene(const Scene &scene, double factor) {
   trial.local_damping = scene.reduction.local_damping;
   trial.solver = std::prev(last_settle)->solver;
   trial.where = std::prev(last_settle)->where;
+  trial.ignored_area = scene.reduction.ignored_area;
+  trial.watched_region = scene.reduction.region;
   trial.after = std::move(after);
   weakened.output = {limit, limit, 0.0, scene.output.contacts};
   const bool is_static = trial.solver == Solver::statics;

@@ -20,7 +20,9 @@ struct DrawnBlock {
 /// Picture of blocks coloured by subdomain, with axes: fixed ones grey, deformable ones with a thick outline.
 std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains);
 
-/// Picture of how the blocks fail, with axes and a colour bar: white to red with the motion, fixed ones grey.
-std::string draw_mechanism(const SafetyReport &report);
+/// Picture of how the blocks fail at a factor, with axes and a colour bar: white to red with the motion,
+/// fixed ones grey, arrows in the direction of those that move. The scale is that of what counts as the
+/// mechanism.
+std::string draw_mechanism(const std::vector<FailingBlock> &blocks, double factor);
 
 } // namespace gcpdda

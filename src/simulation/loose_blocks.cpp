@@ -12,13 +12,9 @@
 
 namespace gcpdda {
 
-namespace {
-
 bool is_loose(const BlockLook &block, const Stage &stage, const StageLook &look) {
   return block.unbalanced > stage.tolerance * look.force || block.motion > motion_at_rest * look.overlap;
 }
-
-} // namespace
 
 // One reduction of integers: sums of them are exact.
 void look_for_loose_blocks(RunState &run, StageLook &look) {

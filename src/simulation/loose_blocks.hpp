@@ -20,6 +20,10 @@
 
 namespace gcpdda {
 
+/// Its net force or its motion is beyond what is allowed to a block at rest.
+/// @param look  at all blocks
+[[nodiscard]] bool is_loose(const BlockLook &block, const Stage &stage, const StageLook &look);
+
 /// Fills in what a look at a settle stage says of loose blocks, from RunState::looks. Collective.
 void look_for_loose_blocks(RunState &run, StageLook &look);
 

@@ -60,6 +60,8 @@ struct BlockLook {
   double load = 0.0;       ///< weight and applied force, N/m
   double motion = 0.0;     ///< since the look before, m
   double kinetic = 0.0;    ///< J/m
+  double moved = 0.0;      ///< since the stage began, in sizes of the block ...
+  bool beyond_sag = false; ///< ... and farther than a pile sags
 };
 
 struct RunState {

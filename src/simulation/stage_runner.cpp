@@ -7,6 +7,7 @@
 #include "simulation/evaluation.hpp"
 #include "simulation/ground.hpp"
 #include "simulation/loose_blocks.hpp"
+#include "simulation/mechanism.hpp"
 #include "simulation/stage_changes.hpp"
 #include "simulation/static_stage.hpp"
 #include "simulation/step_rows.hpp"
@@ -95,8 +96,10 @@ void look_at_stage(RunState &run) {
     motion = std::max(motion, seen.motion);
     const double way = motion_between(block, mark.stage, now);
     const double share = way / std::sqrt(block.area);
+    seen.moved = share;
+    seen.beyond_sag = way > run.sag;
     moved = std::max(moved, share);
-    moved_beyond_sag = std::max(moved_beyond_sag, way > run.sag ? share : 0.0);
+    moved_beyond_sag = std::max(moved_beyond_sag, seen.beyond_sag ? share : 0.0);
     mark.look = now;
     seen.kinetic = kinetic_energy_of(run.blocks, row);
     kinetic.add(seen.kinetic);
@@ -121,6 +124,9 @@ void look_at_stage(RunState &run) {
     run.clock.state.verdict =
         judge_without_drag(stage, look, run.clock.plan.time(run.clock.stage_step()), run.clock.state.memory);
   }
+  if (stage.is_trial() && stage.watches_mechanism() && !is_static(run)) {
+    run.clock.state.verdict = judge_mechanism(run, look, run.clock.state.verdict);
+  }
   const bool unloads = std::any_of(
       run.clock.state.unloading.begin(), run.clock.state.unloading.end(), [&](const Unloading &u) {
         return std::isfinite(u.duration) && run.clock.time() < u.begin + u.duration;
@@ -129,7 +135,8 @@ void look_at_stage(RunState &run) {
       run.loads.are_changing(run.scene, run.clock.state, run.clock.time())) { // the loads are not there yet
     run.clock.state.verdict = Verdict::undecided;
   }
-  if (run.clock.state.verdict == Verdict::settled && run.clock.state.memory.settled_looks < 2) {
+  if (run.clock.state.verdict == Verdict::settled && !stage.is_trial() &&
+      run.clock.state.memory.settled_looks < 2) {
     const std::vector<std::int64_t> loose = loose_blocks(run);
     run.clock.state.memory.num_loose = std::ssize(loose);
     note_loose_blocks(run, loose);
@@ -295,7 +302,7 @@ std::vector<StageResult> stage_results(const RunState &run) {
     results.push_back({run.clock.state.verdict, run.clock.time(), run.clock.stage_step(),
                        contact_steps - run.clock.state.contact_steps_before, last.unbalanced_ratio,
                        last.kinetic, last.moved, 0, run.clock.state.memory.num_loose,
-                       means_of_verdict(run.clock)});
+                       means_of_verdict(run.clock), run.clock.state.first_block});
   }
   return results;
 }
@@ -345,6 +352,8 @@ void begin_next_stage(RunState &run) {
   run.clock.state.ended = false;
   run.clock.state.verdict = Verdict::undecided;
   run.clock.state.memory = {};
+  run.clock.state.mechanism = {};
+  run.clock.state.first_block = Verdict::undecided;
   run.clock.state.iteration = {};
   run.clock.state.contact_steps_before = run.counters.contact_steps;
   run.communicator.sum(std::span(&run.clock.state.contact_steps_before, 1));

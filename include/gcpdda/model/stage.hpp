@@ -70,6 +70,10 @@ struct Stage {
   /// s of a trial of gcpdda fos after which it goes on without local damping and is judged by its motion in
   /// windows (simulation/stages.hpp); infinite for every other stage.
   double drag_limit = std::numeric_limits<double>::infinity();
+  double ignored_area = 0.0; ///< m^2 of a trial: what fails and is smaller is no failure of the slope
+  /// Polygon of a trial: only failure of blocks whose centroid lies in it when the trial begins counts; empty
+  /// for all blocks.
+  std::vector<Vec2> watched_region;
   BlockSelection excavated;
   double relax = 0.0;          ///< s over which the forces of excavated blocks fall to zero
   double ramp = 0.0;           ///< s over which loads and stress that the stage changes do so
@@ -82,6 +86,8 @@ struct Stage {
   [[nodiscard]] bool takes_steps() const { return kind == StageKind::run || kind == StageKind::settle; }
   /// A trial of gcpdda fos.
   [[nodiscard]] bool is_trial() const { return drag_limit < std::numeric_limits<double>::infinity(); }
+  /// A trial whose verdict is that of a part of the blocks (simulation/mechanism.hpp).
+  [[nodiscard]] bool watches_mechanism() const { return ignored_area > 0.0 || !watched_region.empty(); }
   /// Local damping of the stage: its own, or else that of the run.
   [[nodiscard]] double local_damping_or(double of_run) const {
     return local_damping >= 0.0 ? local_damping : of_run;
@@ -100,6 +106,8 @@ struct StageResult {
   std::int64_t removed = 0; ///< blocks
   std::int64_t loose = 0;   ///< blocks that kept moving when all others were at rest
   VerdictMeans means = VerdictMeans::dynamic_step; ///< not in checkpoints: of stages of this process
+  /// Verdict on all blocks where that of the trial is on a part of them, else undecided; not in checkpoints.
+  Verdict first_block = Verdict::undecided;
 };
 
 } // namespace gcpdda

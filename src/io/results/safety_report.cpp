@@ -1,6 +1,7 @@
 #include "io/results/safety_report.hpp"
 
 #include "base/check.hpp"
+#include "base/program_facts.hpp"
 #include "io/hdf5/durable_file.hpp"
 #include "io/results/json.hpp"
 
@@ -19,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char *, 5> own_names{"fos.txt", "fos.json", "fos_trials.csv", "fos_blocks.csv",
-                                                "fos.svg"};
+constexpr std::array<const char *, 6> own_names{"fos.txt",        "fos.json", "fos_trials.csv",
+                                                "fos_blocks.csv", "fos.svg",  "fos_first_block.svg"};
 constexpr double one_degree = std::numbers::pi / 180.0;
 
 std::string factor_text(const SafetyReport &report) {
@@ -88,6 +89,37 @@ std::string mechanism_text(const SafetyReport &report) {
   return text;
 }
 
+/// The names of those that move, the farthest first, with their area.
+std::string words_on_first_block(const FirstBlock &first) {
+  const std::string bracket =
+      first.holds && first.fails
+          ? fmt::format("first block: factor {:.5g}, holds at {:.6g} and fails at {:.6g}",
+                        0.5 * (*first.holds + *first.fails), *first.holds, *first.fails)
+      : first.fails ? fmt::format("first block: fails already at {:.6g}", *first.fails)
+                    : std::string("first block: none fails at any factor tried");
+  std::vector<const FailingBlock *> moving;
+  double area = 0.0;
+  for (const FailingBlock &block : first.blocks) {
+    if (block.moves) {
+      moving.push_back(&block);
+      area += block.area;
+    }
+  }
+  std::stable_sort(moving.begin(), moving.end(),
+                   [](const FailingBlock *a, const FailingBlock *b) { return a->motion > b->motion; });
+  constexpr std::size_t most = 5;
+  std::string names;
+  for (std::size_t k = 0; k < std::min(most, moving.size()); ++k) {
+    names += (names.empty() ? "" : ", ") + moving[k]->name;
+  }
+  return bracket +
+         (moving.empty() ? std::string()
+                         : fmt::format("; {} block{} of {:.3g} m2 together: {}{}", moving.size(),
+                                       moving.size() == 1 ? "" : "s", area, names,
+                                       moving.size() > most ? ", ..." : "")) +
+         "\n";
+}
+
 std::string trial_line(const StrengthTrial &trial) {
   return fmt::format("{:>10.6g}  {:<9} {:>9.4g} {:>9} {:>12} {:>8.2f} {:>5} {:>9.3g}  {}{}{}\n", trial.factor,
                      word_of(trial.verdict), trial.time, trial.steps, trial.evaluations, trial.cpu_s,
@@ -99,6 +131,7 @@ JsonObject trial_object(const StrengthTrial &trial) {
   return JsonObject()
       .add("factor", trial.factor)
       .add("verdict", std::string(word_of(trial.verdict)))
+      .add("first_block", std::string(word_of(trial.first_block)))
       .add("decided_by", trial.decided_by)
       .add("decisive", trial.decisive ? 1 : 0)
       .add("time", trial.time)
@@ -120,7 +153,14 @@ std::string json_text(const SafetyReport &report) {
       .add("fails", report.fails.value_or(none))
       .add("bound", report.bound.value_or(none))
       .add("tolerance", report.tolerance)
-      .add("found", report.is_found() ? 1 : 0);
+      .add("found", report.is_found() ? 1 : 0)
+      .add("version", program_version())
+      .add("command", command_line());
+  if (const auto &first = report.first_block) {
+    object.add("first_block_holds", first->holds.value_or(none))
+        .add("first_block_fails", first->fails.value_or(none))
+        .add("ignore_area", report.ignored_area);
+  }
   std::vector<JsonObject> trials;
   std::transform(report.trials.begin(), report.trials.end(), std::back_inserter(trials), trial_object);
   std::vector<JsonObject> moving;
@@ -174,6 +214,9 @@ std::string to_text(const SafetyReport &report) {
   std::string text = fmt::format("{}\n{}strengths divided: friction, cohesion and tension of {}\n",
                                  factor_text(report), undecided_text(report), families);
   text += mechanism_text(report);
+  if (report.first_block) {
+    text += words_on_first_block(*report.first_block);
+  }
   const double settled_at = report.settled.factor;
   text += fmt::format("settled state{}: t = {:.4g} s, {} steps, {} evaluations, {:.2f} CPU s\n",
                       settled_at == 1.0 ? "" : fmt::format(" with strengths divided by {:g}", settled_at),
@@ -189,13 +232,17 @@ std::string to_text(const SafetyReport &report) {
   return text;
 }
 
-void write_safety_report(const fs::path &directory, const SafetyReport &report, const std::string &picture) {
+void write_safety_report(const fs::path &directory, const SafetyReport &report,
+                         const SafetyPictures &pictures) {
   write_file(directory / "fos.txt", to_text(report));
   write_file(directory / "fos.json", json_text(report));
   write_file(directory / "fos_trials.csv", trials_csv(report));
   if (!report.mechanism.empty()) {
     write_file(directory / "fos_blocks.csv", blocks_csv(report));
-    write_file(directory / "fos.svg", picture);
+    write_file(directory / "fos.svg", pictures.mechanism);
+  }
+  if (!pictures.first_block.empty()) {
+    write_file(directory / "fos_first_block.svg", pictures.first_block);
   }
 }
 

@@ -16,11 +16,12 @@ namespace gcpdda {
 /// A run with all strengths divided by a factor.
 struct StrengthTrial {
   double factor = 1.0;
-  Verdict verdict = Verdict::undecided; ///< also where the run has ended in a numerical failure
-  std::string decided_by;               ///< what has come to the verdict, in words
-  bool decisive = false;                ///< the bracket rests on it; others were run because ranks were free
-  double time = 0.0;                    ///< simulated, s
-  double moved = 0.0;                   ///< largest motion of a block, in sizes of that block
+  Verdict verdict = Verdict::undecided;     ///< also where the run has ended in a numerical failure
+  Verdict first_block = Verdict::undecided; ///< on any block, where `verdict` is on a mechanism
+  std::string decided_by;                   ///< what has come to the verdict, in words
+  bool decisive = false; ///< the bracket rests on it; others were run because ranks were free
+  double time = 0.0;     ///< simulated, s
+  double moved = 0.0;    ///< largest motion of a block, in sizes of that block
   double unbalanced_ratio = 0.0;
   std::int64_t steps = 0;
   std::int64_t evaluations = 0; ///< of candidate pairs, all ranks
@@ -36,10 +37,25 @@ struct FailingBlock {
   std::string name;
   std::vector<Vec2> vertices; ///< at failure, m
   bool fixed = false;
-  bool moves = false;    ///< at least a tenth as far as the one that moves most
+  bool moves = false;    ///< at least a tenth as far as the one that moves most, small falls left out
   Vec2 displacement;     ///< of the centroid since the trial began, m
   double rotation = 0.0; ///< since the trial began, rad
   double motion = 0.0;   ///< largest of any of its points, m
+  double area = 0.0;     ///< m^2
+  bool left_out = false; ///< falls by itself, and is smaller than what counts (fos.ignore_area)
+};
+
+/// Bracket of the factor at which the first block fails, however small it is.
+struct FirstBlock {
+  std::optional<double> holds;
+  std::optional<double> fails;
+  std::vector<FailingBlock> blocks; ///< of `fails`, by BlockId
+};
+
+/// SVG texts; empty where there is nothing to draw.
+struct SafetyPictures {
+  std::string mechanism;
+  std::string first_block;
 };
 
 /// What gcpdda fos has found.
@@ -54,6 +70,9 @@ struct SafetyReport {
   std::optional<double> bound;         ///< upper bound by limit analysis, where it was asked for
   bool is_bound_alone = false;         ///< no trials were to be run
   std::vector<FailingBlock> mechanism; ///< of `fails`, by BlockId; empty without it
+  std::optional<FirstBlock>
+      first_block;           ///< where the factor is that of a mechanism (fos.ignore_area, fos.region)
+  double ignored_area = 0.0; ///< m^2, fos.ignore_area
 
   /// The bracket is as narrow as asked for.
   [[nodiscard]] bool is_found() const { return holds && fails && *fails - *holds <= tolerance * *holds; }
@@ -62,10 +81,10 @@ struct SafetyReport {
 /// What people read.
 std::string to_text(const SafetyReport &report);
 
-/// fos.txt, fos.json, fos_trials.csv, and with a mechanism fos_blocks.csv and fos.svg, the picture. Root
-/// only; throws FileError.
+/// fos.txt, fos.json, fos_trials.csv, and with a mechanism fos_blocks.csv and fos.svg, the picture;
+/// fos_first_block.svg where the factor of the first block is another one. Root only; throws FileError.
 void write_safety_report(const std::filesystem::path &directory, const SafetyReport &report,
-                         const std::string &picture);
+                         const SafetyPictures &pictures);
 
 /// Makes the folder of a search. One that holds a search or a run is refused with FileError unless
 /// `overwrite`, which removes what a search writes. Root only.

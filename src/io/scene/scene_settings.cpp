@@ -1,6 +1,7 @@
 #include "io/scene/scene_settings.hpp"
 
 #include "io/scene/scene_joints.hpp"
+#include "io/scene/scene_outline.hpp"
 
 #include <fmt/format.h>
 
@@ -147,6 +148,13 @@ StrengthReduction read_reduction(const SceneSource &source, const JointLaws &joi
   fos.read("patience", reduction.patience);
   fos.read("failure_motion", reduction.failure_motion);
   fos.read("local_damping", reduction.local_damping);
+  fos.read("ignore_area", reduction.ignored_area);
+  fos.read("region", reduction.region);
+  if (const toml::node *region = fos.sound("region")) {
+    for (const OutlineFault &found : check_outline(reduction.region, fos.subject("region"))) {
+      fault(source, *region, found.what, found.why, found.hint);
+    }
+  }
   if (reduction.to <= reduction.from && fos.known("from") && fos.known("to")) {
     const toml::node *to = fos.given("to");
     fault(source, to != nullptr ? *to : *fos.given("from"),

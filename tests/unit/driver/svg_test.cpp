@@ -116,21 +116,24 @@ TEST(Pictures, AxesTellWhereBlocksAre) {
   expect_axes_tell_where(draw_svg({{shapes[0], -1, false}, {shapes[1], 0, true}}, 1), shapes);
 }
 
-SafetyReport sliding(double motion) {
-  SafetyReport report;
-  report.fails = 1.25;
+constexpr double failing_factor = 1.25;
+
+std::vector<FailingBlock> sliding(double motion) {
+  std::vector<FailingBlock> blocks;
   for (const std::vector<Vec2> &shape : shapes) {
     FailingBlock block;
     block.vertices = shape;
-    block.fixed = report.mechanism.empty();
+    block.fixed = blocks.empty();
     block.motion = block.fixed ? 0.0 : motion;
-    report.mechanism.push_back(block);
+    block.displacement = {block.motion, 0.0};
+    block.moves = block.motion > 0.0;
+    blocks.push_back(block);
   }
-  return report;
+  return blocks;
 }
 
 TEST(Pictures, AMechanismHasAColourBarFromZeroToTheLargestMotion) {
-  const std::string svg = draw_mechanism(sliding(0.35));
+  const std::string svg = draw_mechanism(sliding(0.35), failing_factor);
   expect_axes_tell_where(svg, shapes);
   const std::vector<Text> texts = texts_of(svg);
   const double end = end_of_axes(texts);
@@ -155,7 +158,7 @@ TEST(Pictures, AMechanismHasAColourBarFromZeroToTheLargestMotion) {
 }
 
 TEST(Pictures, AMechanismWithoutMotionIsDrawnToo) {
-  const std::string svg = draw_mechanism(sliding(0.0));
+  const std::string svg = draw_mechanism(sliding(0.0), failing_factor);
   expect_axes_tell_where(svg, shapes);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
