@@ -59,6 +59,18 @@ class Result(Folder):
     def summary(self):
         return self._json("summary.json")
 
+    def to_vtkhdf(self, out=None, kind="blocks"):
+        """All frames in one temporal VTKHDF file, of blocks, contacts or bolts; returns its path."""
+        from . import vtkhdf
+        return vtkhdf.write(self.path, out, kind)
+
+    def to_pyvista(self, which="last", kind="blocks"):
+        """A frame as a grid of pyvista, which has to be installed."""
+        import pyvista
+        from .vtkhdf import KINDS
+        number = self.frame(which).number
+        return pyvista.read(self.path / "frames" / f"{KINDS[kind]}_{number:06}.hdf")
+
     @property
     def verdict(self):
         """completed, settled, failed, undecided or stopped; None while the run goes on."""
