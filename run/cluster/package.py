@@ -1,9 +1,9 @@
-"""A Spack recipe for gcpdda: put it into packages/gcpdda of a repository of one's own (`spack repo create`), then
+"""A Spack recipe for gcpdda: put it into packages/gcpdda of a repository (`spack repo create`), then
 
     spack develop --path FOLDER_OF_THIS_REPOSITORY gcpdda@main
     spack install gcpdda@main
 
-Written by the list of Debian packages that are known to work (run/packages.txt); Spack itself was not at hand to try it.
+Written by the list of Debian packages that are known to work (run/packages.txt); Spack was not at hand to try it.
 """
 from spack.package import *
 

@@ -14,7 +14,8 @@ def step_of(path, k):
         steps = root["Steps"]
         part = steps["PartOffsets"][k]
         assert steps["NumberOfParts"][k] == 1
-        points, cells, ids = (root[name][part] for name in ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"))
+        sizes = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
+        points, cells, ids = (root[name][part] for name in sizes)
         begin = {name: steps[name][k] for name in ("PointOffsets", "CellOffsets", "ConnectivityIdOffsets")}
         # Every part has one offset more than cells.
         first = begin["CellOffsets"] + part

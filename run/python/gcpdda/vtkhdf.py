@@ -1,8 +1,8 @@
 """All frames of a run in one file that ParaView 5.12 and later animates: temporal VTKHDF, version 2.0.
 
-Layout (docs.vtk.org, VTKHDF file format, temporal data): the arrays of all steps stand behind one another, and the group
-Steps says where those of a step begin. Outlines of blocks stay the same until a stage removes some: their topology is
-written once, and the steps that share it have the same offsets into it.
+Layout (docs.vtk.org, VTKHDF file format, temporal data): the arrays of all steps stand behind one another, and the
+group Steps says where those of a step begin. Outlines of blocks stay the same until a stage removes some: their
+topology is written once, and the steps that share it have the same offsets into it.
 """
 
 import pathlib
@@ -52,7 +52,8 @@ class Writer:
             append(self.root, "Offsets", topology[1])
             begin["CellOffsets"] = append(self.root, "Types", topology[2])
             self.last = topology, begin
-        row = dict(self.last[1], Values=time, NumberOfParts=1, PointOffsets=append(self.root, "Points", part["Points"][()]))
+        points = append(self.root, "Points", part["Points"][()])
+        row = dict(self.last[1], Values=time, NumberOfParts=1, PointOffsets=points)
         for name, value in row.items():
             append(self.steps, name, np.array([value], dtype=np.float64 if name == "Values" else np.int64))
         for name, data in part["CellData"].items():

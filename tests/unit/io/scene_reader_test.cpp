@@ -219,7 +219,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     expect_same(good(text, {path + "=" + std::string(key.fallback)}), scene);
     ++compared;
   }
-  EXPECT_EQ(compared, 49);
+  EXPECT_EQ(compared, 50);
 }
 
 // A duration of the run has no meaning beside stages, so they have a scene of their own.
