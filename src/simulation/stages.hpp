@@ -123,9 +123,9 @@ struct StageState {
   std::int64_t more_mobile = 0; ///< mobile blocks now, beyond those of the scene
   Verdict verdict = Verdict::undecided;
   LookMemory memory;
-  LookMemory mechanism;                      ///< of the part of the blocks that a trial watches ...
+  LookMemory mechanism;                     ///< of the part of the blocks that a trial watches ...
   Verdict first_block = Verdict::undecided; ///< ... and the verdict on all; neither is in checkpoints
-  statics::IterationState iteration; ///< of a stage with the static solver
+  statics::IterationState iteration;        ///< of a stage with the static solver
   std::vector<StageResult> results;
   std::vector<std::int64_t> removed; ///< ids, ascending
   std::vector<Unloading> unloading;  ///< by block, each once for every excavation

@@ -19,7 +19,7 @@ struct IterationState {
   double last_least = 1e300;    ///< ... and of the one before
   double least_loose = 1.0;     ///< the same of the share of loose blocks
   double last_loose = 1.0;
-  double skipped = 0.0;         ///< s: the stage begins when its loads are complete
+  double skipped = 0.0; ///< s: the stage begins when its loads are complete
 };
 
 } // namespace gcpdda::statics
