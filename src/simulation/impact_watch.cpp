@@ -1,6 +1,7 @@
 #include "simulation/impact_watch.hpp"
 
 #include "base/exact_sum.hpp"
+#include "io/results/id_slabs.hpp"
 
 #include <algorithm>
 #include <cmath>

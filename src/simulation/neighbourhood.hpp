@@ -7,6 +7,7 @@
 // up half of the skin.
 
 #include "contact/candidates.hpp"
+#include "dynamics/integrate.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "parallel/ghosts.hpp"
 #include "partition/domain_map.hpp"

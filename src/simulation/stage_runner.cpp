@@ -62,10 +62,8 @@ RigidDof damped_motion(const RunState &run, std::size_t row) {
              : run.blocks.velocity[row];
 }
 
-} // namespace
-
-// Three reductions, now and then; all are exact.
-void look_at_stage(RunState &run) {
+/// Of all blocks, which leaves RunState::looks behind. Collective.
+StageLook look_at_blocks(RunState &run) {
   ExactSum kinetic;
   std::array<double, 6> largest{};
   auto &[unbalanced, acting, motion, moved, moved_beyond_sag, overlap] = largest;
@@ -108,13 +106,30 @@ void look_at_stage(RunState &run) {
   overlap = run.force_report.max_overlap;
   run.communicator.max(largest);
   run.communicator.sum(kinetic.limbs());
-  StageLook look{acting > 0.0 ? unbalanced / acting : 0.0,
-                 motion,
-                 overlap,
-                 acting,
-                 kinetic.value(),
-                 moved,
-                 moved_beyond_sag};
+  return {acting > 0.0 ? unbalanced / acting : 0.0,
+          motion,
+          overlap,
+          acting,
+          kinetic.value(),
+          moved,
+          moved_beyond_sag};
+}
+
+/// Loads of the stage at hand are not there yet.
+bool is_loading(const RunState &run) {
+  const bool unloads = std::any_of(
+      run.clock.state.unloading.begin(), run.clock.state.unloading.end(), [&](const Unloading &u) {
+        return std::isfinite(u.duration) && run.clock.time() < u.begin + u.duration;
+      });
+  return unloads || run.clock.time() < run.scene.run.gravity_ramp ||
+         run.loads.are_changing(run.scene, run.clock.state, run.clock.time());
+}
+
+} // namespace
+
+// Three reductions, now and then; all are exact.
+void look_at_stage(RunState &run) {
+  StageLook look = look_at_blocks(run);
   const Stage &stage = run.clock.stage();
   if (stage.until_verdict && !stage.is_trial()) {
     look_for_loose_blocks(run, look);
@@ -127,12 +142,7 @@ void look_at_stage(RunState &run) {
   if (stage.is_trial() && stage.watches_mechanism() && !is_static(run)) {
     run.clock.state.verdict = judge_mechanism(run, look, run.clock.state.verdict);
   }
-  const bool unloads = std::any_of(
-      run.clock.state.unloading.begin(), run.clock.state.unloading.end(), [&](const Unloading &u) {
-        return std::isfinite(u.duration) && run.clock.time() < u.begin + u.duration;
-      });
-  if (unloads || run.clock.time() < run.scene.run.gravity_ramp ||
-      run.loads.are_changing(run.scene, run.clock.state, run.clock.time())) { // the loads are not there yet
+  if (is_loading(run)) {
     run.clock.state.verdict = Verdict::undecided;
   }
   if (run.clock.state.verdict == Verdict::settled && !stage.is_trial() &&

@@ -45,7 +45,7 @@ void find_bound(RunState &run) {
   // A block that is alone can never touch.
   run.bound.omega_max = num_blocks(run.scene) > 1 ? std::sqrt(omega_squared) : 0.0;
   run.bound.without_bolts =
-      run.bolts.empty() ? run.bound.omega_max : std::sqrt(agreed_max(run.communicator, without_bolts));
+      run.bolts.empty() ? run.bound.omega_max : std::sqrt(run.communicator.max(without_bolts));
 
   // In a system of blocks the fastest mode is damped more than one joint.
   const double modal_damping_factor = run.fidelity.num_deformable > 0 ? 2.4 : 1.4;
