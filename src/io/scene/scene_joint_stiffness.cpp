@@ -147,6 +147,12 @@ void StiffnessReader::read_modulus(const Section &section, JointLaw &law) {
   }
   law.normal_stiffness =
       law.rock_mass_modulus / (law.spacing * (1.0 - law.rock_mass_modulus / law.intact_modulus));
+  if (const Range range = find_key("joint.*", "normal_stiffness")->range;
+      !range.holds(law.normal_stiffness)) {
+    fault(section.source(),
+          fmt::format("{} would have a normal stiffness of {:g} Pa/m", section.label(), law.normal_stiffness),
+          fmt::format("it must be {}", describe(range)), "check rock_mass_modulus and spacing");
+  }
 }
 
 /// Young's modulus of the law's pair of materials, or of all materials where the law has no pair; a fault

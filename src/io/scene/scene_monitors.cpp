@@ -186,6 +186,12 @@ private:
     }
     std::int64_t num_points = 21;
     section.read("points", num_points);
+    num_profile_points_ += num_points;
+    if (num_profile_points_ > most_profile_points) {
+      fault(section.source(), fmt::format("the profiles up to this one have {} points", num_profile_points_),
+            fmt::format("all together have at most {}", most_profile_points), "use fewer points");
+      return {};
+    }
     Monitor monitor;
     monitor.name = *section.text("name");
     monitor.is_point = true;
@@ -244,6 +250,8 @@ private:
                         : fmt::format("did you mean '{}'?", near);
   }
 
+  static constexpr std::int64_t most_profile_points = 100'000;
+
   struct First {
     toml::source_region where;
     bool is_point;
@@ -254,6 +262,7 @@ private:
   std::vector<std::string> names_;
   std::vector<std::string> generators_; ///< also those that cannot be built
   std::unordered_map<std::string, First> first_of_name_;
+  std::int64_t num_profile_points_ = 0;
 };
 
 } // namespace

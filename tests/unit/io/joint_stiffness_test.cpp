@@ -76,6 +76,17 @@ TEST(JointStiffness, NeedsOneModulusOfIntactRock) {
       << said[0];
 }
 
+// Whatever the keys allow by themselves, the stiffness is one that could have been given.
+TEST(JointStiffness, IsWithinTheRangeOfItsKey) {
+  for (const char *values : {"rock_mass_modulus = 39.9999999999e9\nintact_modulus = 40e9\nspacing = 1e-9\n",
+                             "rock_mass_modulus = 1e-320\nintact_modulus = 40e9\nspacing = 1e9\n"}) {
+    const auto said = faults(values);
+    ASSERT_EQ(said.size(), 1U) << ::testing::PrintToString(said);
+    EXPECT_NE(said[0].find("[joint.default] would have a normal stiffness of "), std::string::npos)
+        << said[0];
+  }
+}
+
 // A stage that sets the modulus changes the stiffness.
 TEST(JointStiffness, FollowsWhatAStageSets) {
   std::string staged = head.substr(0, head.find("duration")) + head.substr(head.find("[material"));
