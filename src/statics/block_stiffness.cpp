@@ -95,6 +95,37 @@ void add_own_springs(const BlockSystem &system, std::size_t row, double *matrix,
   }
 }
 
+namespace {
+
+/// What the springs of a region are to a rigid row: of (u_x, u_y, r) only the lower triangle.
+void add_springs_of_rigid(const ContactSpring &s, Vec2 arm, double *matrix, std::size_t width) {
+  const Vec2 n = s.normal;
+  const Vec2 t = perp(n);
+  const double lever_n = cross(arm, n);
+  const double lever_t = cross(arm, t);
+  const double k_n = s.normal_stiffness;
+  const double k_t = s.tangential;
+  double *const second = matrix + width;
+  double *const third = second + width;
+  matrix[0] += k_n * n.x * n.x + k_t * t.x * t.x;
+  second[0] += k_n * n.y * n.x + k_t * t.y * t.x;
+  second[1] += k_n * n.y * n.y + k_t * t.y * t.y;
+  third[0] += k_n * lever_n * n.x + k_t * lever_t * t.x;
+  third[1] += k_n * lever_n * n.y + k_t * lever_t * t.y;
+  third[2] += k_n * lever_n * lever_n + k_t * lever_t * lever_t + s.bending;
+}
+
+void add_springs_of_deformable(const ContactSpring &s, Vec2 arm, double *matrix, std::size_t width) {
+  const Vec2 t = perp(s.normal);
+  std::array<double, 6> bend{};
+  add_force(bend.data(), true, {}, outer(s.normal, t));
+  add_square(forces_of(true, s.normal, arm), s.normal_stiffness, 6, matrix, width);
+  add_square(forces_of(true, t, arm), s.tangential, 6, matrix, width);
+  add_square(bend, s.bending, 6, matrix, width);
+}
+
+} // namespace
+
 void add_diagonal(const BlockSystem &system, std::span<const ContactSpring> springs,
                   BlockMatrices &matrices) {
   const std::size_t width = matrices.width();
@@ -102,15 +133,11 @@ void add_diagonal(const BlockSystem &system, std::span<const ContactSpring> spri
     if (row >= system.num_owned) {
       return;
     }
-    const bool is_deformable = system.is_deformable(row);
-    const std::size_t freedoms = is_deformable ? 6 : 3;
-    double *const matrix = matrices.of(row);
-    const Vec2 t = perp(s.normal);
-    add_square(forces_of(is_deformable, s.normal, arm), s.normal_stiffness, freedoms, matrix, width);
-    add_square(forces_of(is_deformable, t, arm), s.tangential, freedoms, matrix, width);
-    std::array<double, 6> bend{};
-    add_force(bend.data(), is_deformable, {}, outer(s.normal, t));
-    add_square(bend, s.bending, freedoms, matrix, width);
+    if (width == 6 && system.is_deformable(row)) {
+      add_springs_of_deformable(s, arm, matrices.of(row), width);
+    } else {
+      add_springs_of_rigid(s, arm, matrices.of(row), width);
+    }
   };
   for (const ContactSpring &s : springs) {
     add(s.lower, s.lower_arm, s);
@@ -138,15 +165,19 @@ void invert(double *matrix, std::size_t freedoms, std::size_t width) {
   double *const m = matrix;
   const auto at = [&](std::size_t i, std::size_t j) -> double & { return m[i * width + j]; };
   // By cofactors: three unknowns whose scales differ by a length alone.
-  const double c00 = at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1);
-  const double c01 = at(1, 2) * at(2, 0) - at(1, 0) * at(2, 2);
-  const double c02 = at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0);
-  const double d = 1.0 / (at(0, 0) * c00 + at(0, 1) * c01 + at(0, 2) * c02);
-  const double c11 = at(0, 0) * at(2, 2) - at(0, 2) * at(2, 0);
-  const double c12 = at(0, 1) * at(2, 0) - at(0, 0) * at(2, 1);
-  const double c22 = at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0);
-  at(0, 0) = d * c00, at(0, 1) = at(1, 0) = d * c01, at(0, 2) = at(2, 0) = d * c02;
-  at(1, 1) = d * c11, at(1, 2) = at(2, 1) = d * c12, at(2, 2) = d * c22;
+  const double a = at(0, 0);
+  const double b = at(1, 0);
+  const double c = at(1, 1);
+  const double d = at(2, 0);
+  const double e = at(2, 1);
+  const double f = at(2, 2);
+  const double c00 = c * f - e * e;
+  const double c01 = e * d - b * f;
+  const double c02 = b * e - c * d;
+  const double scale = 1.0 / (a * c00 + b * c01 + d * c02);
+  at(0, 0) = scale * c00, at(0, 1) = at(1, 0) = scale * c01, at(0, 2) = at(2, 0) = scale * c02;
+  at(1, 1) = scale * (a * f - d * d), at(1, 2) = at(2, 1) = scale * (b * d - a * e);
+  at(2, 2) = scale * (a * c - b * b);
 }
 
 } // namespace gcpdda::statics

@@ -56,9 +56,9 @@ void add_bolts(const BlockSystem &system, std::size_t row, std::span<const Point
                std::size_t width);
 /// Elasticity and fixed points of an owned row.
 void add_own_springs(const BlockSystem &system, std::size_t row, double *matrix, std::size_t width);
-/// The blocks on the diagonal of K, onto the matrices of owned rows.
+/// The blocks on the diagonal of K, onto the lower triangles of the matrices of owned rows.
 void add_diagonal(const BlockSystem &system, std::span<const ContactSpring> springs, BlockMatrices &matrices);
-/// Inverse of a symmetric positive definite matrix in the places of it.
+/// Inverse of a symmetric positive definite matrix, given by its lower triangle, in the places of it.
 void invert(double *matrix, std::size_t freedoms, std::size_t width);
 
 /// y += matrix p for the freedoms of one row.

@@ -53,6 +53,43 @@ private:
   std::vector<double> values_;
 };
 
+/// Rows [first, last).
+struct RowRun {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
+/// Owned rows that forces move, in runs. Fields are zero on the others, and their places are left alone.
+inline std::vector<RowRun> moving_rows(const BlockSystem &system) {
+  std::vector<RowRun> runs;
+  for (std::size_t row = 0; row < system.num_owned; ++row) {
+    if (system.properties[row].keeps_its_velocity()) {
+      continue;
+    }
+    if (runs.empty() || runs.back().last < row) {
+      runs.push_back({row, row});
+    }
+    runs.back().last = row + 1;
+  }
+  return runs;
+}
+/// visit(row)
+template <class Visit> void for_rows(std::span<const RowRun> runs, Visit &&visit) {
+  for (const RowRun &run : runs) {
+    for (std::size_t row = run.first; row < run.last; ++row) {
+      visit(row);
+    }
+  }
+}
+/// visit(place) of all values of a field.
+template <class Visit> void for_places(std::span<const RowRun> runs, std::size_t width, Visit &&visit) {
+  for (const RowRun &run : runs) {
+    for (std::size_t place = run.first * width; place < run.last * width; ++place) {
+      visit(place);
+    }
+  }
+}
+
 /// Number of freedoms of a row.
 inline std::size_t num_freedoms(const BlockSystem &system, std::size_t row) {
   return system.is_deformable(row) ? 6 : 3;

@@ -28,40 +28,33 @@ void PseudoTime::lay(const BlockSystem &system, std::span<const Surroundings> ar
   width_ = any_deformable ? 6 : 3;
   BlockMatrices mass(system.num_owned, width_);
   BlockMatrices bolts(system.num_owned, width_);
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (!system.properties[row].keeps_its_velocity()) {
-      add_boundary(system, row, around[row], mass.of(row), width_);
-      add_bolts(system, row, around[row].bolts, bolts.of(row), width_);
-    }
-  }
-  solver_.lay(system, std::move(mass), std::move(bolts), std::move(border));
+  moving_ = moving_rows(system);
+  for_rows(moving_, [&](std::size_t row) {
+    add_boundary(system, row, around[row], mass.of(row), width_);
+    add_bolts(system, row, around[row].bolts, bolts.of(row), width_);
+  });
+  solver_.lay(system, moving_, std::move(mass), std::move(bolts), std::move(border));
   force_ = Field(system.num_rows(), width_);
   direction_ = Field(system.num_rows(), width_);
 }
 
 void PseudoTime::hold(BlockSystem &system) {
   const std::span<PseudoMotion> pseudo = pseudo_rows(system);
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
+  for_rows(moving_, [&](std::size_t row) {
     pseudo[row] = {};
-    if (!system.properties[row].keeps_its_velocity()) {
-      pseudo[row].held = unbalanced_forces(system, row);
-    }
-  }
+    pseudo[row].held = unbalanced_forces(system, row);
+  });
 }
 
 void PseudoTime::gather(const BlockSystem &system, double share) {
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
+  for_rows(moving_, [&](std::size_t row) {
     double *const to = force_.of(row);
-    if (system.properties[row].keeps_its_velocity()) {
-      std::fill_n(to, width_, 0.0);
-      continue;
-    }
     const std::array<double, 6> sum = unbalanced_forces(system, row);
     const std::array<double, 6> &held = system.pseudo[row].held;
     for (std::size_t i = 0; i < width_; ++i) {
       to[i] = sum[i] - (1.0 - share) * held[i];
     }
-  }
+  });
 }
 
 namespace {
@@ -91,9 +84,9 @@ double length_of_step(const BlockSystem &system, std::size_t row) {
 
 double PseudoTime::power(const BlockSystem &system) const {
   ExactSum sum;
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
+  for_rows(moving_, [&](std::size_t row) {
     sum.add(row_product(system.pseudo[row].velocity, force_.of(row), width_));
-  }
+  });
   communicator_.sum(sum.limbs());
   return sum.value();
 }
@@ -123,11 +116,11 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
 // Before there is an overlap the block's own boundary says what it would be.
 double PseudoTime::longest_step(double overlap, IterationState &state) const {
   double most = 0.0;
-  for (std::size_t row = 0; row < solver_.mass().num_rows(); ++row) {
+  for_rows(moving_, [&](std::size_t row) {
     const double *const f = force_.of(row);
     const double stiffness = solver_.mass().of(row)[0];
     most = stiffness > 0.0 ? std::max(most, norm(Vec2{f[0], f[1]}) / stiffness) : most;
-  }
+  });
   communicator_.max(std::span(&most, 1));
   state.longest = std::max({state.longest, overlap, most});
   return rules_.steps_of_overlap * state.longest;
@@ -136,7 +129,7 @@ double PseudoTime::longest_step(double overlap, IterationState &state) const {
 void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, IterationState &state) {
   ExactSum ahead;
   ExactSum momentum;
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
+  for_rows(moving_, [&](std::size_t row) {
     PseudoMotion &motion = system.pseudo[row];
     const double *const g = direction_.of(row);
     const double *const f = force_.of(row);
@@ -153,7 +146,7 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
     }
     ahead.add(row_product(motion.velocity, f, width_));
     momentum.add(row_product(motion.velocity, motion.momentum.data(), width_));
-  }
+  });
   communicator_.sum(ahead.limbs());
   communicator_.sum(momentum.limbs());
   state.power_before = ahead.value();
@@ -161,10 +154,7 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
 }
 
 void PseudoTime::move(BlockSystem &system) const {
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (system.properties[row].keeps_its_velocity()) {
-      continue;
-    }
+  for_rows(moving_, [&](std::size_t row) {
     const std::array<double, 6> &v = system.pseudo[row].velocity;
     TrialConfiguration trial{system.trial[row], {}};
     trial.motion.u += Vec2{v[0], v[1]};
@@ -183,7 +173,7 @@ void PseudoTime::move(BlockSystem &system) const {
     system.displacement[row] = trial.motion;
     system.velocity[row] = {};
     system.acceleration[row] = {};
-  }
+  });
 }
 
 } // namespace gcpdda::statics

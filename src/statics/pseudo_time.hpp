@@ -104,6 +104,7 @@ private:
   StiffnessSolver solver_;
   ContactSprings springs_;
   std::size_t width_ = 3;
+  std::vector<RowRun> moving_;
   Field force_;
   Field direction_;
 };

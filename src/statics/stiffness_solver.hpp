@@ -28,20 +28,21 @@ public:
       : communicator_(communicator), coarse_(communicator), border_(communicator) {}
 
   /// A neighbourhood that has been made anew. Collective.
+  /// @param moving  rows to solve for
   /// @param mass  D of owned rows
   /// @param bolts  of owned rows
-  void lay(const BlockSystem &system, BlockMatrices mass, BlockMatrices bolts,
+  void lay(const BlockSystem &system, std::vector<RowRun> moving, BlockMatrices mass, BlockMatrices bolts,
            std::vector<BorderRows> border);
   /// K of these springs, from here on. Collective.
   /// @param rho  of each owned row
   /// @param with_coarse  make the coarse matrix anew
   void set(const BlockSystem &system, const ContactSprings &springs, double rho, bool with_coarse);
 
-  /// Solve for owned rows. Collective.
+  /// Solve for moving rows. Collective.
   /// @return number of products with K
   std::int64_t solve(const BlockSystem &system, const ContactSprings &springs, const Field &force,
                      Field &solution);
-  /// y = (K + rho D) p for owned rows, with p of ghosts copied. Collective.
+  /// y = (K + rho D) p for moving rows, with p of ghosts copied. Collective.
   void multiply(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y);
 
   [[nodiscard]] const BlockMatrices &mass() const { return mass_; }
@@ -50,12 +51,11 @@ public:
 
 private:
   void precondition(const BlockSystem &system, const Field &r, Field &z);
-  [[nodiscard]] double product_of(const BlockSystem &system, const Field &a, const Field &b) const;
 
   Communicator communicator_;
   CoarseGrid coarse_;
   BorderExchange border_;
-  double rho_ = 0.0;
+  std::vector<RowRun> moving_;
   BlockMatrices mass_;
   BlockMatrices bolts_;
   BlockMatrices own_;     ///< rho D and own springs
@@ -66,8 +66,8 @@ private:
   Field q_;
 };
 
-/// Sum over owned rows of products of two fields. Collective.
-double exact_product(const Communicator &communicator, const BlockSystem &system, const Field &a,
+/// Sum over rows of products of two fields. Collective.
+double exact_product(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
                      const Field &b);
 
 } // namespace gcpdda::statics
