@@ -216,6 +216,7 @@ struct PseudoMotion {
   std::array<double, 6> velocity{}; ///< motion of the next step
   std::array<double, 6> momentum{};
   std::array<double, 6> held{}; ///< force that was out of balance when the stage began
+  double is_free = 0.0;         ///< 1: nothing touched it at the last evaluation
 
   friend bool operator==(const PseudoMotion &, const PseudoMotion &) = default;
 };

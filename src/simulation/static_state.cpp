@@ -12,7 +12,7 @@ namespace gcpdda {
 
 namespace {
 
-constexpr std::size_t reals_per_block = 18;
+constexpr std::size_t reals_per_block = 19;
 constexpr std::size_t counts_per_spring = 5;
 constexpr std::size_t reals_per_spring = 9;
 
@@ -38,6 +38,7 @@ template <class Motion, class Real> void visit_motion(Motion &motion, Real &&rea
       real(value);
     }
   }
+  real(motion.is_free);
 }
 
 } // namespace

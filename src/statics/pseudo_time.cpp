@@ -85,7 +85,9 @@ double length_of_step(const BlockSystem &system, std::size_t row) {
 double PseudoTime::power(const BlockSystem &system) const {
   ExactSum sum;
   for_rows(moving_, [&](std::size_t row) {
-    sum.add(row_product(system.pseudo[row].velocity, force_.of(row), width_));
+    if (stands_[row] == Standing::touched) {
+      sum.add(row_product(system.pseudo[row].velocity, force_.of(row), width_));
+    }
   });
   communicator_.sum(sum.limbs());
   return sum.value();
@@ -94,6 +96,7 @@ double PseudoTime::power(const BlockSystem &system) const {
 void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                              const ContactForces &contacts, double overlap, IterationState &state) {
   springs_.update(system, candidates, history, contacts, rules_.springs);
+  find_standing(system);
   gather(system, load_share(state.evaluations));
   const double power_behind = power(system);
   const double square =
@@ -111,6 +114,26 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   } else {
     advance(system, (2.0 - c) / (2.0 + c), 2.0 / (2.0 + c), limit, state);
   }
+}
+
+void PseudoTime::find_standing(BlockSystem &system) {
+  stands_.assign(system.num_rows(), Standing::free);
+  for (std::size_t k = 0; k < springs_.springs().size(); ++k) {
+    if (springs_.memories()[k].open_for == 0) {
+      stands_[springs_.springs()[k].lower] = Standing::touched;
+      stands_[springs_.springs()[k].higher] = Standing::touched;
+    }
+  }
+  for_rows(moving_, [&](std::size_t row) {
+    PseudoMotion &motion = system.pseudo[row];
+    const bool is_free = stands_[row] == Standing::free;
+    if (motion.is_free != 0.0 && !is_free) {
+      stands_[row] = Standing::lands;
+      motion.velocity = {};
+      motion.momentum = {};
+    }
+    motion.is_free = is_free ? 1.0 : 0.0;
+  });
 }
 
 // Before there is an overlap the block's own boundary says what it would be.
@@ -133,9 +156,10 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
     PseudoMotion &motion = system.pseudo[row];
     const double *const g = direction_.of(row);
     const double *const f = force_.of(row);
+    const double part = stands_[row] == Standing::lands ? 0.5 : b;
     for (std::size_t i = 0; i < width_; ++i) {
-      motion.velocity[i] = a * motion.velocity[i] + b * g[i];
-      motion.momentum[i] = a * motion.momentum[i] + b * f[i];
+      motion.velocity[i] = a * motion.velocity[i] + part * g[i];
+      motion.momentum[i] = a * motion.momentum[i] + part * f[i];
     }
     const double length = length_of_step(system, row);
     const double longest = std::min(limit, rules_.step_of_width * system.properties[row].width);
@@ -144,8 +168,10 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
       motion.velocity[i] *= share;
       motion.momentum[i] *= share;
     }
-    ahead.add(row_product(motion.velocity, f, width_));
-    momentum.add(row_product(motion.velocity, motion.momentum.data(), width_));
+    if (stands_[row] == Standing::touched) {
+      ahead.add(row_product(motion.velocity, f, width_));
+      momentum.add(row_product(motion.velocity, motion.momentum.data(), width_));
+    }
   });
   communicator_.sum(ahead.limbs());
   communicator_.sum(momentum.limbs());

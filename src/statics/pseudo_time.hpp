@@ -32,6 +32,10 @@
 // equilibrium under all of the load: after the share u of them
 //     s = (u + 3 u^2 - 2 u^3)/2.
 //
+// A block that nothing touches falls, under a force that does not change. It has no frequency, and in the sums
+// over v would say that nothing needs damping: they leave it out. Where it lands, it begins anew by itself,
+// with b = 1/2, and is left out once more, so that a pebble does not stop the pile.
+//
 // The step of a block is at most `steps_of_overlap` of the largest overlap, the length by which contacts
 // carry what they carry, and at most `step_of_width` of its narrowest width: a block that has lost its
 // contacts neither flies through its neighbours nor hits them deeper than a joint may close.
@@ -91,6 +95,14 @@ public:
   void move(BlockSystem &system) const;
 
 private:
+  /// What touches a row, as far as damping is concerned.
+  enum class Standing : std::uint8_t {
+    touched, ///< for two evaluations at least
+    lands,   ///< nothing did at the evaluation before
+    free
+  };
+  /// From the springs that are closed. Rows that land are stopped.
+  void find_standing(BlockSystem &system);
   /// Unbalanced forces when this share of the load acts.
   void gather(const BlockSystem &system, double share);
   /// v.f. Collective.
@@ -105,6 +117,7 @@ private:
   ContactSprings springs_;
   std::size_t width_ = 3;
   std::vector<RowRun> moving_;
+  std::vector<Standing> stands_; ///< by row
   Field force_;
   Field direction_;
 };

@@ -91,7 +91,8 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
       keep_open(system, old, rules);
     }
     const bool is_known = old < memories_.size() && !is_before(key, memories_[old]);
-    const SpringMemory &before = is_known ? memories_[old] : key;
+    const SpringMemory before = is_known ? memories_[old] : key;
+    const ContactSpring last = is_known ? springs_[old] : ContactSpring{};
     old += is_known ? 1 : 0;
     if (force.normal_undefined) {
       return;
@@ -102,6 +103,11 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
     ContactSpring spring = spring_of(system, pair, force, state, contacts.parameters().constants(law));
     if (state.state == ContactState::slip && memory.turned == 0) {
       spring.tangential *= rules.slip_share;
+    }
+    spring.normal_stiffness = std::max(spring.normal_stiffness, rules.fade * last.normal_stiffness);
+    spring.bending = std::max(spring.bending, rules.fade * last.bending);
+    if (before.open_for > 0) {
+      spring.tangential = std::max(spring.tangential, rules.fade * last.tangential);
     }
     next_springs_.push_back(spring);
     next_memories_.push_back(memory);

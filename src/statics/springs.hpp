@@ -21,7 +21,9 @@
 //   times what the first rule gives it, and would swing between its caps for ever. It keeps all of k_t for
 //   the next `turn_memory` evaluations.
 // - A region that opens keeps its springs, weaker by `fade` at each evaluation, for `open_memory` of them: a
-//   block that has lost its contact is braked by them, and speeds up only as fast as they fade.
+//   block that has lost its contact is braked by them, and speeds up only as fast as they fade. One that gets
+//   shorter, or closes again at a corner, is not weaker than that either: with the springs of a sliver alone
+//   its blocks would run into each other by the whole width of the joint.
 // A kept spring also ends when its blocks are farther apart than `reach`, which both ranks of a border pair
 // know from exact copies.
 //

@@ -46,7 +46,8 @@ struct Problem {
     for (std::size_t row = 0; row < bench.system.num_owned; ++row) {
       statics::add_boundary(bench.system, row, {k_n, 0.5 * k_n, {}}, mass.of(row), width);
     }
-    solver.lay(bench.system, std::move(mass), statics::BlockMatrices(bench.system.num_owned, width), {});
+    solver.lay(bench.system, statics::moving_rows(bench.system), std::move(mass),
+               statics::BlockMatrices(bench.system.num_owned, width), {});
     solver.set(bench.system, springs, rho, true);
   }
 
