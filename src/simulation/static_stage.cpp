@@ -1,14 +1,11 @@
 #include "simulation/static_stage.hpp"
 
 #include "base/check.hpp"
-#include "contact/block_sums.hpp"
-#include "contact/stiffness_bound.hpp"
 #include "dynamics/half_works.hpp"
-#include "dynamics/static_springs.hpp"
 #include "simulation/evaluation.hpp"
 #include "simulation/stage_runner.hpp"
+#include "simulation/static_evaluation.hpp"
 #include "simulation/step_report.hpp"
-#include "simulation/step_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,10 +17,6 @@
 namespace gcpdda {
 
 namespace {
-
-/// Share of the skin that blocks may use up before a refresh: pairs that are twice as far apart are still
-/// known, and with them the springs of contacts that have opened.
-constexpr double share_of_skin_kept = 0.25;
 
 /// When the loads of the stage at hand are complete, s; infinite where that is never.
 double end_of_loads(const RunState &run) {
@@ -70,33 +63,6 @@ void leave_statics(RunState &run, const std::string &reason) {
   run.notes.push_back({Severity::info, run.clock.stage().where,
                        fmt::format("stage '{}' goes on with solver = \"dynamic\"", run.clock.stage().name),
                        reason, "leave 'solver' out of the stage, or give it as \"dynamic\""});
-}
-
-void lay_statics(RunState &run) {
-  std::vector<statics::Surroundings> around;
-  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
-    const StiffnessBound stiffness = stiffness_bound(run.scene.joints, run.blocks.properties[row].material);
-    around.push_back(
-        {stiffness.normal, stiffness.tangential, run.bolts.springs_at(run.blocks.properties[row].id.value)});
-  }
-  const bool any_deformable = run.communicator.max(run.blocks.deformation.empty() ? 0.0 : 1.0) > 0.0;
-  std::vector<statics::BorderRows> border;
-  run.neighbours.ghosts.for_neighbours(
-      [&](int rank, const std::vector<std::uint32_t> &send, const std::vector<std::uint32_t> &receive) {
-        border.push_back({rank, send, receive});
-      });
-  run.statics->lay(run.blocks, around, any_deformable, std::move(border));
-}
-
-void evaluate_statically(RunState &run) {
-  run.loads.time = run.clock.time();
-  {
-    const auto scope = run.phases.measure(Phase::forces);
-    evaluate_all(run);
-  }
-  sum_forces(run);
-  StepRows(run).load_all();
-  take_own_springs(run.blocks);
 }
 
 // The damping of pseudo-time, and what holds the load back, take all that the forces do together. By the
@@ -168,37 +134,6 @@ void open_statics(RunState &run) {
   run.statics->hold(run.blocks);
   find_static_motion(run);
   book_static_work(run);
-}
-
-// Springs are known to both ranks of a border pair; the one that counts the pair sends them to the owners of
-// its blocks.
-void refresh_statics(RunState &run) {
-  std::vector<std::vector<statics::SpringRecord>> leaving(static_cast<std::size_t>(run.communicator.size()));
-  for (const statics::SpringRecord &record : run.statics->springs().records()) {
-    if (!counts_here(run.blocks, BlockIndex{record.spring.lower})) {
-      continue;
-    }
-    std::array<int, 2> owners{-1, -1};
-    const std::array<std::size_t, 2> rows{record.spring.lower, record.spring.higher};
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (!run.blocks.is_fixed(rows[k])) {
-        owners[k] =
-            run.neighbours.map.rank_of(run.blocks.properties[rows[k]].centroid + run.blocks.trial[rows[k]].u);
-      }
-    }
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (owners[k] >= 0 && (k == 0 || owners[1] != owners[0])) {
-        leaving[static_cast<std::size_t>(owners[k])].push_back(record);
-      }
-    }
-  }
-  std::vector<statics::SpringRecord> here;
-  refresh(run);
-  for (const auto &brought : run.communicator.all_to_all(std::move(leaving))) {
-    here.insert(here.end(), brought.begin(), brought.end());
-  }
-  run.statics->springs().take(run.blocks, std::move(here));
-  lay_statics(run);
 }
 
 // The dynamic solver has the last word on a trial that fails, so that statics never says so alone.
