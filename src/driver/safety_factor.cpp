@@ -5,11 +5,9 @@
 #include "driver/safety_search.hpp"
 #include "driver/stop_signal.hpp"
 #include "driver/svg.hpp"
+#include "driver/trial_frames.hpp"
 #include "gcpdda/driver/run.hpp"
-#include "geometry/polygon.hpp"
-#include "io/results/frame_reader.hpp"
 #include "limit_analysis/limit_analysis.hpp"
-#include "model/generators.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/simulation.hpp"
 
@@ -79,18 +77,6 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time,
     }
   }
   return facts;
-}
-
-/// The last frame of a run.
-FrameContent last_frame(const fs::path &directory) {
-  fs::path last;
-  for (const fs::directory_entry &entry : fs::directory_iterator(directory / "frames")) {
-    const fs::path &path = entry.path();
-    if (path.filename().string().starts_with("frame_") && path.extension() == ".hdf" && path > last) {
-      last = path;
-    }
-  }
-  return read_frame(last);
 }
 
 class SafetyFactor {
@@ -253,6 +239,7 @@ private:
 
   RunOutcome run_trial(double factor) {
     Scene weakened = weakened_scene(scene_, factor);
+    weakened.output.contacts = weakened.output.contacts || !options_.quiet; // the pictures show its joints
     weakened.resolved =
         fmt::format("# a trial of gcpdda fos: strengths as below divided by {:.17g}\n", factor) +
         scene_.resolved;
@@ -384,15 +371,14 @@ private:
       on_root(world_, [&] {
         SafetyPictures pictures;
         if (report_.fails) {
-          report_.mechanism = motions_in_trial(*report_.fails);
-          mark_moving(scene_.reduction.ignored_area, report_.mechanism);
-          pictures.mechanism = draw_mechanism(report_.mechanism, *report_.fails);
+          DrawnTrial trial = drawn_trial(*report_.fails, scene_.reduction.ignored_area);
+          pictures.mechanism = draw_mechanism(trial.blocks, trial.joints, *report_.fails);
+          report_.mechanism = std::move(trial.blocks);
         }
         if (report_.first_block && report_.first_block->fails) {
-          std::vector<FailingBlock> &blocks = report_.first_block->blocks;
-          blocks = motions_in_trial(*report_.first_block->fails);
-          mark_moving(0.0, blocks);
-          pictures.first_block = draw_mechanism(blocks, *report_.first_block->fails);
+          DrawnTrial trial = drawn_trial(*report_.first_block->fails, 0.0);
+          pictures.first_block = draw_mechanism(trial.blocks, trial.joints, *report_.first_block->fails);
+          report_.first_block->blocks = std::move(trial.blocks);
         }
         write_safety_report(options_.directory, report_, pictures);
         std::cout << to_text(report_) << std::flush;
@@ -400,55 +386,9 @@ private:
     }
   }
 
-  // Root alone. What each block has done since the trial began, by the frames of both runs.
-  [[nodiscard]] std::vector<FailingBlock> motions_in_trial(double factor) const {
-    std::vector<FailingBlock> blocks;
-    const FrameContent begin = last_frame(settled_directory());
-    const FrameContent end = last_frame(trial_directory(factor));
-    for (std::size_t row = 0; row < end.block.size(); ++row) {
-      const auto found = std::lower_bound(begin.block.begin(), begin.block.end(), end.block[row]);
-      const auto before = static_cast<std::size_t>(found - begin.block.begin());
-      FailingBlock block;
-      block.block = end.block[row];
-      block.name = block_name(scene_, block.block);
-      block.fixed = end.kind[row] == 0;
-      for (std::int64_t k = end.offsets[row]; k < end.offsets[row + 1]; ++k) {
-        const std::array<double, 3> &point = end.points[static_cast<std::size_t>(k)];
-        block.vertices.push_back({point[0], point[1]});
-      }
-      block.displacement = {end.displacement[row][0] - begin.displacement[before][0],
-                            end.displacement[row][1] - begin.displacement[before][1]};
-      block.rotation = end.rotation[row] - begin.rotation[before];
-      const Moments moments = polygon_moments(block.vertices);
-      const Vec2 centroid = moments.centroid;
-      block.area = moments.area;
-      double radius = 0.0;
-      for (const Vec2 vertex : block.vertices) {
-        radius = std::max(radius, norm(vertex - centroid));
-      }
-      block.motion = block.fixed ? 0.0 : norm(block.displacement) + radius * std::abs(block.rotation);
-      blocks.push_back(std::move(block));
-    }
-    return blocks;
-  }
-
-  /// Those that have moved at least a tenth as far as the block with which the area of the ones that have
-  /// moved farthest reaches `area`.
-  static void mark_moving(double area, std::vector<FailingBlock> &blocks) {
-    std::vector<FailingBlock *> by_motion;
-    for (FailingBlock &block : blocks) {
-      by_motion.push_back(&block);
-    }
-    std::stable_sort(by_motion.begin(), by_motion.end(),
-                     [](const FailingBlock *a, const FailingBlock *b) { return a->motion > b->motion; });
-    double sum = 0.0;
-    const auto reaches = [&](const FailingBlock *block) { return (sum += block->area) >= area; };
-    const auto first = std::find_if(by_motion.begin(), by_motion.end(), reaches);
-    std::for_each(by_motion.begin(), first, [](FailingBlock *block) { block->left_out = true; });
-    const double least = first == by_motion.end() ? 0.0 : 0.1 * (*first)->motion;
-    for (FailingBlock &block : blocks) {
-      block.moves = !block.fixed && block.motion >= least && block.motion > 0.0;
-    }
+  // Root alone, which reads the frames of both runs.
+  [[nodiscard]] DrawnTrial drawn_trial(double factor, double ignored_area) const {
+    return drawn_trial_of(scene_, settled_directory(), trial_directory(factor), ignored_area);
   }
 
   Communicator world_;

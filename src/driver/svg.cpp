@@ -49,6 +49,38 @@ std::string arrow(const PlanDrawing &page, const FailingBlock &block, double far
   return text;
 }
 
+constexpr const char *slip_colour = "#7a0fa8";
+constexpr const char *open_colour = "#0f8bd0";
+constexpr double joint_width = 3.0; // pixels
+
+/// One element a line; what is too short to be seen becomes a dot.
+std::string joint_lines(const PlanDrawing &page, const std::vector<FailingJoints::Line> &lines,
+                        const char *colour) {
+  std::string text;
+  for (const auto &[begin, end] : lines) {
+    Vec2 from{page.x(begin.x), page.y(begin.y)};
+    Vec2 to{page.x(end.x), page.y(end.y)};
+    if (norm(to - from) < joint_width) {
+      const Vec2 middle = 0.5 * (from + to);
+      from = middle - Vec2{0.5 * joint_width, 0.0};
+      to = middle + Vec2{0.5 * joint_width, 0.0};
+    }
+    text += svg_line(from.x, from.y, to.x, to.y, colour, joint_width);
+  }
+  return text;
+}
+
+/// A sample of each kind of line with its meaning, in a line below the axes.
+std::string legend_of_joints(const PlanDrawing &page, int line, const FailingJoints &joints) {
+  std::string text = page.sample_below(line, PlanDrawing::left, slip_colour, joint_width) +
+                     page.text_below(line, PlanDrawing::left + 44.0, "joint that slips");
+  constexpr double second = PlanDrawing::left + 210.0;
+  return text + (joints.knows_opened
+                     ? page.sample_below(line, second, open_colour, joint_width) +
+                           page.text_below(line, second + 44.0, "joint that has opened")
+                     : page.text_below(line, second, "(opened ones: with output.contacts = true)"));
+}
+
 template <class Block> Aabb region_of(const std::vector<Block> &blocks) {
   Aabb region;
   for (const Block &block : blocks) {
@@ -76,12 +108,13 @@ std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains) 
   return text + PlanDrawing::end();
 }
 
-std::string draw_mechanism(const std::vector<FailingBlock> &blocks, double factor) {
+std::string draw_mechanism(const std::vector<FailingBlock> &blocks, const FailingJoints &joints,
+                           double factor) {
   double farthest = 0.0;
   for (const FailingBlock &block : blocks) {
     farthest = std::max(farthest, block.left_out ? 0.0 : block.motion);
   }
-  const PlanDrawing page(region_of(blocks), 1200.0, 2);
+  const PlanDrawing page(region_of(blocks), 1200.0, 3);
   const double outline = outline_of(page, blocks.size());
   const auto colour = [](double share) {
     return fmt::format("hsl({:.0f},85%,{:.0f}%)", 50.0 - 50.0 * share, 97.0 - 45.0 * share);
@@ -92,6 +125,7 @@ std::string draw_mechanism(const std::vector<FailingBlock> &blocks, double facto
     text +=
         page.polygon(block.vertices, block.fixed ? std::string(fixed_colour) : colour(share), ink, outline);
   }
+  text += joint_lines(page, joints.opened, open_colour) + joint_lines(page, joints.slipping, slip_colour);
   for (const FailingBlock &block : blocks) {
     if (block.moves && !block.left_out) {
       text += arrow(page, block, farthest);
@@ -99,8 +133,8 @@ std::string draw_mechanism(const std::vector<FailingBlock> &blocks, double facto
   }
   const std::string words =
       fmt::format("at factor {:.5g}: motion since the strengths were lowered; grey: fixed", factor);
-  return text + page.axes() + page.colour_bar(0, farthest, "m", colour) +
-         page.text_below(1, PlanDrawing::left, words) + PlanDrawing::end();
+  return text + page.axes() + page.colour_bar(0, farthest, "motion (m)", colour) + legend_of_joints(page, 1, joints) +
+         page.text_below(2, PlanDrawing::left, words) + PlanDrawing::end();
 }
 
 } // namespace gcpdda

@@ -5,6 +5,7 @@
 #include "gcpdda/geometry/vec2.hpp"
 #include "io/results/safety_report.hpp"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,18 @@ struct DrawnBlock {
 /// Picture of blocks coloured by subdomain, with axes: fixed ones grey, deformable ones with a thick outline.
 std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains);
 
+/// Joints of the picture of a failure, each a line from end to end, m.
+struct FailingJoints {
+  using Line = std::array<Vec2, 2>;
+  std::vector<Line> slipping;
+  std::vector<Line> opened;  ///< two lines for a joint, on the edges of its two blocks
+  bool knows_opened = false; ///< false where nothing says which joints were closed before
+};
+
 /// Picture of how the blocks fail at a factor, with axes and a colour bar: white to red with the motion,
 /// fixed ones grey, arrows in the direction of those that move. The scale is that of what counts as the
-/// mechanism.
-std::string draw_mechanism(const std::vector<FailingBlock> &blocks, double factor);
+/// mechanism. Joints that slip or have opened are drawn over the blocks and explained in a legend.
+std::string draw_mechanism(const std::vector<FailingBlock> &blocks, const FailingJoints &joints,
+                           double factor);
 
 } // namespace gcpdda

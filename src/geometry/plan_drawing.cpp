@@ -88,6 +88,12 @@ std::string PlanDrawing::text_below(int line, double at, const std::string &word
   return svg_text(at, line_at(line), "start", letters, words, colour);
 }
 
+std::string PlanDrawing::sample_below(int line, double at, const std::string &colour, double width) const {
+  constexpr double length = 32.0; // pixels
+  const double height = line_at(line) - 0.35 * letters;
+  return svg_line(at, height, at + length, height, colour, width);
+}
+
 std::pair<double, double> PlanDrawing::bar_ends() const {
   constexpr double longest = 480.0;
   const double begin = x(region_.low.x);

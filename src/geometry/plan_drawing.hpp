@@ -31,6 +31,8 @@ public:
   /// Text in a line below the axes, the first of which is 0, from a place in pixels on.
   [[nodiscard]] std::string text_below(int line, double at, const std::string &words,
                                        const std::string &colour = "black") const;
+  /// A short line that stands for all lines of its colour, before text in a line below the axes.
+  [[nodiscard]] std::string sample_below(int line, double at, const std::string &colour, double width) const;
   /// A bar from `colour(0)` to `colour(1)` in a line below the axes, with ticks from 0 to `most`.
   template <class Colour>
   [[nodiscard]] std::string colour_bar(int line, double most, const std::string &unit,

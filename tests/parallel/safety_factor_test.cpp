@@ -13,6 +13,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Blocks, joints that slip or have opened, and legend.
+void expect_same_picture(const fs::path &one, const fs::path &other) {
+  const std::string picture = testing::file_text(one / "fos.svg");
+  EXPECT_EQ(picture, testing::file_text(other / "fos.svg"));
+  constexpr int of_legend = 1;
+  EXPECT_GT(testing::count_of(picture, "#7a0fa8"), of_legend) << "a joint slips";
+}
+
 TEST(SafetyFactor, IsTheSameOnAnyNumberOfRanks) {
   const Communicator world = Communicator::world();
   const testing::SharedFolder folder(world);
@@ -32,6 +40,7 @@ TEST(SafetyFactor, IsTheSameOnAnyNumberOfRanks) {
   for (const char *key : {"factor", "holds", "fails", "undecided", "moving"}) {
     EXPECT_EQ(value("together", key), value("alone", key)) << key;
   }
+  expect_same_picture(folder.path("together"), folder.path("alone"));
   EXPECT_NEAR(std::stod(value("alone", "factor")), testing::plane_failure_factor(0.5), 0.05);
   const int together =
       testing::count_of(testing::file_text(folder.path("together") / "fos.json"), "\"ranks\"");
@@ -64,6 +73,7 @@ TEST(SafetyFactor, IsTheSameWhenRanksShareATrial) {
               testing::json_value(folder.path("alone") / "fos.json", key))
         << key;
   }
+  expect_same_picture(folder.path("shared"), folder.path("alone"));
   EXPECT_EQ(testing::json_value(folder.path("shared") / "fos.json", "ranks"), std::to_string(world.size()));
 }
 

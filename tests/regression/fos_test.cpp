@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
+#include <regex>
 
 namespace gcpdda::fos_test {
 namespace {
@@ -19,6 +21,36 @@ using testing::lines_of;
 using testing::Outcome;
 using testing::run_gcpdda;
 using testing::WorkFolder;
+
+/// The numbers of the first element of a picture that a pattern finds.
+std::vector<double> numbers_of(const std::string &picture, const std::string &pattern) {
+  std::smatch element;
+  std::vector<double> numbers;
+  if (std::regex_search(picture, element, std::regex(pattern))) {
+    const std::string text = element[1];
+    const std::regex number("-?[0-9.]+");
+    for (std::sregex_iterator at(text.begin(), text.end(), number); at != std::sregex_iterator(); ++at) {
+      numbers.push_back(std::stod(at->str()));
+    }
+  }
+  return numbers;
+}
+
+// The slider is the second block. Its joint is its lower edge, and is drawn before the legend.
+void expect_sliding_joint(const std::string &picture) {
+  const std::vector<double> slider =
+      numbers_of(picture, "<polygon[^>]*points=\"[^\"]*\"/>\n<polygon[^>]*points=\"([^\"]*)\"");
+  const std::vector<double> joint = numbers_of(picture, "<path stroke=\"#7a0fa8\"[^>]*d=\"M([^\"]*)\"");
+  ASSERT_EQ(slider.size(), 8U);
+  ASSERT_EQ(joint.size(), 4U);
+  const double lower = std::max(slider[1], slider[5]); // y goes down the page
+  const auto [left, right] = std::minmax(slider[0], slider[4]);
+  const auto [begin, end] = std::minmax(joint[0], joint[2]);
+  EXPECT_NEAR(joint[1], lower, 1.0);
+  EXPECT_NEAR(joint[3], lower, 1.0);
+  EXPECT_NEAR(begin, left, 1.0);
+  EXPECT_NEAR(end, right, 1.0);
+}
 
 TEST(Fos, WritesWhatItFinds) {
   const WorkFolder folder;
@@ -38,7 +70,7 @@ TEST(Fos, WritesWhatItFinds) {
   const std::vector<std::string> trials = lines_of(file_text(results / "fos_trials.csv"));
   EXPECT_GE(trials.size(), 4U) << "a header, both ends and what lies between";
   EXPECT_EQ(json_value(results / "fos.json", "block"), "\"slider\"") << "the block that moves";
-  EXPECT_NE(file_text(results / "fos.svg").find("<polygon"), std::string::npos);
+  expect_sliding_joint(file_text(results / "fos.svg"));
   EXPECT_TRUE(fs::exists(results / "settled/checkpoints"));
   EXPECT_TRUE(fs::exists(results / "trials/F2.5/frames/frame_000000.hdf"));
 

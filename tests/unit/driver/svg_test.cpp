@@ -133,7 +133,7 @@ std::vector<FailingBlock> sliding(double motion) {
 }
 
 TEST(Pictures, AMechanismHasAColourBarFromZeroToTheLargestMotion) {
-  const std::string svg = draw_mechanism(sliding(0.35), failing_factor);
+  const std::string svg = draw_mechanism(sliding(0.35), {}, failing_factor);
   expect_axes_tell_where(svg, shapes);
   const std::vector<Text> texts = texts_of(svg);
   const double end = end_of_axes(texts);
@@ -154,13 +154,57 @@ TEST(Pictures, AMechanismHasAColourBarFromZeroToTheLargestMotion) {
     }
   }
   EXPECT_GE(ticks, 3);
-  EXPECT_EQ(std::count_if(texts.begin(), texts.end(), [](const Text &t) { return t.words == "m"; }), 1);
+  EXPECT_EQ(std::count_if(texts.begin(), texts.end(), [](const Text &t) { return t.words == "motion (m)"; }), 1);
 }
 
 TEST(Pictures, AMechanismWithoutMotionIsDrawnToo) {
-  const std::string svg = draw_mechanism(sliding(0.0), failing_factor);
+  const std::string svg = draw_mechanism(sliding(0.0), {}, failing_factor);
   expect_axes_tell_where(svg, shapes);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+/// Lines of a colour that lie within the axes, in metres.
+std::vector<FailingJoints::Line> lines_of(const std::string &svg, const std::string &colour) {
+  const std::vector<Text> texts = texts_of(svg);
+  const double end = end_of_axes(texts);
+  const Axis along = axis_of(texts, false, end);
+  const Axis up = axis_of(texts, true, end);
+  std::vector<FailingJoints::Line> found;
+  const std::regex line("<path stroke=\"" + colour +
+                        "\"[^>]*d=\"M([-0-9.]+) ([-0-9.]+)L([-0-9.]+) ([-0-9.]+)\"");
+  for (std::sregex_iterator at(svg.begin(), svg.end(), line); at != std::sregex_iterator(); ++at) {
+    if (std::stod((*at)[2]) < end) {
+      found.push_back({Vec2{along.at(std::stod((*at)[1])), up.at(std::stod((*at)[2]))},
+                       Vec2{along.at(std::stod((*at)[3])), up.at(std::stod((*at)[4]))}});
+    }
+  }
+  return found;
+}
+
+TEST(Pictures, AMechanismShowsWhereItsJointsSlipAndHaveOpened) {
+  FailingJoints joints;
+  joints.slipping = {{Vec2{0.5, 101.0}, Vec2{1.5, 101.0}}};
+  joints.opened = {{Vec2{-1.0, 100.5}, Vec2{-1.0, 101.0}}, {Vec2{-0.5, 100.5}, Vec2{-0.5, 101.0}}};
+  joints.knows_opened = true;
+  const std::string svg = draw_mechanism(sliding(0.35), joints, failing_factor);
+  const auto expect_lines = [&](const std::string &colour, const std::vector<FailingJoints::Line> &wanted) {
+    const std::vector<FailingJoints::Line> drawn = lines_of(svg, colour);
+    ASSERT_EQ(drawn.size(), wanted.size()) << colour;
+    for (std::size_t k = 0; k < drawn.size(); ++k) {
+      for (std::size_t end = 0; end < 2; ++end) {
+        EXPECT_LT(norm(drawn[k][end] - wanted[k][end]), 0.05) << "a pixel is 17 mm";
+      }
+    }
+  };
+  expect_lines("#7a0fa8", joints.slipping);
+  expect_lines("#0f8bd0", joints.opened);
+  EXPECT_NE(svg.find(">joint that slips<"), std::string::npos);
+  EXPECT_NE(svg.find(">joint that has opened<"), std::string::npos);
+  joints.opened.clear();
+  joints.knows_opened = false;
+  EXPECT_NE(draw_mechanism(sliding(0.35), joints, failing_factor).find("output.contacts = true"),
+            std::string::npos)
+      << "a picture without opened joints says why";
 }
 
 TEST(Pictures, AHistogramCountsItsMembers) {
