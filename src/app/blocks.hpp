@@ -2,6 +2,7 @@
 
 // The program `gcpdda blocks`: cut the region of a scene and tell of its blocks.
 
+#include "gcpdda/driver/run.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
@@ -20,6 +21,9 @@ struct BlocksOptions {
 /// happens. Collective.
 /// @throws SceneError, FileError
 void prepare_region(const Communicator &world, Scene &scene);
+
+/// What summary.json and run.log tell of the joint sets of a prepared scene; on the root only.
+void tell_joint_sets(const Communicator &world, const Scene &scene, RunOptions &options);
 
 /// Lines of a report on what the joint sets of the region ask and draw; empty without joint sets.
 std::string words_on_joint_sets(const Scene &scene);

@@ -137,6 +137,7 @@ ExitCode run(const Communicator &world, const Arguments &arguments) {
     RunOptions options;
     options.directory = result_folder(arguments, scene.stem);
     options.overwrite = arguments.overwrite;
+    tell_joint_sets(world, scene, options);
     return run_scene(world, scene, options);
   });
 }
@@ -150,9 +151,10 @@ ExitCode restart(const Communicator &world, Arguments arguments) {
   const SceneReading before = read_scene(read_scene_on_root(world, arguments.scene), arguments.scene, {});
   return with_scene(world, has_errors(before.diagnostics) ? unchanged : arguments, [&](const Scene &after) {
     judge_before_work(world, arguments, after);
-    return restart_scene(world, before.scene, after, arguments.directory,
-                         arguments.accepts_gaps ? EarlierResults::may_have_gaps
-                                                : EarlierResults::must_be_whole);
+    RunOptions options;
+    options.earlier = arguments.accepts_gaps ? EarlierResults::may_have_gaps : EarlierResults::must_be_whole;
+    tell_joint_sets(world, after, options);
+    return restart_scene(world, before.scene, after, arguments.directory, options);
   });
 }
 

@@ -6,6 +6,7 @@
 #include "geometry/common_area.hpp"
 #include "geometry/holds_point.hpp"
 #include "geometry/polygon.hpp"
+#include "model/joint_plane.hpp"
 
 #include <fmt/format.h>
 
@@ -18,25 +19,26 @@ namespace gcpdda::blockgen {
 namespace {
 
 constexpr double most_joints = 1e6;
+constexpr double least_scatter = 1e-9; // rad, rounding of parallel traces
 constexpr double degrees = 180.0 / std::numbers::pi;
 
-/// An angle of undirected lines, within a quarter turn of another one.
-double near_angle(double angle, double mean) {
-  return mean + std::remainder(angle - mean, std::numbers::pi);
+/// An angle of undirected lines against another one, a quarter turn at most.
+double off_angle(double angle, double mean) {
+  return std::remainder(angle - mean, std::numbers::pi);
 }
 
-/// A set is named by its label, joint_set 'NAME'.
-std::string bare_name(const JointSet &set) {
-  std::string name;
-  bool is_inside = false;
-  for (const char c : set.name) {
-    if (c == '\'') {
-      is_inside = !is_inside;
-    } else if (is_inside) {
-      name += c;
-    }
+/// Standard deviation of the angle of traces that a set asks, rad. Poles that scatter by Fisher's constant k
+/// do so by 1/sqrt(k) in each of two directions, of which the section sees one, enlarged by the pole's share
+/// in it.
+double asked_scatter(const JointSet &set) {
+  if (set.plane) {
+    return set.plane->fisher > 0.0
+               ? 1.0 / (share_in_section(pole_of(*set.plane)) * std::sqrt(set.plane->fisher))
+               : 0.0;
   }
-  return name.empty() ? set.name : name;
+  return set.dip.spread == Spread::normal   ? set.dip.width
+         : set.dip.spread == Spread::fisher ? 1.0 / std::sqrt(set.dip.width)
+                                            : 0.0;
 }
 
 class Measurement {
@@ -50,7 +52,8 @@ public:
     measure_lines(drawn.offsets, result);
     double length = 0.0;
     double lengths = 0.0;
-    double angles = 0.0;
+    double angles = 0.0; // off the mean that is asked
+    double squares = 0.0;
     for (const Trace &joint : drawn.joints) {
       const double part = length_inside(joint);
       if (!(part > 0.0)) {
@@ -59,14 +62,19 @@ public:
       ++result.joints;
       length += part;
       const Vec2 along = joint.to - joint.from;
-      angles += near_angle(std::atan2(along.y, along.x), set_->dip.mean);
+      const double off = off_angle(std::atan2(along.y, along.x), set_->dip.mean);
+      angles += off;
+      squares += off * off;
       if (!set_->through_going && holds(0.5 * (joint.from + joint.to))) {
         ++result.lengths;
         lengths += norm(along);
       }
     }
     if (result.joints > 0) {
-      result.drawn.angle = angles / static_cast<double>(result.joints);
+      const double mean = angles / static_cast<double>(result.joints);
+      result.drawn.angle = set_->dip.mean + mean;
+      result.drawn.scatter =
+          std::sqrt(std::max(0.0, squares / static_cast<double>(result.joints) - mean * mean));
     }
     if (result.lengths > 0) {
       result.drawn.trace_length = lengths / static_cast<double>(result.lengths);
@@ -136,19 +144,37 @@ std::string words_on_plane(const JointSet &set, double azimuth) {
 
 std::string words_on(const SetMeasures &measures) {
   return fmt::format(
-      "spacing {}, P21 {:.4g} m/m2{}, traces at {:.4g} degrees",
+      "spacing {}, P21 {:.4g} m/m2{}, traces at {:.4g} degrees{}",
       measures.spacing > 0.0 ? fmt::format("{:.4g} m", measures.spacing) : "unknown", measures.intensity,
       measures.trace_length > 0.0 ? fmt::format(", mean trace length {:.4g} m", measures.trace_length) : "",
-      measures.angle * degrees);
+      measures.angle * degrees,
+      measures.scatter > least_scatter ? fmt::format(" with a scatter of {:.3g}", measures.scatter * degrees)
+                                       : "");
 }
 
 std::string json_of(const SetMeasures &measures) {
   return fmt::format(
-      "{{\"spacing\": {:.17g}, \"p21\": {:.17g}, \"trace_length\": {:.17g}, \"trace_angle_deg\": {:.17g}}}",
-      measures.spacing, measures.intensity, measures.trace_length, measures.angle * degrees);
+      "{{\"spacing\": {:.17g}, \"p21\": {:.17g}, \"trace_length\": {:.17g}, \"trace_angle_deg\": {:.17g}, "
+      "\"scatter_deg\": {:.17g}}}",
+      measures.spacing, measures.intensity, measures.trace_length, measures.angle * degrees,
+      measures.scatter * degrees);
 }
 
 } // namespace
+
+/// A set is named by its label, joint_set 'NAME'.
+std::string bare_name(const JointSet &set) {
+  std::string name;
+  bool is_inside = false;
+  for (const char c : set.name) {
+    if (c == '\'') {
+      is_inside = !is_inside;
+    } else if (is_inside) {
+      name += c;
+    }
+  }
+  return name.empty() ? set.name : name;
+}
 
 std::vector<SetStatistics> set_statistics(const RockRegion &region) {
   std::vector<SetStatistics> all;
@@ -156,7 +182,7 @@ std::vector<SetStatistics> set_statistics(const RockRegion &region) {
     const JointSet &set = region.joint_sets[i];
     SetStatistics &one = all.emplace_back();
     one.asked = {set.spacing.mean, set.persistence() / set.spacing.mean,
-                 set.through_going ? 0.0 : set.trace.mean, set.dip.mean};
+                 set.through_going ? 0.0 : set.trace.mean, set.dip.mean, asked_scatter(set)};
     if (expected_traces(set, region) <= most_joints) {
       Measurement(region, set).measure(drawn_set(region, i), one);
     }

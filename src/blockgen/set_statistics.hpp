@@ -16,6 +16,7 @@ struct SetMeasures {
   double intensity = 0.0;    ///< P21: length of joint per area, m/m2
   double trace_length = 0.0; ///< mean, m; through-going joints have none
   double angle = 0.0;        ///< mean angle of the traces against the x axis, rad
+  double scatter = 0.0;      ///< standard deviation of this angle, rad
 };
 
 struct SetStatistics {
@@ -29,6 +30,9 @@ struct SetStatistics {
 
 /// One element a set. Sets of more than a million joints are not drawn for this.
 std::vector<SetStatistics> set_statistics(const RockRegion &region);
+
+/// Name of a set without what labels it in messages.
+std::string bare_name(const JointSet &set);
 
 /// The lines of a report, one string a line, empty where the region has no joint sets.
 std::vector<std::string> words_on_sets(const RockRegion &region,

@@ -166,7 +166,7 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
 }
 
 ExitCode restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
-                       const std::filesystem::path &directory, EarlierResults earlier) {
+                       const std::filesystem::path &directory, RunOptions run) {
   if (const Diagnostics faults = unfit_changes(before, after); !faults.empty()) {
     throw SceneError(faults);
   }
@@ -176,11 +176,9 @@ ExitCode restart_scene(const Communicator &communicator, const Scene &before, co
     }
     return exit_code::done;
   }
-  RunOptions run;
   run.directory = directory;
   run.restart = true;
   run.computed_with = &before;
-  run.earlier = earlier;
   return run_scene(communicator, after, run);
 }
 

@@ -3,7 +3,7 @@
 // The program `gcpdda restart`: a run goes on from its newest checkpoint.
 
 #include "gcpdda/base/exit_code.hpp"
-#include "gcpdda/io/result_manifest.hpp"
+#include "gcpdda/driver/run.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 
@@ -19,11 +19,11 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after);
 ///
 /// @param before  the scene of the folder
 /// @param after   the scene to go on with
-/// @param earlier  what holds for histories and frames from before the checkpoint
+/// @param run     what summary.json and run.log are to tell of joint sets, and what holds for histories and
+///                frames from before the checkpoint; the rest of it is not looked at
 /// @return done (by this call or before), numerical_failure, or stopped (by the signal)
 /// @throws SceneError, FileError
 ExitCode restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
-                       const std::filesystem::path &directory,
-                       EarlierResults earlier = EarlierResults::must_be_whole);
+                       const std::filesystem::path &directory, RunOptions run = {});
 
 } // namespace gcpdda

@@ -56,7 +56,7 @@ public:
   /// @param lock  of the folder, if there is one yet
   SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
       : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
-        is_once_(options.once), bolts_at_start_(scene.bolts),
+        is_once_(options.once), options_(options), bolts_at_start_(scene.bolts),
         simulation_(communicator, scene, beginning_of(options)) {
     if (!options.restart) {
       begin_results(scene, options);
@@ -216,6 +216,9 @@ private:
         bound.time_step, bound.safety, bound.limit, bound.omega_max));
     for (const JointLaw &law : scene.joints.laws) {
       log_->line(words_on_law(law));
+    }
+    for (const std::string &words : options_.words_on_joint_sets) {
+      log_->line(words);
     }
     report_fidelity(scene.run);
     tell_of_bolts();
@@ -422,6 +425,7 @@ private:
     take_facts(communicator_, simulation_, first_step_, summary);
     summary.version = program_version();
     summary.command = command_line();
+    summary.joint_sets = options_.joint_sets;
     summary.contacts = contacts_at_end_;
     summary.energy = energy_;
     const std::vector<BoltLoad> loads = histories_ ? histories_->bolt_loads() : std::vector<BoltLoad>();
@@ -439,6 +443,7 @@ private:
   std::filesystem::path directory_;
   bool is_bare_;
   bool is_once_;
+  const RunOptions &options_;
   std::vector<Bolt> bolts_at_start_;
   Simulation simulation_;
   std::optional<HistoryWriter> histories_;

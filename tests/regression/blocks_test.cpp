@@ -9,8 +9,10 @@
 namespace gcpdda::blocks_test {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::count_of;
 using testing::file_text;
+using testing::json_value;
 using testing::listing;
 using testing::Outcome;
 using testing::run_gcpdda;
@@ -99,6 +101,15 @@ TEST_F(Blocks, RunAndGoOnTheSameOnAnyNumberOfRanks) {
   const Outcome three = run_gcpdda(3, {"run", "scene.toml", "--out", "three"}, folder_);
   EXPECT_EQ(three.exit_code, 0) << three.err;
   EXPECT_EQ(compare_runs(folder_ / "one", folder_ / "three"), std::vector<std::string>());
+  // The joints that are in the run are those that gcpdda blocks reports.
+  run_gcpdda(0, {"blocks", "scene.toml", "--json", "blocks.json"}, folder_);
+  for (const char *run : {"one", "three"}) {
+    const fs::path summary = folder_ / run / "summary.json";
+    EXPECT_EQ(count_of(file_text(summary), "\"name\": \"joint_set"), 2);
+    EXPECT_EQ(std::stod(json_value(summary, "p21")), std::stod(json_value(folder_ / "blocks.json", "p21")));
+    EXPECT_EQ(json_value(summary, "joints"), json_value(folder_ / "blocks.json", "joints"));
+    EXPECT_EQ(count_of(file_text(folder_ / run / "run.log"), "joint set 'joint_set1' has  spacing 1 m"), 1);
+  }
   EXPECT_GT(file_text(folder_ / "one/history/b5.csv").size(), 100U);
   EXPECT_EQ(count_of(file_text(folder_ / "one/history/line.csv"), "\n"), 1 + 3 * 7); // t = 0, 0.01, 0.02
   // From half way, on other ranks, in another folder than that of the joint map.
@@ -108,6 +119,8 @@ TEST_F(Blocks, RunAndGoOnTheSameOnAnyNumberOfRanks) {
   const Outcome rest = run_gcpdda(2, {"restart", "half", "--set", "run.duration=0.02"}, folder_);
   EXPECT_EQ(rest.exit_code, 0) << rest.err;
   EXPECT_EQ(compare_runs(folder_ / "one", folder_ / "half"), std::vector<std::string>());
+  EXPECT_EQ(json_value(folder_ / "half/summary.json", "joint_sets"),
+            json_value(folder_ / "one/summary.json", "joint_sets"));
 }
 
 // The same blocks with the same families, from the file instead of the region: the same motion.

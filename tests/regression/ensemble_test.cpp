@@ -34,6 +34,10 @@ TEST(Ensemble, WritesWhatItFinds) {
   EXPECT_EQ(rows[0], "member,outcome,holds,fails,steps,cpu[s],joint.default.friction_angle_deg,"
                      "joint.default.cohesion,message");
   EXPECT_EQ(json_value(results / "ensemble.json", "done"), "5");
+  EXPECT_FALSE(json_value(results / "ensemble.json", "version").empty());
+  EXPECT_TRUE(
+      json_value(results / "ensemble.json", "command").ends_with("gcpdda ensemble plane.toml --count 5\""))
+      << json_value(results / "ensemble.json", "command");
   EXPECT_FALSE(fs::exists(results / "ensemble.svg")) << "verdicts have no histogram";
 
   const Outcome kept = run_gcpdda(

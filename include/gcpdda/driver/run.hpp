@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace gcpdda {
 
@@ -27,6 +28,8 @@ struct RunOptions {
   /// The scene that the state to begin with was computed with; null: that of the run.
   const Scene *computed_with = nullptr;
   EarlierResults earlier = EarlierResults::must_be_whole; ///< of the run that a restart goes on with
+  std::vector<JointSetSummary> joint_sets = {};           ///< of the region, for summary.json; of the root
+  std::vector<std::string> words_on_joint_sets = {};      ///< the same for run.log, one string a line
   std::string progress_of = {}; ///< what lines of progress of a quiet run begin with; empty for no such lines
   /// What else the root has to make or to remove once the scene is accepted, before the run writes anything.
   std::function<void()> prepare = {};

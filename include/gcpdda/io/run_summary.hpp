@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,6 +57,24 @@ struct BoltLoad {
   std::string support;
 };
 
+/// Measures of a joint set in the region, or in the part of it that the set is for. Zero: none to measure.
+struct JointSetMeasures {
+  double spacing = 0.0;      ///< between neighbouring lines, in the section, m
+  double intensity = 0.0;    ///< P21: length of joint per area, m/m2
+  double trace_length = 0.0; ///< mean, m; through-going joints have none
+  double angle = 0.0;        ///< mean angle of the traces against the x axis, rad
+  double scatter = 0.0;      ///< standard deviation of this angle, rad
+};
+
+/// What a joint set of the region asks and what it has drawn.
+struct JointSetSummary {
+  std::string name;
+  JointSetMeasures asked;
+  std::optional<JointSetMeasures> drawn; ///< none where a set has too many joints to measure
+  std::int64_t joints = 0;               ///< with a part in the region
+  std::int64_t lines = 0;                ///< lines of joints that cross the region
+};
+
 /// Everything summary.json holds.
 struct RunSummary {
   std::string version; ///< of the program that has written the last part of the run
@@ -96,6 +115,7 @@ struct RunSummary {
     std::string verdict;
     StageResult result;
   };
+  std::vector<JointSetSummary> joint_sets;
   std::vector<BoltLoad> bolts;   ///< those that have been in place
   std::vector<StageLine> stages; ///< those that have begun; none in a scene without stages
   std::string verdict;

@@ -1,6 +1,7 @@
 #include "io/results/ensemble_report.hpp"
 
 #include "base/check.hpp"
+#include "base/program_facts.hpp"
 #include "io/hdf5/durable_file.hpp"
 #include "io/hdf5/numbered_name.hpp"
 #include "io/results/json.hpp"
@@ -117,6 +118,8 @@ std::string json_of(const EnsembleReport &report, const EnsembleStatistics &foun
              .add("skewness", has_factor ? factor.skewness : none)
              .add("least", has_factor ? factor.least : none)
              .add("most", has_factor ? factor.most : none)
+             .add("version", program_version())
+             .add("command", command_line())
              .text() +
          "\n";
 }

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
 namespace gcpdda {
 
 namespace {
@@ -65,6 +67,28 @@ std::vector<JsonObject> bolt_objects(const std::vector<BoltLoad> &loads) {
   return objects;
 }
 
+JsonObject measures_object(const JointSetMeasures &measures) {
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  return JsonObject()
+      .add("spacing", measures.spacing)
+      .add("p21", measures.intensity)
+      .add("trace_length", measures.trace_length)
+      .add("trace_angle_deg", measures.angle * degrees)
+      .add("scatter_deg", measures.scatter * degrees);
+}
+
+std::vector<JsonObject> joint_set_objects(const std::vector<JointSetSummary> &sets) {
+  std::vector<JsonObject> objects;
+  for (const JointSetSummary &set : sets) {
+    JsonObject &object = objects.emplace_back();
+    object.add("name", set.name).add("asked", measures_object(set.asked));
+    if (set.drawn) {
+      object.add("drawn", measures_object(*set.drawn)).add("joints", set.joints).add("lines", set.lines);
+    }
+  }
+  return objects;
+}
+
 } // namespace
 
 void write_summary(const std::filesystem::path &directory, const RunSummary &summary) {
@@ -111,6 +135,9 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
       .add("counters", counters)
       .add("verdict", summary.verdict)
       .add("message", summary.message);
+  if (!summary.joint_sets.empty()) {
+    object.add("joint_sets", joint_set_objects(summary.joint_sets));
+  }
   if (!summary.bolts.empty()) {
     object.add("bolts", bolt_objects(summary.bolts));
   }

@@ -59,6 +59,7 @@ TEST(SetStatistics, OfAScatteredSetAreNearThoseAsked) {
   double intensity = 0.0;
   double length = 0.0;
   double angle = 0.0;
+  double scatter = 0.0;
   double spacing = 0.0;
   double joints = 0.0;
   constexpr int seeds = 10;
@@ -71,6 +72,7 @@ TEST(SetStatistics, OfAScatteredSetAreNearThoseAsked) {
     length += one.drawn.trace_length / seeds;
     spacing += one.drawn.spacing / seeds;
     angle += one.drawn.angle / seeds;
+    scatter += one.drawn.scatter / seeds;
     joints += static_cast<double>(one.joints);
   }
   EXPECT_NEAR(asked.intensity, set.trace.mean / (set.trace.mean + 1.0), 1e-15);
@@ -80,6 +82,9 @@ TEST(SetStatistics, OfAScatteredSetAreNearThoseAsked) {
   EXPECT_NEAR(intensity / asked.intensity, 1.0, 5.0 * 0.014);
   EXPECT_NEAR(length / asked.trace_length, 1.0, 5.0 / std::sqrt(joints));
   EXPECT_NEAR(angle, 30.0 * per_degree, 5.0 * set.dip.width / std::sqrt(joints));
+  EXPECT_EQ(asked.scatter, set.dip.width);
+  // A deviation of n normal numbers has one of 1/sqrt(2n) of itself. Some joints are turned out of corners.
+  EXPECT_NEAR(scatter / asked.scatter, 1.0, 5.0 / std::sqrt(2.0 * joints) + 0.01);
 }
 
 // Planes in space, through-going: as many metres of trace per area of the section as across the planes, times
@@ -95,6 +100,8 @@ TEST(SetStatistics, OfPlanesInSpaceAreThoseOfTheirTraces) {
   // Traces scatter by 1/(share sqrt(k)) about the apparent dip.
   EXPECT_NEAR(one.drawn.angle, one.asked.angle,
               5.0 / (share * std::sqrt(400.0) * std::sqrt(static_cast<double>(one.joints))));
+  EXPECT_NEAR(one.drawn.scatter / one.asked.scatter, 1.0,
+              5.0 / std::sqrt(2.0 * static_cast<double>(one.joints)) + 0.05);
 }
 
 } // namespace
