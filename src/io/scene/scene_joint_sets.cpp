@@ -154,21 +154,30 @@ private:
     }
   }
 
+  /// Angles have no smallest value, as lengths have: of the distributions of lengths they have the normal
+  /// one.
+  static Spread spread_of_angles(const Section &table) {
+    enum class OfAngles { none, normal, fisher }; // in the order of the choices of the key
+    OfAngles kind = OfAngles::none;
+    table.read_choice("joint_set[].dip_scatter", "kind", kind);
+    return kind == OfAngles::normal   ? Spread::normal
+           : kind == OfAngles::fisher ? Spread::fisher
+                                      : Spread::none;
+  }
+
   /// @param deviation  key of the width of normal and lognormal
   void read_scatter(const Section &section, const char *key, const char *deviation, Scattered &scattered) {
     const auto table = section.table(key);
     if (!table) {
       return;
     }
-    table->read_choice(fmt::format("joint_set[].{}", key), "kind", scattered.spread);
-    const bool by_deviation = scattered.spread == Spread::normal || scattered.spread == Spread::lognormal;
     const bool is_angle = std::string_view(key) == "dip_scatter";
-    if (is_angle && scattered.spread != Spread::none && scattered.spread != Spread::normal &&
-        scattered.spread != Spread::fisher) {
-      fault(table->given("kind")->source(), fmt::format("{} is no distribution of angles", table->label()),
-            "angles have no smallest value", "use normal or fisher");
-      return;
+    if (is_angle) {
+      scattered.spread = spread_of_angles(*table);
+    } else {
+      table->read_choice(fmt::format("joint_set[].{}", key), "kind", scattered.spread);
     }
+    const bool by_deviation = scattered.spread == Spread::normal || scattered.spread == Spread::lognormal;
     expect_width(*table, deviation, by_deviation, "0.5");
     table->read(deviation, scattered.width);
     if (is_angle) {

@@ -268,6 +268,27 @@ TEST(RegionScene, FaultsOfDirectionsAndIntensitiesAreNamed) {
           "between min and max, exchange them"}));
 }
 
+TEST(RegionScene, KindsOfScatterOfAnglesAreThoseThatAreRead) {
+  const auto with = [](const std::string &scatter) {
+    return head + region + "[[joint_set]]\ndip_deg = 10\nspacing = 1\ndip_scatter = {" + scatter + "}\n";
+  };
+  const auto spread = [&](const std::string &scatter) {
+    return good(with(scatter)).region.joint_sets.at(0).dip.spread;
+  };
+  EXPECT_EQ(spread("kind = \"none\""), Spread::none);
+  EXPECT_EQ(spread("kind = \"normal\", deviation_deg = 5"), Spread::normal);
+  EXPECT_EQ(spread("kind = \"fisher\", concentration = 200"), Spread::fisher);
+  const std::vector<std::pair<std::string, std::string>> others{
+      {"lognormal", "did you mean 'normal'?"},
+      {"exponential", "for example kind = \"normal\""},
+      {"power-law", "for example kind = \"normal\""}};
+  for (const auto &[kind, hint] : others) {
+    EXPECT_EQ(faults(with("kind = \"" + kind + "\"")),
+              (Strings{"17:23: error: 'kind' in dip_scatter of joint_set 'joint_set0' is '" + kind +
+                       "', it must be one of none normal fisher, " + hint}));
+  }
+}
+
 // A wrong coordinate makes a wide box of a small region.
 TEST(RegionScene, SizeIsJudgedByExtentAndSpacing) {
   const std::string needle = "[region]\nmaterial = \"rock\"\npolygon = [[0, 0], [1, 0], [1e6, 1e6]]\n";
