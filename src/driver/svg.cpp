@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fmt/format.h>
+#include <map>
+#include <utility>
 
 namespace gcpdda {
 
@@ -21,17 +24,22 @@ std::string colour_of(int subdomain) {
 
 constexpr const char *ink = "#333";
 
-/// Width of outlines that leave the colours of so many blocks to be seen, in pixels.
-double outline_of(const PlanDrawing &page, std::size_t num_blocks) {
+/// Size of a block if all are equal, in pixels.
+double size_of_block(const PlanDrawing &page, std::size_t num_blocks) {
   const Vec2 extent = page.region().extent();
-  const double of_block = page.scale() * std::sqrt(extent.x * extent.y / static_cast<double>(num_blocks));
-  return std::min(0.5, 0.03 * of_block);
+  return page.scale() * std::sqrt(extent.x * extent.y / static_cast<double>(num_blocks));
 }
 
-/// From the middle of a block in the direction of its motion, `longest` for the farthest.
+/// Width of outlines that leave the colours of so many blocks to be seen, in pixels.
+double outline_of(const PlanDrawing &page, std::size_t num_blocks) {
+  return std::min(0.5, 0.03 * size_of_block(page, num_blocks));
+}
+
+constexpr double longest_arrow = 48.0; // pixels
+
+/// From the middle of a block in the direction of its motion, the longest for the farthest.
 std::string arrow(const PlanDrawing &page, const FailingBlock &block, double farthest) {
-  constexpr double longest = 48.0; // pixels
-  constexpr double head = 7.0;
+  constexpr double head = 7.0; // pixels
   constexpr double width = 1.6;
   const Vec2 middle = polygon_moments(block.vertices).centroid;
   const double way = norm(block.displacement);
@@ -40,11 +48,30 @@ std::string arrow(const PlanDrawing &page, const FailingBlock &block, double far
   }
   const Vec2 along{block.displacement.x / way, -block.displacement.y / way}; // y goes down the page
   const Vec2 from{page.x(middle.x), page.y(middle.y)};
-  const Vec2 to = from + (longest * std::min(1.0, way / farthest)) * along;
+  const Vec2 to = from + (longest_arrow * std::min(1.0, way / farthest)) * along;
   std::string text = svg_line(from.x, from.y, to.x, to.y, ink, width);
   for (const double side : {-1.0, 1.0}) {
     const Vec2 back = to - head * along + (0.5 * side * head) * perp(along);
     text += svg_line(to.x, to.y, back.x, back.y, ink, width);
+  }
+  return text;
+}
+
+/// Arrows of blocks that move, in each cell of the size of the longest one that of the block that has moved
+/// farthest, so that they do not cover each other.
+std::string arrows(const PlanDrawing &page, const std::vector<FailingBlock> &blocks, double farthest) {
+  std::map<std::pair<std::int64_t, std::int64_t>, const FailingBlock *> of_cell;
+  for (const FailingBlock &block : blocks) {
+    if (block.moves && !block.left_out) {
+      const Vec2 middle = polygon_moments(block.vertices).centroid;
+      const FailingBlock *&shown = of_cell[{static_cast<std::int64_t>(page.x(middle.x) / longest_arrow),
+                                            static_cast<std::int64_t>(page.y(middle.y) / longest_arrow)}];
+      shown = shown != nullptr && shown->motion >= block.motion ? shown : &block;
+    }
+  }
+  std::string text;
+  for (const auto &[cell, block] : of_cell) {
+    text += arrow(page, *block, farthest);
   }
   return text;
 }
@@ -55,17 +82,17 @@ constexpr double joint_width = 3.0; // pixels
 
 /// One element a line; what is too short to be seen becomes a dot.
 std::string joint_lines(const PlanDrawing &page, const std::vector<FailingJoints::Line> &lines,
-                        const char *colour) {
+                        const char *colour, double width) {
   std::string text;
   for (const auto &[begin, end] : lines) {
     Vec2 from{page.x(begin.x), page.y(begin.y)};
     Vec2 to{page.x(end.x), page.y(end.y)};
-    if (norm(to - from) < joint_width) {
+    if (norm(to - from) < width) {
       const Vec2 middle = 0.5 * (from + to);
-      from = middle - Vec2{0.5 * joint_width, 0.0};
-      to = middle + Vec2{0.5 * joint_width, 0.0};
+      from = middle - Vec2{0.5 * width, 0.0};
+      to = middle + Vec2{0.5 * width, 0.0};
     }
-    text += svg_line(from.x, from.y, to.x, to.y, colour, joint_width);
+    text += svg_line(from.x, from.y, to.x, to.y, colour, width);
   }
   return text;
 }
@@ -108,12 +135,17 @@ std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains) 
   return text + PlanDrawing::end();
 }
 
-std::string draw_mechanism(const std::vector<FailingBlock> &blocks, const FailingJoints &joints,
-                           double factor) {
+double farthest_motion(const std::vector<FailingBlock> &blocks) {
   double farthest = 0.0;
   for (const FailingBlock &block : blocks) {
     farthest = std::max(farthest, block.left_out ? 0.0 : block.motion);
   }
+  return farthest;
+}
+
+std::string draw_mechanism(const std::vector<FailingBlock> &blocks, const FailingJoints &joints,
+                           double factor) {
+  const double farthest = farthest_motion(blocks);
   const PlanDrawing page(region_of(blocks), 1200.0, 3);
   const double outline = outline_of(page, blocks.size());
   const auto colour = [](double share) {
@@ -125,16 +157,14 @@ std::string draw_mechanism(const std::vector<FailingBlock> &blocks, const Failin
     text +=
         page.polygon(block.vertices, block.fixed ? std::string(fixed_colour) : colour(share), ink, outline);
   }
-  text += joint_lines(page, joints.opened, open_colour) + joint_lines(page, joints.slipping, slip_colour);
-  for (const FailingBlock &block : blocks) {
-    if (block.moves && !block.left_out) {
-      text += arrow(page, block, farthest);
-    }
-  }
+  const double width = std::min(joint_width, std::max(1.0, 0.1 * size_of_block(page, blocks.size())));
+  text += joint_lines(page, joints.opened, open_colour, width) +
+          joint_lines(page, joints.slipping, slip_colour, width) + arrows(page, blocks, farthest);
   const std::string words =
       fmt::format("at factor {:.5g}: motion since the strengths were lowered; grey: fixed", factor);
-  return text + page.axes() + page.colour_bar(0, farthest, "motion (m)", colour) + legend_of_joints(page, 1, joints) +
-         page.text_below(2, PlanDrawing::left, words) + PlanDrawing::end();
+  return text + page.axes() + page.colour_bar(0, farthest, "motion (m)", colour) +
+         legend_of_joints(page, 1, joints) + page.text_below(2, PlanDrawing::left, words) +
+         PlanDrawing::end();
 }
 
 } // namespace gcpdda

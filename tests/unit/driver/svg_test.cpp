@@ -154,7 +154,24 @@ TEST(Pictures, AMechanismHasAColourBarFromZeroToTheLargestMotion) {
     }
   }
   EXPECT_GE(ticks, 3);
-  EXPECT_EQ(std::count_if(texts.begin(), texts.end(), [](const Text &t) { return t.words == "motion (m)"; }), 1);
+  EXPECT_EQ(std::count_if(texts.begin(), texts.end(), [](const Text &t) { return t.words == "motion (m)"; }),
+            1);
+}
+
+TEST(Pictures, BlocksCloseTogetherShareAnArrow) {
+  std::vector<FailingBlock> blocks = sliding(0.35);
+  const auto lines = [&] { // three an arrow, as wide as no other line
+    const std::string svg = draw_mechanism(blocks, {}, failing_factor);
+    const std::regex line("<path stroke=\"#333\" stroke-width=\"1.6\"");
+    return std::distance(std::sregex_iterator(svg.begin(), svg.end(), line), std::sregex_iterator());
+  };
+  EXPECT_EQ(lines(), 3);
+  blocks.push_back(blocks.back()); // at the same place
+  EXPECT_EQ(lines(), 3);
+  for (Vec2 &vertex : blocks.back().vertices) {
+    vertex.x += 3.0; // 180 pixels
+  }
+  EXPECT_EQ(lines(), 6);
 }
 
 TEST(Pictures, AMechanismWithoutMotionIsDrawnToo) {
