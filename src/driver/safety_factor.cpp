@@ -346,6 +346,7 @@ private:
   void conclude() {
     const SafetySearch search = follow(scene_.reduction, [&](double factor) { return verdict_of(factor); });
     report_.tolerance = scene_.reduction.tolerance;
+    report_.settled.directory = fs::absolute(settled_directory()).lexically_normal();
     report_.holds = search.holds;
     report_.fails = search.fails;
     report_.undecided = search.undecided;

@@ -153,3 +153,8 @@ def test_fos_and_ensemble(search, members):
     assert isinstance(gcpdda.open_folder(search.path / "settled"), gcpdda.Result)
     with pytest.raises(FileNotFoundError, match="not a result folder"):
         gcpdda.open_folder(members.path / "members")
+
+
+def test_fos_that_begins_with_the_state_of_another_search(search, tmp_path):
+    shutil.copy(search.path / "fos.json", tmp_path)
+    assert gcpdda.open_folder(tmp_path).settled.path.samefile(search.path / "settled")

@@ -101,6 +101,8 @@ TEST(Fos, BeginsWithTheStateOfAnEarlierSearch) {
   const Outcome again = run_gcpdda(2, with({"--settled", state, "--out", "again"}), folder);
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_FALSE(fs::exists(folder / "again/settled"));
+  EXPECT_NE(json_value(folder / "again/fos.json", "settled").find(state), std::string::npos)
+      << "where a report finds it";
   for (const char *key : {"holds", "fails", "moving"}) {
     EXPECT_EQ(json_value(folder / "again/fos.json", key),
               json_value(folder / "results/plane_fos/fos.json", key))

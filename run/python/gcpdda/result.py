@@ -254,7 +254,9 @@ class Safety(Folder):
 
     @property
     def settled(self):
-        return Result(self.path / "settled")
+        """The run that trials begin with: in this folder, or that of another search, which --settled named."""
+        folder = self.path / "settled"
+        return Result(folder if folder.exists() else pathlib.Path(self.summary["settled"]["directory"]))
 
     def trial(self, factor):
         """The run of the trial with that factor."""
