@@ -15,6 +15,7 @@
 #include "geometry/polygon.hpp"
 #include "io/blocks/block_file_writer.hpp"
 #include "io/results/id_slabs.hpp"
+#include "io/results/result_directory.hpp"
 #include "model/generators.hpp"
 #include "simulation/region_slabs.hpp"
 #include "simulation/simulation.hpp"
@@ -283,15 +284,23 @@ void draw(const Communicator &world, const Scene &scene, const std::vector<Scene
 }
 
 /// Traces of a map, the same on all ranks.
-JointMapReading read_map(const Communicator &world, const JointMap &map) {
+/// @param kept  file with the lines of a drawing that a run has kept; empty for none
+JointMapReading read_map(const Communicator &world, JointMap &map, const std::filesystem::path &kept) {
   if (!is_drawing(map.path)) {
     return read_joint_map(read_on_root(world, map.path, "the joint map", longest_map), map.path);
   }
   std::string trouble;
   DrawnLines drawn;
   if (world.is_root()) {
-    trouble = look_at_input_file(map.path).trouble;
-    drawn = trouble.empty() ? lines_of_drawing(map) : DrawnLines();
+    const bool is_kept = !kept.empty() && std::filesystem::exists(kept);
+    const std::string source = is_kept ? kept.string() : map.path;
+    trouble = look_at_input_file(source).trouble;
+    if (trouble.empty() && is_kept) {
+      drawn.geojson = read_input_file(source, longest_map).text;
+    } else if (trouble.empty()) {
+      drawn = lines_of_drawing(map);
+    }
+    map.converted = std::make_shared<const std::string>(drawn.geojson);
   }
   for (std::string *text : {&trouble, &drawn.what, &drawn.why, &drawn.hint, &drawn.geojson}) {
     world.broadcast(*text);
@@ -340,13 +349,15 @@ std::string words_on_joint_sets(const Scene &scene) {
   return text;
 }
 
-void prepare_region(const Communicator &world, Scene &scene) {
+void prepare_region(const Communicator &world, Scene &scene, const std::string &kept_in) {
   if (!scene.region.present()) {
     return;
   }
   Diagnostics faults;
-  for (JointMap &map : scene.region.maps) {
-    JointMapReading reading = read_map(world, map);
+  for (std::size_t i = 0; i < scene.region.maps.size(); ++i) {
+    JointMap &map = scene.region.maps[i];
+    JointMapReading reading =
+        read_map(world, map, kept_in.empty() ? std::filesystem::path() : kept_joint_map(kept_in, i));
     map.lines = std::move(reading.lines);
     faults.insert(faults.end(), reading.faults.begin(), reading.faults.end());
   }

@@ -19,8 +19,9 @@ struct BlocksOptions {
 
 /// Reads what the region of a valid scene needs and gives the scene what cuts it. Without a region nothing
 /// happens. Collective.
+/// @param kept_in  folder of a run that has kept the lines of drawings; empty to convert them
 /// @throws SceneError, FileError
-void prepare_region(const Communicator &world, Scene &scene);
+void prepare_region(const Communicator &world, Scene &scene, const std::string &kept_in = {});
 
 /// What summary.json and run.log tell of the joint sets of a prepared scene; on the root only.
 void tell_joint_sets(const Communicator &world, const Scene &scene, RunOptions &options);

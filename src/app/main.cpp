@@ -53,6 +53,7 @@ struct Arguments {
   bool overwrite = false;
   bool only_bound = false; ///< of fos
   bool accepts_gaps = false;
+  std::string kept_in; ///< folder of the run to go on with, which has kept the lines of drawings
 };
 
 constexpr int most_subdomains = 1 << 20;
@@ -94,7 +95,7 @@ ExitCode with_scene(const Communicator &world, const Arguments &arguments, const
     return exit_code::bad_scene;
   }
   try {
-    prepare_region(world, reading.scene);
+    prepare_region(world, reading.scene, arguments.kept_in);
     return work(reading.scene);
   } catch (const SceneError &error) {
     Diagnostics diagnostics = error.diagnostics();
@@ -146,6 +147,10 @@ ExitCode restart(const Communicator &world, Arguments arguments) {
   catch_stop_signal();
   const std::filesystem::path scene = std::filesystem::path(arguments.directory) / "scene.toml";
   arguments.scene = scene.string();
+  const bool has_other_maps =
+      std::any_of(arguments.sets.begin(), arguments.sets.end(),
+                  [](const std::string &set) { return set.starts_with("joint_map"); });
+  arguments.kept_in = has_other_maps ? "" : arguments.directory;
   Arguments unchanged = arguments;
   unchanged.sets.clear();
   const SceneReading before = read_scene(read_scene_on_root(world, arguments.scene), arguments.scene, {});

@@ -12,6 +12,7 @@
 #include "io/checkpoint/checkpoint_reader.hpp"
 #include "io/checkpoint/checkpoint_writer.hpp"
 #include "io/checkpoint/past_scenes.hpp"
+#include "io/hdf5/durable_file.hpp"
 #include "io/results/folder_lock.hpp"
 #include "io/results/history_writer.hpp"
 #include "io/results/result_directory.hpp"
@@ -156,6 +157,7 @@ private:
         options.prepare();
       }
       prepare_result_directory(directory_, options.overwrite, scene.resolved);
+      keep_drawings(scene);
       histories_.emplace(directory_, scene.monitors, !scene.bolts.empty());
     });
     log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet, options.progress_of);
@@ -163,6 +165,15 @@ private:
     simulation_.restored() ? ledger_.emplace(simulation_.restored()->facts)
                            : ledger_.emplace(simulation_.state());
     checkpoints_.emplace(communicator_, directory_, std::filesystem::path());
+  }
+
+  /// A restart needs neither the drawings nor what has converted them.
+  void keep_drawings(const Scene &scene) const {
+    for (std::size_t i = 0; i < scene.region.maps.size() && !is_bare_ && !is_once_; ++i) {
+      if (const auto &converted = scene.region.maps[i].converted) {
+        write_file(kept_joint_map(directory_, i), *converted);
+      }
+    }
   }
 
   // What was written after the checkpoint goes: it will be written again.

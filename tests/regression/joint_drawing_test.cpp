@@ -2,6 +2,7 @@
 // one.
 
 #include "child_process.hpp"
+#include "io/results/run_comparison.hpp"
 #include "sample_scenes.hpp"
 #include "support/run_facts.hpp"
 
@@ -118,6 +119,25 @@ TEST_P(JointDrawing, AllLayersTogetherOnAnyNumberOfRanks) {
   if (GetParam()) {
     EXPECT_EQ(count_of(file_text(folder_ / "calls"), "\n"), 2) << "one process calls it, once a run";
   }
+}
+
+// The drawing is gone and ogr2ogr fails, and the run goes on with the lines that it has kept.
+TEST_P(JointDrawing, ARestartTakesTheLinesThatTheRunHasKept) {
+  const std::string maps = map_of("j.dxf", "J1", "beds") + map_of("j.dxf", "miner's", "miners");
+  const auto run_to = [&](const std::string &end, const std::string &out) {
+    return call(0,
+                {"run", "scene.toml", "--out", out, "--set", "run.duration=" + end, "--set",
+                 "run.time_step=1e-4", "--set", "output.interval=0.005", "--set",
+                 "output.checkpoint_interval=0.005"},
+                maps);
+  };
+  ASSERT_EQ(run_to("0.01", "whole").exit_code, 0);
+  ASSERT_EQ(run_to("0.005", "cut").exit_code, 0);
+  fs::remove(folder_ / "j.dxf");
+  folder_.write("bin/ogr2ogr", "#!/bin/sh\nexit 1\n");
+  const Outcome rest = call(3, {"restart", "cut", "--set", "run.duration=0.01"}, maps);
+  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_EQ(compare_runs(folder_ / "whole", folder_ / "cut"), std::vector<std::string>());
 }
 
 TEST_P(JointDrawing, ALayerWithoutLinesIsAFault) {

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -85,6 +86,8 @@ struct JointMap {
   std::int32_t joint = -1;
   std::vector<std::vector<Vec2>> lines; ///< empty until the file has been read
   SourcePosition where;
+  /// GeoJSON to which a drawing was converted, which a run keeps for restarts; on the root only.
+  std::shared_ptr<const std::string> converted = {};
 };
 
 /// A named part of the region: a tunnel, say. Blocks end at its outline.

@@ -46,7 +46,7 @@ bool is_own_file(const fs::path &folder, const fs::path &path) {
     return is_own_history(path);
   }
   return name == "run.hdf.series" || name == "contacts.hdf.series" || name == "bolts.hdf.series" ||
-         name == "run.xdmf" || name == "summary.json";
+         name == "run.xdmf" || name == "summary.json" || is_numbered(name, "joint_map", ".geojson");
 }
 
 std::vector<fs::path> own_files(const fs::path &directory) {
@@ -108,6 +108,10 @@ void prepare_result_directory(const fs::path &directory, bool overwrite, const s
     make_directory(directory / folder);
   }
   write_file(directory / "scene.toml", resolved_scene);
+}
+
+fs::path kept_joint_map(const fs::path &directory, std::size_t number) {
+  return directory / fmt::format("joint_map_{:06}.geojson", number);
 }
 
 void reopen_result_directory(const fs::path &directory, const std::string &resolved_scene) {

@@ -2,6 +2,7 @@
 
 // The result folder of a run as a whole.
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -13,6 +14,9 @@ namespace gcpdda {
 /// `overwrite`, which removes only what a run writes. Writes scene.toml (the resolved text).
 void prepare_result_directory(const std::filesystem::path &directory, bool overwrite,
                               const std::string &resolved_scene);
+
+/// Where a run keeps the lines of a drawing, the joint map of this number, for its restarts.
+std::filesystem::path kept_joint_map(const std::filesystem::path &directory, std::size_t number);
 
 /// Makes a run's folder fit to go on with: its scene.toml is this one, its summary is gone. Root only.
 void reopen_result_directory(const std::filesystem::path &directory, const std::string &resolved_scene);
