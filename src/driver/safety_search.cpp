@@ -221,6 +221,7 @@ Scene weakened_scene(const Scene &scene, double factor) {
   trial.failure_motion = scene.reduction.failure_motion;
   trial.local_damping = scene.reduction.local_damping;
   trial.solver = std::prev(last_settle)->solver;
+  trial.increments = std::prev(last_settle)->increments;
   trial.where = std::prev(last_settle)->where;
   trial.ignored_area = scene.reduction.ignored_area;
   trial.watched_region = scene.reduction.region;

@@ -53,7 +53,7 @@ static_assert(sizeof(Water) == 96);
 static_assert(sizeof(SupportType) == 128);
 static_assert(sizeof(InSituStress) == 160);
 static_assert(sizeof(Earthquake) == 176);
-static_assert(sizeof(Stage) == 280);
+static_assert(sizeof(Stage) == 288);
 
 void add(Chain &chain, const RunSettings &run) {
   chain.add({run.gravity.x, run.gravity.y, run.gravity_ramp, run.spectral_radius, run.contact_damping,
@@ -147,6 +147,7 @@ void add(Chain &chain, const Stage &stage) {
   chain.add(std::uint64_t{stage.mass_scaling});
   chain.add(std::uint64_t{stage.kinetic_damping});
   chain.add(stage.solver);
+  chain.add(static_cast<std::uint64_t>(stage.increments));
   chain.add(std::uint64_t{stage.changes_stress});
   chain.add(stage.excavated.blocks);
   chain.add(stage.excavated.region);

@@ -97,6 +97,7 @@ void open_statics(RunState &run) {
   }
   run.communicator.sum(std::span(&num_mobile, 1));
   rules.mass_share = statics::mass_share(num_mobile);
+  rules.increments = run.clock.stage().increments;
   // Boxes of two blocks that are this near meet within what each may move before the next refresh.
   rules.springs.reach = share_of_skin_kept * run.neighbours.base_skin;
   run.statics.emplace(run.communicator, rules);

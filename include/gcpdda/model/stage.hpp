@@ -67,6 +67,7 @@ struct Stage {
   bool mass_scaling = false;
   bool kinetic_damping = false; ///< velocities are set to zero whenever the kinetic energy has passed a peak
   Solver solver = Solver::dynamic;
+  std::int64_t increments = 50; ///< of the load, of the static solver
   /// s of a trial of gcpdda fos after which it goes on without local damping and is judged by its motion in
   /// windows (simulation/stages.hpp); infinite for every other stage.
   double drag_limit = std::numeric_limits<double>::infinity();

@@ -33,6 +33,7 @@ const std::vector<Belongs> &belongings() {
       {"kinetic_damping", {settle}},
       {"mass_scaling", {settle}},
       {"solver", {settle}},
+      {"increments", {settle}},
       {"blocks", {excavate}},
       {"region", {excavate}},
       {"openings", {excavate}},
@@ -79,6 +80,7 @@ public:
     section.read("local_damping", stage.local_damping);
     section.read("mass_scaling", stage.mass_scaling);
     section.read_choice("stage[]", "solver", stage.solver);
+    section.read("increments", stage.increments);
     section.read("relax", stage.relax);
     section.read("ramp", stage.ramp);
     expect_ramped(section);

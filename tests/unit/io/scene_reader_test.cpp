@@ -232,6 +232,7 @@ TEST(SceneReader, DefaultsOfStagesAreThoseInForce) {
   EXPECT_EQ(stage.tolerance, stated("tolerance"));
   EXPECT_EQ(stage.failure_motion, stated("failure_motion"));
   EXPECT_EQ(stage.relax, stated("relax"));
+  EXPECT_EQ(static_cast<double>(stage.increments), stated("increments"));
   EXPECT_EQ(stage.local_damping, 0.8);
   EXPECT_FALSE(stage.mass_scaling);
   EXPECT_TRUE(stage.until_verdict);
