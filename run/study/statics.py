@@ -1,0 +1,266 @@
+#!/usr/bin/python3
+"""The static solver: its cost against that of damped motion, and its equilibrium against that of slow loading.
+
+    run/study/statics.py BUILD OUT_DIR [--quick] [--only PART ...] [--large]
+
+PART is cost, paths, random or growth. Every run is on one rank. A count of evaluations is that of the contacts of all
+blocks: one a step. The ways to rest are the static solver with 1 to 800 increments of the load, kinetic damping, local
+damping of 0.8, and slow loading: the load rises smoothly over a number of steps under local damping.
+
+OUT_DIR/statics_cost.csv     evaluations and CPU time until the unbalanced ratio has fallen to a value
+OUT_DIR/statics_paths.csv    difference from slow loading over 16,000 steps, against cost
+OUT_DIR/statics_random.csv   the same of random rock masses, slow loading over 8,000 steps
+OUT_DIR/statics_growth.csv   evaluations and CPU time of slopes of more and more benches; --large adds 15 benches (an hour)
+"""
+
+import argparse
+import csv
+import json
+import math
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy
+
+import statics_scenes as scenes
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "python"))
+import gcpdda  # noqa: E402
+from gcpdda.joints import strength_used  # noqa: E402
+
+RATIOS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
+AT_CAP = 0.99  # share of its strength beyond which a contact counts as at the cap
+LARGEST = 20   # normal forces that are compared
+WAYS = {"static": 'solver = "static"', "kinetic damping": "kinetic_damping = true", "local damping": "local_damping = 0.8"}
+
+
+class Rest:
+    """A run: its facts, and its last frame once it is asked for."""
+
+    def __init__(self, folder, log):
+        self.folder, self.log = folder, log
+        self.summary = json.loads((folder / "summary.json").read_text())
+        stages = self.summary["stages"]
+        self.settled = self.summary["verdict"] == "settled"
+        self.left = "goes on with solver" in log
+        self.loose = sum(stage.get("loose", 0) for stage in stages)
+        self.step = self.summary["time_step"]
+
+    @property
+    def verdict(self):
+        return self.summary["verdict"] + (", left to dynamics" if self.left else "")
+
+    def state(self):
+        """Displacement by block, normal force by pair of blocks, share of contacts at the cap."""
+        frame = gcpdda.open_folder(self.folder).frame("last")
+        free = ~frame.fixed
+        moved = dict(zip(frame.ids[free].tolist(), frame.values("displacement")[free, :2]))
+        data = frame._contact_data
+        pushes = data["normal_force"] > 0.0
+        forces = {}
+        for pair, force in zip(map(tuple, data["blocks"][pushes].tolist()), data["normal_force"][pushes].tolist()):
+            forces[pair] = forces.get(pair, 0.0) + force
+        return moved, forces, float((strength_used(frame)[pushes] >= AT_CAP).mean()) if pushes.any() else 0.0
+
+
+class Runner:
+    def __init__(self, program, work):
+        self.program, self.work, self.count = program, work, 0
+
+    def run(self, case, keys, seconds=0.0, more=()):
+        """@param seconds  over which the load comes"""
+        self.count += 1
+        folder = self.work / f"run{self.count}"
+        done = subprocess.run([self.program, "run", case.file, "--out", folder, *case.arguments(keys, seconds),
+                               *(word for setting in more for word in ("--set", setting))], capture_output=True, text=True)
+        if done.returncode not in (0, 7):
+            raise SystemExit(f"{case.file}, {keys}:\n{done.stderr}")
+        return Rest(folder, done.stderr)
+
+    def slowly(self, case, steps, keys="local_damping = 0.8"):
+        """Slow loading over so many steps."""
+        step = self.step(case, keys)
+        return self.run(case, keys, steps * step)
+
+    def step(self, case, keys):
+        """The step that a way to rest chooses, s."""
+        said = subprocess.run([self.program, "inspect", case.file, *case.arguments(keys)], check=True, capture_output=True,
+                              text=True).stdout
+        return float(re.search(r"^step +([-0-9.e+]+) s", said, re.MULTILINE).group(1))
+
+    def drop(self, rest):
+        shutil.rmtree(rest.folder)
+
+
+def difference(reference, other):
+    """How far an equilibrium is from a reference, as columns of a table."""
+    moved, forces, cap = reference
+    moved_too, forces_too, cap_too = other
+    sag = max(float(numpy.hypot(*u)) for u in moved.values())
+    apart = numpy.array([float(numpy.hypot(*(moved_too[block] - u))) for block, u in moved.items()]) / sag
+    largest = sorted(forces, key=lambda pair: -forces[pair])[:LARGEST]
+    off = [abs(forces_too.get(pair, 0.0) / forces[pair] - 1.0) for pair in largest]
+    return {"sag_m": sag, "displacement_off": float(apart.max()), "displacement_off_99": float(numpy.quantile(apart, 0.99)),
+            "normal_off": max(off), "normal_off_mean": statistics.mean(off), "cap": cap_too, "cap_off": abs(cap_too - cap)}
+
+
+def facts(rest):
+    summary = rest.summary
+    return {"blocks": summary["blocks"], "verdict": rest.verdict, "loose": rest.loose, "evaluations": summary["steps"],
+            "pair_evaluations": sum(summary["evaluations_per_rank"]), "cpu_s": summary["cpu_s"]}
+
+
+def write_table(path, rows):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", newline="") as file:
+        table = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)), lineterminator="\n")
+        table.writeheader()
+        for row in rows:
+            table.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()})
+
+
+def tell(**row):
+    print(", ".join(f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}" for key, value in row.items()),
+          flush=True)
+
+
+def paths(runner, quick):
+    """Difference from slow loading against cost."""
+    most, slower = (2000, [500]) if quick else (16000, [500, 1000, 2000, 4000, 8000])
+    increments = [1, 50] if quick else [1, 10, 25, 50, 100, 200, 400, 800]
+    rows = []
+    for name, case in scenes.cases(runner.work, quick).items():
+        rest = runner.slowly(case, most, "tolerance = 1e-6, local_damping = 0.8")
+        reference = rest.state()
+        rows.append({"scene": name, "way": "slow loading", "parts": most} | facts(rest) | difference(reference, reference))
+        tell(**rows[-1])
+        runner.drop(rest)
+        ways = [("static", n, lambda n=n: runner.run(case, f"{WAYS['static']}, increments = {n}")) for n in increments]
+        ways += [(way, 1, lambda way=way: runner.run(case, WAYS[way])) for way in ("kinetic damping", "local damping")]
+        ways += [("slow loading", n, lambda n=n: runner.slowly(case, n)) for n in slower]
+        for way, parts, run in ways:
+            rest = run()
+            rows.append({"scene": name, "way": way, "parts": parts} | facts(rest) | difference(reference, rest.state()))
+            tell(**rows[-1])
+            runner.drop(rest)
+    return rows
+
+
+def random_masses(runner, quick):
+    """Static solver and slow loading on random rock masses; one that fails under slow loading is replaced by the next."""
+    count, most, rows, seed = (2, 1000, [], 0) if quick else (30, 8000, [], 0)
+    taken = 0
+    while taken < count:
+        seed += 1
+        case, row = scenes.rock_mass(runner.work, seed)
+        row = {"seed": seed} | row
+        rest = runner.slowly(case, most, "tolerance = 1e-6, local_damping = 0.8")
+        if not rest.settled or not 200 <= rest.summary["blocks"] <= 800:
+            rows.append(row | {"way": "slow loading", "parts": most} | facts(rest))
+            tell(**rows[-1])
+            runner.drop(rest)
+            continue
+        taken += 1
+        reference = rest.state()
+        rows.append(row | {"way": "slow loading", "parts": most} | facts(rest) | difference(reference, reference))
+        runner.drop(rest)
+        ways = [("static", n, lambda n=n: runner.run(case, f"{WAYS['static']}, increments = {n}")) for n in (50, 200)]
+        ways += [("slow loading", most // 2, lambda: runner.slowly(case, most // 2))]
+        ways += [("kinetic damping", 1, lambda: runner.run(case, WAYS["kinetic damping"]))]
+        for way, parts, run in ways:
+            rest = run()
+            rows.append(row | {"way": way, "parts": parts} | facts(rest) | difference(reference, rest.state()))
+            tell(**rows[-1])
+            runner.drop(rest)
+    return rows
+
+
+def reached(rest, first):
+    """Evaluations until the unbalanced ratio is first down to each of RATIOS after `first` of them; the energies have a row
+    a step."""
+    ratio = gcpdda.open_folder(rest.folder).energy.filter(like="unbalanced").to_numpy()[1:, 0]
+    if len(ratio) < rest.summary["steps"]:
+        raise SystemExit(f"{rest.folder}: {len(ratio)} rows of energies in {rest.summary['steps']} steps")
+    found = {}
+    for least in RATIOS:
+        below = numpy.flatnonzero(ratio[first:] <= least)
+        found[least] = first + int(below[0]) + 1 if len(below) else None
+    return found
+
+
+def cost(runner, quick):
+    """Evaluations and CPU time to an unbalanced ratio. CPU times are of alternating runs without histories."""
+    rounds, slow_steps = (1, 1000) if quick else (3, 8000)
+    found = scenes.cases(runner.work, quick)
+    rows = []
+    for name in ("wall", "pyramid") if quick else ("wall", "pyramid", "slope_jointed"):
+        case = found[name]
+        steps = {way: runner.step(case, keys) for way, keys in WAYS.items()}
+        ways = {way: (f"{keys}, tolerance = 1e-6", 0.0, 50 if way == "static" else 0) for way, keys in WAYS.items()}
+        ways["slow loading"] = (ways["local damping"][0], slow_steps * steps["local damping"], slow_steps)
+        steps["slow loading"] = steps["local damping"]
+        counts, cpu = {}, {way: [] for way in ways}
+        for way, (keys, seconds, loaded) in ways.items():
+            interval = scenes.LIMIT / math.ceil(scenes.LIMIT / steps[way] - 0.01)  # that of the program
+            rest = runner.run(case, keys, seconds, [f"output.interval={scenes.LIMIT}", f"output.history_interval={interval!r}"])
+            counts[way] = reached(rest, loaded), rest
+        for _ in range(rounds):
+            for way, (keys, seconds, _) in ways.items():
+                rest = runner.run(case, keys, seconds)
+                cpu[way].append((rest.summary["cpu_s"], rest.summary["steps"]))
+                runner.drop(rest)
+        for way in ways:
+            over = [own[0] / static[0] for own, static in zip(cpu[way], cpu["static"])]
+            per_step = statistics.median(seconds / steps for seconds, steps in cpu[way])
+            at, rest = counts[way]
+            for ratio, evaluations in at.items():
+                rows.append({"scene": name, "way": way, "blocks": rest.summary["blocks"], "ratio": f"{ratio:g}",
+                             "evaluations": evaluations, "cpu_s": evaluations * per_step if evaluations else None,
+                             "settled_after": cpu[way][0][1], "cpu_over_static": statistics.median(over),
+                             "cpu_over_static_least": min(over), "cpu_over_static_most": max(over), "rounds": rounds})
+            tell(scene=name, way=way, settled_after=cpu[way][0][1], cpu_over_static=statistics.median(over),
+                 **{f"{ratio:g}": n for ratio, n in at.items()})
+            runner.drop(rest)
+    return rows
+
+
+def growth(runner, quick, large):
+    """Evaluations of slopes of the same blocks and more and more benches."""
+    sizes = [1] if quick else [1, 2, 5, 15] if large else [1, 2, 5]
+    rows = []
+    for benches in sizes:
+        for start in ("joints open", "in situ"):
+            case = scenes.slope_of_benches(benches, start)
+            for way in ("static", "kinetic damping", "local damping"):
+                if benches > 5 and (way == "local damping" or (way, start) == ("kinetic damping", "in situ")):
+                    continue
+                rest = runner.run(case, WAYS[way])
+                rows.append({"benches": benches, "start": start, "way": way} | facts(rest))
+                tell(**rows[-1])
+                runner.drop(rest)
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=Path, metavar="BUILD")
+    parser.add_argument("out", type=Path, metavar="OUT_DIR")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", nargs="+", choices=["cost", "paths", "random", "growth"], metavar="PART")
+    parser.add_argument("--large", action="store_true")
+    asked = parser.parse_args()
+    parts = {"cost": cost, "paths": paths, "random": random_masses,
+             "growth": lambda runner, quick: growth(runner, quick, asked.large)}
+    with tempfile.TemporaryDirectory() as work:
+        runner = Runner(asked.build.resolve() / "gcpdda", Path(work))
+        for part in asked.only or parts:
+            write_table(asked.out / f"statics_{part}.csv", parts[part](runner, asked.quick))
+
+
+if __name__ == "__main__":
+    main()
