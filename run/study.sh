@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# study.sh verify|stability|accuracy|fidelity|flutter|scenes|stiffness|speed|scaling|all [--quick]: one of the studies, or the
-# first five; tables, charts and pages go to run/results/studies. --quick: fewer points, into run/results/studies_quick,
-# without pages. speed and scaling need a quiet machine.
+# study.sh verify|stability|accuracy|fidelity|flutter|scenes|stiffness|statics|speed|scaling|all [--quick]: one of the studies, or
+# the first five; tables, charts and pages go to run/results/studies. --quick: fewer points, into run/results/studies_quick,
+# without pages. statics, speed and scaling need a quiet machine.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/set_up.sh"
@@ -13,7 +13,7 @@ case "${1:-}" in
     exit 0
     ;;
   all) ;;
-  verify | stability | accuracy | fidelity | flutter | scenes | stiffness | speed | scaling) studies=("$1") ;;
+  verify | stability | accuracy | fidelity | flutter | scenes | stiffness | statics | speed | scaling) studies=("$1") ;;
   *)
     show_help >&2
     exit 2
@@ -39,6 +39,9 @@ run_study() {
     "$here/study/scenes.py" "$build" "$results" "${quick[@]}"
   elif [ "$study" = stiffness ]; then
     "$here/study/fos_stiffness.py" "$build" "$results" "${quick[@]}"
+  elif [ "$study" = statics ]; then
+    "$here/study/statics.py" "$build" "$results" "${quick[@]}"
+    "$here/study/plot_statics.py" "$results"
   elif [ "$study" = speed ]; then
     "$here/study/speed.py" "$build" "$results" "${quick[@]}"
     "$here/study/plot_speed.py" "$results"

@@ -23,12 +23,13 @@ from page_numbers import numbers
 from page_tables import RESULTS, read
 from page_blocks import fidelity, stability
 from page_cost import accuracy, scaling, speed
+from page_statics import statics
 from page_checks import verification
 
 TEMPLATES = Path(__file__).resolve().parent / "pages"
 README = RESULTS.parents[2] / "README.md"
-PAGES = {"verification": verification, "accuracy": accuracy, "stability": stability, "fidelity": fidelity, "speed": speed,
-         "scaling": scaling}
+PAGES = {"verification": verification, "accuracy": accuracy, "stability": stability, "fidelity": fidelity, "statics": statics,
+         "speed": speed, "scaling": scaling}
 START, END = "<!-- numbers: written by run/study/pages.py -->\n", "<!-- end of numbers -->"
 
 
