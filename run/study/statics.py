@@ -154,7 +154,7 @@ def paths(runner, quick):
 
 def random_masses(runner, quick):
     """Static solver and slow loading on random rock masses; one that fails under slow loading is replaced by the next."""
-    count, most = (2, 1000) if quick else (30, 16000)
+    count, most, increments = (2, 1000, [50]) if quick else (30, 16000, [50, 100, 200, 800])
     rows, seed, taken = [], 0, 0
     while taken < count:
         seed += 1
@@ -170,7 +170,7 @@ def random_masses(runner, quick):
         reference = rest.state()
         rows.append(row | {"way": "slow loading", "parts": most} | facts(rest) | difference(reference, reference))
         runner.drop(rest)
-        ways = [("static", n, lambda n=n: runner.run(case, f"{WAYS['static']}, increments = {n}")) for n in (50, 200)]
+        ways = [("static", n, lambda n=n: runner.run(case, f"{WAYS['static']}, increments = {n}")) for n in increments]
         ways += [("slow loading", most // 2, lambda: runner.slowly(case, most // 2))]
         ways += [("kinetic damping", 1, lambda: runner.run(case, WAYS["kinetic damping"]))]
         for way, parts, run in ways:

@@ -11,7 +11,7 @@ import numpy
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 LIMIT = 100.0  # s, of a settle stage
-WATER_STEPS = 20  # stages in which slow loading lets the water in
+WATER_PARTS = 20  # stages in which slow loading lets the water in
 
 
 def settle(name, more=""):
@@ -42,11 +42,11 @@ def slow_excavation(stages, seconds):
 
 
 def slow_water(stages, seconds):
-    """Gravity over the time, then the density of the water in parts over as long."""
+    """Gravity over the time, then the density of the water in parts, each until the rock is nearly at rest."""
     weight, low = stages
-    rising = [f'{{name = "rise{k}", kind = "run", duration = {seconds / WATER_STEPS!r}, local_damping = 0.8, '
-              f'set = {{"water.low.active" = true, "water.low.density" = {1000.0 * (k + 1) / WATER_STEPS}}}}}'
-              for k in range(WATER_STEPS)]
+    rising = [f'{{name = "rise{k}", kind = "settle", limit = {LIMIT}, tolerance = 1e-4, '
+              f'set = {{"water.low.active" = true, "water.low.density" = {1000.0 * (k + 1) / WATER_PARTS}}}}}'
+              for k in range(WATER_PARTS - 1)]
     return [weight, *rising, low], [f"run.gravity_ramp={seconds!r}"]
 
 
