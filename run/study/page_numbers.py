@@ -1,4 +1,6 @@
-"""The ten numbers of README.md, from the committed tables."""
+"""The numbers of README.md, from the committed tables."""
+
+import statistics
 
 from page_tables import count, number, of, read, table
 from page_blocks import flutter, soak
@@ -12,6 +14,19 @@ def check(rows, problem):
 def bracket(scene):
     row = of(read("fos_stiffness.csv"), scene=scene, youngs_modulus="rigid")[0]
     return f"{float(row['holds']):.4f} to {float(row['fails']):.4f}"
+
+
+def to_rest():
+    """Evaluations of the static solver, kinetic and local damping until the slope rests to 1e-5."""
+    rows = of(read("statics_cost.csv"), scene="slope_jointed", ratio="1e-05")
+    return ", ".join(count(of(rows, way=way)[0]["evaluations"]) for way in ("static", "kinetic damping", "local damping"))
+
+
+def same_forces(increments):
+    """Largest difference of the largest normal forces of random rock masses: median and most, in %."""
+    rows = of(read("statics_random.csv"), way="static", parts=increments)
+    off = [100.0 * float(row["normal_off"]) for row in rows]
+    return f"{number(statistics.median(off), 2)} %, {number(max(off), 2)} %"
 
 
 def numbers():
@@ -33,6 +48,11 @@ def numbers():
          f"{states['flutter_grip']} ({states['flutter_centre']} with friction at the centre of pressure)", "flutter"],
         ["factor of safety, plane failure (limit equilibrium 1.9534)", bracket("plane_failure"), "stiffness"],
         ["factor of safety, toppling slope of Goodman and Bray (limit equilibrium 1.0682)", bracket("goodman_bray"), "stiffness"],
+        ["evaluations until a slope of 1,992 blocks rests to 1e-5: static solver, kinetic damping, local damping", to_rest(),
+         "statics"],
+        ["largest normal forces of 30 rock masses, static solver with 50 increments against slow loading: median, most",
+         same_forces("50"), "statics"],
+        ["the same with 200 increments", same_forces("200"), "statics"],
         ["CPU time of a touching contact and step, 5,050 squares at rest: rigid, deformable",
          f"{number(rigid['ns_per_contact_and_step'], 2)} ns, {number(deformable['ns_per_contact_and_step'], 3)} ns", "speed"],
         [f"the same among {count(largest['blocks'])} squares, and memory of a block",

@@ -1,5 +1,6 @@
 """What the page of the static solver shows."""
 
+import math
 import statistics
 
 from page_tables import count, number, of, read, source, table
@@ -33,30 +34,30 @@ def cost_table(rows):
             at = {row["ratio"]: row for row in own}
             lines.append([scene, way] + [count(at[r]["evaluations"]) if at[r]["evaluations"] else "not reached"
                                          for r in ("0.01", "0.001", "0.0001", "1e-05", "1e-06")] +
-                         [count(own[0]["settled_after"]), f"{number(own[0]['cpu_over_static'], 2)} "
-                          f"({number(own[0]['cpu_over_static_least'], 2)} to {number(own[0]['cpu_over_static_most'], 2)})"])
-    return table(["scene", "way", "1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "evaluations to settled", "CPU time over static"],
-                 lines, source("statics", "statics_cost.csv"))
+                         [count(own[0]["settled_after"])] +
+                         ["{} ({} to {})".format(*(number(own[0][f"cpu_over_static{which}"], 2)
+                                                   for which in ("", "_least", "_most")))])
+    return table(["scene", "way", "1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "evaluations to settled",
+                  "CPU time over static"], lines, source("statics", "statics_cost.csv"))
 
 
 def growth_table(rows):
-    lines = [[count(row["blocks"]), row["start"], row["way"], count(row["evaluations"]), number(row["cpu_s"]), row["verdict"],
-              row["loose"]] for row in rows]
+    lines = [[count(row["blocks"]), row["start"], row["way"], count(row["evaluations"]), number(row["cpu_s"]),
+              row["verdict"], row["loose"]] for row in rows]
     return table(["blocks", "start", "way", "evaluations", "CPU s", "verdict", "loose blocks"], lines,
                  source("statics", "statics_growth.csv"))
 
 
 def exponents(rows):
     """Of N in the evaluations from the smallest to the largest slope, by way and start."""
-    from math import log
     found = []
     for start in ("joints open", "in situ"):
         for way in WAYS[:3]:
             own = [row for row in of(rows, start=start, way=way) if row["verdict"].startswith("settled")]
             if len(own) > 1:
                 first, last = own[0], own[-1]
-                power = (log(float(last["evaluations"]) / float(first["evaluations"])) /
-                         log(float(last["blocks"]) / float(first["blocks"])))
+                power = (math.log(float(last["evaluations"]) / float(first["evaluations"])) /
+                         math.log(float(last["blocks"]) / float(first["blocks"])))
                 found.append([way, start, f"{count(first['blocks'])} to {count(last['blocks'])}", number(power, 2)])
     return table(["way", "start", "blocks", "exponent of N"], found, source("statics", "statics_growth.csv"))
 
@@ -64,16 +65,19 @@ def exponents(rows):
 def paths_table(rows):
     shown = {("static", "1"), ("static", "50"), ("static", "200"), ("static", "800"), ("kinetic damping", "1"),
              ("local damping", "1"), ("slow loading", "8000")}
-    lines = [[row["scene"], words_of(row), count(row["evaluations"]), number(row["cpu_s"]), marked(row["normal_off"], "normal_off"),
-              row["pairs_off"], marked(row["displacement_off"], "displacement_off"), row["blocks_off"],
+    lines = [[row["scene"], words_of(row), count(row["evaluations"]), number(row["cpu_s"]),
+              marked(row["normal_off"], "normal_off"), row["pairs_off"],
+              marked(row["displacement_off"], "displacement_off"), row["blocks_off"],
               marked(row["cap_off"], "cap_off"), row["verdict"]] for row in rows if (row["way"], row["parts"]) in shown]
-    return table(["scene", "way", "evaluations", "CPU s", "20 largest N: worst, %", "of them beyond 1 %", "displacement: worst, % of sag",
-                  "blocks beyond 4 %", "share at the cap, difference in %", "verdict"], lines, source("statics", "statics_paths.csv"))
+    return table(["scene", "way", "evaluations", "CPU s", "20 largest N: worst, %", "of them beyond 1 %",
+                  "displacement: worst, % of sag", "blocks beyond 4 %", "share at the cap, difference in %", "verdict"],
+                 lines, source("statics", "statics_paths.csv"))
 
 
 def random_table(rows):
     lines = []
-    for way, parts in (("static", "50"), ("static", "200"), ("kinetic damping", "1"), ("slow loading", "8000")):
+    for way, parts in (*(("static", n) for n in ("50", "100", "200", "800")), ("kinetic damping", "1"),
+                       ("slow loading", "8000")):
         own = of(rows, way=way, parts=parts)
         line = [words_of(own[0]), str(len(own))]
         for column in ("normal_off", "normal_off_mean", "displacement_off", "displacement_off_99", "cap_off"):
@@ -83,9 +87,9 @@ def random_table(rows):
             line.append(str(sum(float(row[column]) <= target for row in own)))
         line.append(f"{statistics.median(int(row['evaluations']) for row in own):,.0f}")
         lines.append(line)
-    return table(["way", "rock masses", "20 largest N: worst, %", "20 largest N: mean, %", "displacement: worst block, % of sag",
-                  "displacement: 99 % of blocks", "share at the cap, difference in %", "N within 1 %",
-                  "displacement within 4 %", "cap within 0.05", "evaluations, median"], lines,
+    return table(["way", "rock masses", "20 largest N: worst, %", "20 largest N: mean, %",
+                  "displacement: worst block, % of sag", "displacement: 99 % of blocks, % of sag",
+                  "share at the cap, difference in %", "N within 1 %", "displacement within 4 %", "cap within 0.05", "evaluations, median"], lines,
                  source("statics", "statics_random.csv") + " Pairs are median and largest.")
 
 
@@ -96,13 +100,14 @@ def statics():
     finer = of(compared, way="static", parts="200")
     far = [row for row in default if float(row["displacement_off"]) > TARGETS["displacement_off"]]
     return {
-        "cost": cost_table(cost), "growth": growth_table(growth), "exponents": exponents(growth), "paths": paths_table(paths),
-        "random": random_table(compared), "masses": str(len(default)),
+        "cost": cost_table(cost), "growth": growth_table(growth), "exponents": exponents(growth),
+        "paths": paths_table(paths), "random": random_table(compared), "masses": str(len(default)),
         "deformable": str(len(of(default, fidelity="deformable"))), "slopes": str(len(of(default, kind="slope"))),
         "replaced": str(len(random) - len(compared)),
         "blocks_low": count(min(int(row["blocks"]) for row in default)),
         "blocks_high": count(max(int(row["blocks"]) for row in default)),
-        "far": str(len(far)), "far_blocks": count(statistics.median(int(row["blocks_off"]) for row in far) if far else 0),
+        "far": str(len(far)),
+        "far_blocks": count(statistics.median(int(row["blocks_off"]) for row in far) if far else 0),
         "far_most": count(max((int(row["blocks_off"]) for row in far), default=0)),
         "left": str(sum("left" in row["verdict"] for row in default + finer)), "runs": str(len(default + finer)),
     }

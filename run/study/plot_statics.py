@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""plot_statics.py FOLDER: draws the tables of the statics study as statics.png: what a ratio of unbalanced forces costs, how the
-cost grows, and how far the equilibrium is from that of slow loading."""
+"""plot_statics.py FOLDER: draws the tables of the statics study as statics.png: what a ratio of unbalanced forces
+costs, how the cost grows, and how far the equilibrium is from that of slow loading."""
 
 import argparse
 import csv
@@ -15,8 +15,8 @@ import matplotlib.pyplot as plt
 
 LOOKS = {"static": ("tab:red", "o"), "kinetic damping": ("tab:blue", "s"), "local damping": ("tab:green", "^"),
          "slow loading": ("0.4", "D")}
-SCENES = ["slope_jointed", "wet_slope", "tunnel_jointed", "tunnel_jointed, 10 GPa", "deformable_tunnel", "wall", "pyramid",
-          "slope_seeds"]
+SCENES = ["slope_jointed", "wet_slope", "tunnel_jointed", "tunnel_jointed, 10 GPa", "deformable_tunnel", "wall",
+          "pyramid", "slope_seeds"]
 TARGETS = {"normal_off": 0.01, "displacement_off": 0.04}
 
 
@@ -39,14 +39,15 @@ def draw_cost(axes, rows, column, words):
     scene = rows[-1]["scene"]
     for way, (colour, marker) in LOOKS.items():
         own = [row for row in rows if row["scene"] == scene and row["way"] == way and row[column]]
-        axes.plot([float(row[column]) for row in own], [float(row["ratio"]) for row in own], marker + "-", color=colour, label=way)
+        axes.plot([float(row[column]) for row in own], [float(row["ratio"]) for row in own], marker + "-", color=colour,
+                  label=way)
     finish(axes, words, "largest unbalanced force over largest force", f"{scene}, {int(rows[-1]['blocks']):,d} blocks")
 
 
 def draw_growth(axes, rows):
     for start, line in (("joints open", "-"), ("in situ", "--")):
         for way, (colour, marker) in LOOKS.items():
-            own = [row for row in rows if row["start"] == start and row["way"] == way and row["verdict"].startswith("settled")]
+            own = [row for row in rows if (row["start"], row["way"], row["verdict"]) == (start, way, "settled")]
             if own:
                 axes.plot([int(row["blocks"]) for row in own], [int(row["evaluations"]) for row in own], marker + line,
                           color=colour, label=f"{way}, {start}")
@@ -58,8 +59,8 @@ def draw_increments(axes, rows, random, column, words):
     names = [name for name in SCENES if any(row["scene"] == name for row in rows)]
     for k, name in enumerate(names):
         own = [row for row in rows if row["scene"] == name and row["way"] == "static"]
-        axes.plot([int(row["parts"]) for row in own], [max(float(row[column]), 1e-6) for row in own], "o-", color=f"C{k}",
-                  markersize=4, label=name)
+        axes.plot([int(row["parts"]) for row in own], [max(float(row[column]), 1e-6) for row in own], "o-",
+                  color=f"C{k}", markersize=4, label=name)
     for parts in sorted({int(row["parts"]) for row in random if row["way"] == "static"}):
         values = [float(row[column]) for row in random if row["way"] == "static" and int(row["parts"]) == parts]
         axes.boxplot(values, positions=[1.25 * parts], widths=[0.25 * parts], showfliers=True, manage_ticks=False,
@@ -87,7 +88,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     folder = parser.parse_args().folder
-    cost, paths, random, growth = (read(folder / f"statics_{part}.csv") for part in ("cost", "paths", "random", "growth"))
+    cost, paths, random, growth = (read(folder / f"statics_{part}.csv")
+                                   for part in ("cost", "paths", "random", "growth"))
     random = [row for row in random if row.get("normal_off")]
     figure, axes = plt.subplots(2, 3, figsize=(14.5, 8.4))
     draw_cost(axes[0, 0], cost, "evaluations", "evaluations of all contacts")

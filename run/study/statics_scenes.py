@@ -1,7 +1,7 @@
 """Scenes of the statics study: what is loaded, and how slowly it can be.
 
-A case is a scene file, its stages and the load that slow loading lets in over many steps. `SETTLE` in a stage stands for
-the keys that choose the way to rest.
+A case is a scene file, its stages and the load that slow loading lets in over many steps. `SETTLE` in a stage
+stands for the keys that choose the way to rest.
 """
 
 import math
@@ -73,7 +73,8 @@ def pile(work, kind, rows):
     text = HEAD.format(fidelity="rigid", modulus=40e9, stiffness=1e9, friction=35.0) + (
         f'[[block]]\nname = "floor"\nmaterial = "rock"\nfixed = true\n'
         f"vertices = [[-2, -2], [{wide + 2}, -2], [{wide + 2}, 0], [-2, 0]]\n"
-        f'[[{kind}]]\nname = "{kind}"\nmaterial = "rock"\norigin = [0.0, 0.0]\nrows = {rows}\n{columns}block_size = {size}\n')
+        f'[[{kind}]]\nname = "{kind}"\nmaterial = "rock"\norigin = [0.0, 0.0]\nrows = {rows}\n{columns}'
+        f"block_size = {size}\n")
     file = Path(work) / f"{kind}_{rows}.toml"
     file.write_text(text)
     return Case(file, [settle("weight")], slow_gravity)
@@ -101,9 +102,11 @@ def cases(work, quick):
 
 def slope_of_benches(benches, start):
     """slope_large.toml with so many benches; its joints begin at gap 0 or under in-situ stress."""
-    ends = "{height = 20.0, face_angle_deg = 72.0, width = 7.0}, " * (benches - 1) + "{height = 20.0, face_angle_deg = 72.0}"
-    sets = [f"region.slope.bench=[{ends}]", f"region.slope.toe_length={8.0 * benches}",
-            f"region.slope.crest_length={17.0 * benches}", f"region.slope.depth={5.0 * benches}", "output.contacts=false"]
+    bench = "height = 20.0, face_angle_deg = 72.0"
+    sets = ["region.slope.bench=[" + f"{{{bench}, width = 7.0}}, " * (benches - 1) + f"{{{bench}}}]",
+            f"region.slope.toe_length={8.0 * benches}",
+            f"region.slope.crest_length={17.0 * benches}", f"region.slope.depth={5.0 * benches}",
+            "output.contacts=false"]
     if start == "in situ":
         sets.append(f"in_situ={{level = {20.0 * benches}, vertical_stress = 0.0, k0 = 0.5}}")
     return Case(SCENES / "slope_large.toml", [settle("weight")], slow_gravity, sets)
@@ -112,7 +115,8 @@ def slope_of_benches(benches, start):
 def rock_mass(work, seed):
     """A slope (odd seeds) or a box with a free top, in two random joint sets; every third has deformable blocks.
 
-    Between 200 and 800 blocks; the flat set dips by less than its friction angle out of a slope, or a plane would slide.
+    Between 200 and 800 blocks. The flat set dips by less than its friction angle out of a slope, or a plane would
+    slide.
     """
     random = numpy.random.default_rng(seed)
     is_slope, is_deformable = seed % 2 == 1, seed % 3 == 0
@@ -123,7 +127,8 @@ def rock_mass(work, seed):
     friction, stiffness = random.uniform(30.0, 45.0), 10.0 ** random.uniform(9.0, 10.0)
     if is_slope:
         height, face = random.uniform(15.0, 25.0), random.uniform(55.0, 75.0)
-        region = (f"[region.slope]\ntoe_length = {0.4 * height}\ncrest_length = {0.85 * height}\ndepth = {0.3 * height}\n"
+        region = (f"[region.slope]\ntoe_length = {0.4 * height}\ncrest_length = {0.85 * height}\n"
+                  f"depth = {0.3 * height}\n"
                   f"[[region.slope.bench]]\nheight = {height}\nface_angle_deg = {face}\n")
         foot = height / math.tan(math.radians(face))
         area = 0.3 * height * (1.25 * height + foot) + height * (0.85 * height + 0.5 * foot)
@@ -141,7 +146,8 @@ def rock_mass(work, seed):
         f'spacing_scatter = {{kind = "lognormal", deviation = {random.uniform(0.1, 0.3) * spacing}}}\nseed = {seed}\n'
         f'[[joint_set]]\nname = "steep"\ndip_deg = {steep}\ndip_scatter = {{kind = "normal", deviation_deg = 3.0}}\n'
         f"spacing = {ratio * spacing}\nspacing_scatter = {{kind = \"normal\", deviation = {0.15 * ratio * spacing}}}\n"
-        f"trace_length = {random.uniform(4.0, 12.0) * spacing}\ngap = {random.uniform(0.5, 1.5) * spacing}\nseed = {seed + 1000}\n")
+        f"trace_length = {random.uniform(4.0, 12.0) * spacing}\ngap = {random.uniform(0.5, 1.5) * spacing}\n"
+        f"seed = {seed + 1000}\n")
     file = Path(work) / f"rock_mass_{seed}.toml"
     file.write_text(text)
     return Case(file, [settle("weight")], slow_gravity), {"kind": "slope" if is_slope else "box",

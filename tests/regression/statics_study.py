@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""statics_study.py BUILD FOLDER: run/study/statics.py --quick and its charts, and what the tables must say of small models.
+"""statics_study.py BUILD FOLDER: run/study/statics.py --quick and its charts, and what the tables say of small models.
 
-The tables have a row for every way to rest. On a wall, a pyramid and a slope more increments end nearer to slow loading, the
-default number ends within some per cent of it, and the static solver takes fewer evaluations than damped motion.
+The tables have a row for every way to rest. On a wall, a pyramid and a slope more increments end nearer to slow
+loading, the default number ends within some per cent of it, and the static solver takes fewer evaluations than damped
+motion.
 """
 
 import csv
@@ -56,7 +57,8 @@ def check_growth(rows):
     assert {(row["start"], row["way"]) for row in rows} == {(start, way) for start in ("joints open", "in situ")
                                                             for way in WAYS[:3]}, rows
     for row in rows:
-        assert row["verdict"] == "settled" and int(row["pair_evaluations"]) > int(row["evaluations"]) * int(row["blocks"]), row
+        assert row["verdict"] == "settled", row
+        assert int(row["pair_evaluations"]) > int(row["evaluations"]) * int(row["blocks"]), row
 
 
 def main():
@@ -64,7 +66,8 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     subprocess.run([STUDY / "statics.py", build, folder, "--quick"], check=True)
     subprocess.run([STUDY / "plot_statics.py", folder], check=True)
-    for part, check in (("cost", check_cost), ("paths", check_paths), ("random", check_random), ("growth", check_growth)):
+    checks = {"cost": check_cost, "paths": check_paths, "random": check_random, "growth": check_growth}
+    for part, check in checks.items():
         with open(folder / f"statics_{part}.csv", newline="") as file:
             check(list(csv.DictReader(file)))
     assert (folder / "statics.png").stat().st_size > 10000
