@@ -42,24 +42,24 @@ def cost_table(rows):
 
 
 def growth_table(rows):
-    lines = [[count(row["blocks"]), row["start"], row["way"], count(row["evaluations"]), number(row["cpu_s"]),
+    lines = [[row["model"], count(row["blocks"]), row["start"], row["way"], count(row["evaluations"]), number(row["cpu_s"]),
               row["verdict"], row["loose"]] for row in rows]
-    return table(["blocks", "start", "way", "evaluations", "CPU s", "verdict", "loose blocks"], lines,
+    return table(["model", "blocks", "start", "way", "evaluations", "CPU s", "verdict", "loose blocks"], lines,
                  source("statics", "statics_growth.csv"))
 
 
 def exponents(rows):
     """Of N in the evaluations from the smallest to the largest slope, by way and start."""
     found = []
-    for start in ("joints open", "in situ"):
+    for model, start in (("slope", "joints open"), ("slope", "in situ"), ("wall", "joints open")):
         for way in WAYS[:3]:
-            own = [row for row in of(rows, start=start, way=way) if row["verdict"].startswith("settled")]
+            own = [row for row in of(rows, model=model, start=start, way=way) if row["verdict"].startswith("settled")]
             if len(own) > 1:
                 first, last = own[0], own[-1]
                 power = (math.log(float(last["evaluations"]) / float(first["evaluations"])) /
                          math.log(float(last["blocks"]) / float(first["blocks"])))
-                found.append([way, start, f"{count(first['blocks'])} to {count(last['blocks'])}", number(power, 2)])
-    return table(["way", "start", "blocks", "exponent of N"], found, source("statics", "statics_growth.csv"))
+                found.append([model, start, way, f"{count(first['blocks'])} to {count(last['blocks'])}", number(power, 2)])
+    return table(["model", "start", "way", "blocks", "exponent of N"], found, source("statics", "statics_growth.csv"))
 
 
 def paths_table(rows):
@@ -97,8 +97,12 @@ def statics():
     cost, paths, random, growth = (read(f"statics_{part}.csv") for part in ("cost", "paths", "random", "growth"))
     compared = [row for row in random if row["normal_off"]]
     default = of(compared, way="static", parts="50")
-    finer = of(compared, way="static", parts="200")
-    far = [row for row in default if float(row["displacement_off"]) > TARGETS["displacement_off"]]
+    finest = of(compared, way="static", parts="800")
+
+    def beyond(rows, column):
+        return [row for row in rows if float(row[column]) > TARGETS[column]]
+
+    far, still = beyond(default, "displacement_off"), beyond(finest, "displacement_off")
     return {
         "cost": cost_table(cost), "growth": growth_table(growth), "exponents": exponents(growth),
         "paths": paths_table(paths), "random": random_table(compared), "masses": str(len(default)),
@@ -109,5 +113,10 @@ def statics():
         "far": str(len(far)),
         "far_blocks": count(statistics.median(int(row["blocks_off"]) for row in far) if far else 0),
         "far_most": count(max((int(row["blocks_off"]) for row in far), default=0)),
-        "left": str(sum("left" in row["verdict"] for row in default + finer)), "runs": str(len(default + finer)),
+        "still": ", ".join(f"seed {row['seed']} ({row['blocks_off']} blocks, {percent(row['displacement_off'])} %)"
+                           for row in still) or "none",
+        "still_forces": ", ".join(f"seed {row['seed']} ({percent(row['normal_off'])} %)"
+                                  for row in beyond(finest, "normal_off")) or "none",
+        "left": str(sum("left" in row["verdict"] for row in of(compared, way="static"))),
+        "runs": str(len(of(compared, way="static"))),
     }

@@ -45,13 +45,14 @@ def draw_cost(axes, rows, column, words):
 
 
 def draw_growth(axes, rows):
-    for start, line in (("joints open", "-"), ("in situ", "--")):
+    for model, start, line in (("slope", "joints open", "-"), ("slope", "in situ", "--"), ("wall", "joints open", ":")):
         for way, (colour, marker) in LOOKS.items():
-            own = [row for row in rows if (row["start"], row["way"], row["verdict"]) == (start, way, "settled")]
+            own = [row for row in rows if (row["model"], row["start"], row["way"]) == (model, start, way) and
+                   row["verdict"] == "settled"]
             if own:
                 axes.plot([int(row["blocks"]) for row in own], [int(row["evaluations"]) for row in own], marker + line,
-                          color=colour, label=f"{way}, {start}")
-    finish(axes, "number of blocks", "evaluations to the verdict settled", "Slopes of 1 and more benches")
+                          color=colour, label=f"{way}: {model}, {start}")
+    finish(axes, "number of blocks", "evaluations to the verdict settled", "Growth: slopes and walls")
 
 
 def draw_increments(axes, rows, random, column, words):

@@ -11,7 +11,8 @@ damping of 0.8, and slow loading: the load rises smoothly over a number of steps
 OUT_DIR/statics_cost.csv     evaluations and CPU time until the unbalanced ratio has fallen to a value
 OUT_DIR/statics_paths.csv    difference from slow loading over 16,000 steps, against cost
 OUT_DIR/statics_random.csv   the same of 30 random rock masses
-OUT_DIR/statics_growth.csv   evaluations and CPU time of slopes of 1, 2 and 5 benches; --large adds one of 15
+OUT_DIR/statics_growth.csv   evaluations and CPU time of slopes and walls of up to 10^4 blocks; --large adds those of
+                             10^5 and 10^6 under the static solver
 """
 
 import argparse
@@ -237,25 +238,30 @@ def cost(runner, quick):
     return rows
 
 
-def growth(runner, sizes, ways):
-    """Evaluations of slopes of the same blocks and more and more benches."""
+SMALL = [("slope", 1), ("slope", 2), ("slope", 5), ("wall", 16), ("wall", 50)]  # benches, rows of bricks
+LARGE = [("slope", 15), ("wall", 224), ("wall", 707)]
+
+
+def growth(runner, models, ways):
+    """Evaluations of slopes of more and more benches and walls of more and more rows, the blocks of the same size."""
     rows = []
-    for benches in sizes:
-        for start in ("joints open", "in situ"):
-            case = scenes.slope_of_benches(benches, start)
+    for model, size in models:
+        starts = {"joints open": scenes.pile(runner.work, "wall", size)} if model == "wall" else {
+            start: scenes.slope_of_benches(size, start) for start in ("in situ", "joints open")}
+        for start, case in starts.items():
             for way in ways:
                 rest = runner.run(case, WAYS[way])
-                rows.append({"benches": benches, "start": start, "way": way} | facts(rest))
+                rows.append({"model": model, "size": size, "start": start, "way": way} | facts(rest))
                 tell(**rows[-1])
                 runner.drop(rest)
     return rows
 
 
-def with_large_slope(path, runner):
-    """The table of growth with 15 benches under the static solver in place of what it had of them."""
+def with_large_models(path, runner):
+    """The table of growth with the static solver on the large models in place of what it had of them."""
     with open(path, newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["benches"] != "15"]
-    return rows + growth(runner, [15], ["static"])
+        rows = [row for row in csv.DictReader(file) if (row["model"], int(row["size"])) not in LARGE]
+    return rows + growth(runner, LARGE, ["static"])
 
 
 def main():
@@ -267,12 +273,12 @@ def main():
     parser.add_argument("--large", action="store_true")
     asked = parser.parse_args()
     parts = {"cost": cost, "paths": paths, "random": random_masses,
-             "growth": lambda runner, quick: growth(runner, [1] if quick else [1, 2, 5], [*WAYS])}
+             "growth": lambda runner, quick: growth(runner, SMALL[:1] if quick else SMALL, [*WAYS])}
     with tempfile.TemporaryDirectory() as work:
         runner = Runner(asked.build.resolve() / "gcpdda", Path(work))
         if asked.large:
             path = asked.out / "statics_growth.csv"
-            write_table(path, with_large_slope(path, runner))
+            write_table(path, with_large_models(path, runner))
             return
         for part in asked.only or parts:
             write_table(asked.out / f"statics_{part}.csv", parts[part](runner, asked.quick))
