@@ -102,6 +102,15 @@ def statics():
     def beyond(rows, column):
         return [row for row in rows if float(row[column]) > TARGETS[column]]
 
+    def missing(parts):
+        own = of(compared, way="static", parts=parts)
+        return str(sum(any(float(row[column]) > target for column, target in TARGETS.items()) for row in own))
+
+    def blocks(words):
+        return f"{words} block" + ("s" if words != "1" else "")
+
+    many = [row for row in default if int(row["blocks_off"]) > 10]
+    then = [of(compared, way="static", parts="200", seed=row["seed"])[0]["blocks_off"] for row in many]
     far, still = beyond(default, "displacement_off"), beyond(finest, "displacement_off")
     return {
         "cost": cost_table(cost), "growth": growth_table(growth), "exponents": exponents(growth),
@@ -113,10 +122,13 @@ def statics():
         "far": str(len(far)),
         "far_blocks": count(statistics.median(int(row["blocks_off"]) for row in far) if far else 0),
         "far_most": count(max((int(row["blocks_off"]) for row in far), default=0)),
-        "still": ", ".join(f"seed {row['seed']} ({row['blocks_off']} blocks, {percent(row['displacement_off'])} %)"
+        "still": ", ".join(f"seed {row['seed']} ({blocks(row['blocks_off'])}, {percent(row['displacement_off'])} %)"
                            for row in still) or "none",
         "still_forces": ", ".join(f"seed {row['seed']} ({percent(row['normal_off'])} %)"
                                   for row in beyond(finest, "normal_off")) or "none",
+        "missing_50": missing("50"), "missing_100": missing("100"), "missing_200": missing("200"),
+        "missing_800": missing("800"), "then": " and ".join(then) or "none",
+        "many": " and ".join(f"{row['blocks_off']} in seed {row['seed']}" for row in many) or "none",
         "left": str(sum("left" in row["verdict"] for row in of(compared, way="static"))),
         "runs": str(len(of(compared, way="static"))),
     }

@@ -25,14 +25,14 @@ def read(path):
         return list(csv.DictReader(file)) or sys.exit(f"plot_statics.py: {path} has no rows")
 
 
-def finish(axes, x, y, title):
+def finish(axes, x, y, title, **legend):
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel(x)
-    axes.set_ylabel(y)
+    axes.set_ylabel(y, fontsize=9)
     axes.set_title(title, fontsize=11)
     axes.grid(True, alpha=0.3)
-    axes.legend(fontsize=8)
+    axes.legend(**{"fontsize": 8} | legend)
 
 
 def draw_cost(axes, rows, column, words):
@@ -41,7 +41,8 @@ def draw_cost(axes, rows, column, words):
         own = [row for row in rows if row["scene"] == scene and row["way"] == way and row[column]]
         axes.plot([float(row[column]) for row in own], [float(row["ratio"]) for row in own], marker + "-", color=colour,
                   label=way)
-    finish(axes, words, "largest unbalanced force over largest force", f"{scene}, {int(rows[-1]['blocks']):,d} blocks")
+    finish(axes, words, "largest unbalanced force over largest force", f"{scene}, {int(rows[-1]['blocks']):,d} blocks",
+           loc="lower left")
 
 
 def draw_growth(axes, rows):
@@ -51,8 +52,13 @@ def draw_growth(axes, rows):
                    row["verdict"] == "settled"]
             if own:
                 axes.plot([int(row["blocks"]) for row in own], [int(row["evaluations"]) for row in own], marker + line,
-                          color=colour, label=f"{way}: {model}, {start}")
-    finish(axes, "number of blocks", "evaluations to the verdict settled", "Growth: slopes and walls")
+                          color=colour)
+        axes.plot([], [], line, color="k", label=f"{model}, {start}")
+    for way, (colour, marker) in list(LOOKS.items())[:3]:
+        axes.plot([], [], marker, color=colour, label=way)
+    axes.margins(y=0.12)
+    finish(axes, "number of blocks", "evaluations to the verdict settled", "Growth: slopes and walls", loc="upper left",
+           bbox_to_anchor=(0.45, 0.72))
 
 
 def draw_increments(axes, rows, random, column, words):
@@ -67,7 +73,8 @@ def draw_increments(axes, rows, random, column, words):
         axes.boxplot(values, positions=[1.25 * parts], widths=[0.25 * parts], showfliers=True, manage_ticks=False,
                      flierprops={"markersize": 2})
     axes.axhline(TARGETS[column], color="k", linestyle=":", label="target")
-    finish(axes, "increments of the load", words, "Static solver; boxes: random rock masses")
+    axes.set_ylim(1e-8, 2.0)
+    finish(axes, "increments of the load", words, "Static solver; boxes: random rock masses", loc="lower left", ncol=2)
 
 
 def draw_accuracy(axes, rows):
@@ -100,7 +107,7 @@ def main():
     draw_increments(axes[1, 1], paths, random, "displacement_off", "largest difference of displacements over the sag")
     draw_accuracy(axes[1, 2], paths)
     for panel in axes[1, :2]:
-        panel.set_xlim(0.8, 1.3 * max(int(row["parts"]) for row in paths if row["way"] == "static"))
+        panel.set_xlim(0.8, 1.7 * max(int(row["parts"]) for row in paths if row["way"] == "static"))
     figure.tight_layout()
     for suffix in ("png", "svg"):
         figure.savefig(folder / f"statics.{suffix}", dpi=110)
