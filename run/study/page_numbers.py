@@ -19,7 +19,8 @@ def bracket(scene):
 def to_rest():
     """Evaluations of the static solver, kinetic and local damping until the slope rests to 1e-5."""
     rows = of(read("statics_cost.csv"), scene="slope_jointed", ratio="1e-05")
-    return ", ".join(count(of(rows, way=way)[0]["evaluations"]) for way in ("static", "kinetic damping", "local damping"))
+    ways = ("static", "kinetic damping", "local damping")
+    return ", ".join(count(of(rows, way=way)[0]["evaluations"]) for way in ways)
 
 
 def same_forces(increments):
@@ -48,8 +49,8 @@ def numbers():
          f"{states['flutter_grip']} ({states['flutter_centre']} with friction at the centre of pressure)", "flutter"],
         ["factor of safety, plane failure (limit equilibrium 1.9534)", bracket("plane_failure"), "stiffness"],
         ["factor of safety, toppling slope of Goodman and Bray (limit equilibrium 1.0682)", bracket("goodman_bray"), "stiffness"],
-        ["evaluations until a slope of 1,992 blocks rests to 1e-5: static solver, kinetic damping, local damping", to_rest(),
-         "statics"],
+        ["evaluations until a slope of 1,992 blocks rests to 1e-5: static solver, kinetic damping, local damping",
+         to_rest(), "statics"],
         ["largest normal forces of 30 rock masses, static solver with 50 increments against slow loading: median, most",
          same_forces("50"), "statics"],
         ["the same with 200 increments", same_forces("200"), "statics"],

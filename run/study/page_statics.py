@@ -42,8 +42,8 @@ def cost_table(rows):
 
 
 def growth_table(rows):
-    lines = [[row["model"], count(row["blocks"]), row["start"], row["way"], count(row["evaluations"]), number(row["cpu_s"]),
-              row["verdict"], row["loose"]] for row in rows]
+    lines = [[row["model"], count(row["blocks"]), row["start"], row["way"], count(row["evaluations"]),
+              number(row["cpu_s"]), row["verdict"], row["loose"]] for row in rows]
     return table(["model", "blocks", "start", "way", "evaluations", "CPU s", "verdict", "loose blocks"], lines,
                  source("statics", "statics_growth.csv"))
 
@@ -58,7 +58,8 @@ def exponents(rows):
                 first, last = own[0], own[-1]
                 power = (math.log(float(last["evaluations"]) / float(first["evaluations"])) /
                          math.log(float(last["blocks"]) / float(first["blocks"])))
-                found.append([model, start, way, f"{count(first['blocks'])} to {count(last['blocks'])}", number(power, 2)])
+                found.append([model, start, way, f"{count(first['blocks'])} to {count(last['blocks'])}",
+                              number(power, 2)])
     return table(["model", "start", "way", "blocks", "exponent of N"], found, source("statics", "statics_growth.csv"))
 
 
@@ -89,7 +90,8 @@ def random_table(rows):
         lines.append(line)
     return table(["way", "rock masses", "20 largest N: worst, %", "20 largest N: mean, %",
                   "displacement: worst block, % of sag", "displacement: 99 % of blocks, % of sag",
-                  "share at the cap, difference in %", "N within 1 %", "displacement within 4 %", "cap within 0.05", "evaluations, median"], lines,
+                  "share at the cap, difference in %", "N within 1 %", "displacement within 4 %",
+                  "cap within 0.05", "evaluations, median"], lines,
                  source("statics", "statics_random.csv") + " Pairs are median and largest.")
 
 
