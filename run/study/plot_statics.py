@@ -42,7 +42,9 @@ def draw_cost(axes, rows, column, words):
         axes.plot([float(row[column]) for row in own], [float(row["ratio"]) for row in own], marker + "-", color=colour,
                   label=way)
     finish(axes, words, "largest unbalanced force over largest force", f"{scene}, {int(rows[-1]['blocks']):,d} blocks",
-           loc="lower left")
+           loc="lower left", bbox_to_anchor=(0.2, 0.0))
+    if column == "cpu_s":
+        axes.get_legend().remove()
 
 
 def draw_growth(axes, rows):
