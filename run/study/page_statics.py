@@ -64,8 +64,8 @@ def exponents(rows):
 
 
 def paths_table(rows):
-    shown = {("static", "1"), ("static", "50"), ("static", "100"), ("static", "200"), ("static", "800"), ("kinetic damping", "1"),
-             ("local damping", "1"), ("slow loading", "8000")}
+    shown = {*(("static", n) for n in ("1", "50", "100", "200", "800")), ("kinetic damping", "1"), ("local damping", "1"),
+             ("slow loading", "8000")}
     lines = [[row["scene"], words_of(row), count(row["evaluations"]), number(row["cpu_s"]),
               marked(row["normal_off"], "normal_off"), row["pairs_off"],
               marked(row["displacement_off"], "displacement_off"), row["blocks_off"],
@@ -133,7 +133,8 @@ def statics():
                            for row in still) or "none",
         "still_forces": ", ".join(f"seed {row['seed']} ({percent(row['normal_off'])} %)"
                                   for row in beyond(finest, "normal_off")) or "none",
-        "scenes_50": scenes("50"), "scenes_100": scenes("100"), "missing_50": missing("50"), "missing_100": missing("100"), "missing_200": missing("200"),
+        "scenes_50": scenes("50"), "scenes_100": scenes("100"), "missing_50": missing("50"),
+        "missing_100": missing("100"), "missing_200": missing("200"),
         "missing_800": missing("800"), "then": " and ".join(then) or "none",
         "many": " and ".join(f"{row['blocks_off']} in seed {row['seed']}" for row in many) or "none",
         "left": str(sum("left" in row["verdict"] for row in of(compared, way="static"))),
