@@ -64,7 +64,8 @@ public:
     double sum = 0.0;
     for (std::size_t k = digits.size(); k-- > 0;) {
       if (digits[k] != 0) {
-        sum += std::ldexp(static_cast<double>(digits[k]), static_cast<int>(32 * k) - static_cast<int>(offset));
+        sum +=
+            std::ldexp(static_cast<double>(digits[k]), static_cast<int>(32 * k) - static_cast<int>(offset));
       }
     }
     return sum;

@@ -32,9 +32,9 @@
 // equilibrium under all of the load: after the share u of them
 //     s = (u + 3 u^2 - 2 u^3)/2.
 //
-// A block that nothing touches falls, under a force that does not change. It has no frequency, and in the sums
-// over v would say that nothing needs damping: they leave it out. Where it lands, it begins anew by itself,
-// with b = 1/2, and is left out once more, so that a pebble does not stop the pile.
+// A block that nothing touches falls, under a force that does not change. It has no frequency, and in the
+// sums over v would say that nothing needs damping: they leave it out. Where it lands, it begins anew by
+// itself, with b = 1/2, and is left out once more, so that a pebble does not stop the pile.
 //
 // The step of a block is at most `steps_of_overlap` of the largest overlap, the length by which contacts
 // carry what they carry, and at most `step_of_width` of its narrowest width: a block that has lost its
