@@ -320,17 +320,13 @@ void tell_joint_sets(const Communicator &world, const Scene &scene, RunOptions &
   if (!world.is_root()) {
     return;
   }
-  const auto measures_of = [](const blockgen::SetMeasures &measures) {
-    return JointSetMeasures{measures.spacing, measures.intensity, measures.trace_length, measures.angle,
-                            measures.scatter};
-  };
   const std::vector<blockgen::SetStatistics> all = blockgen::set_statistics(scene.region);
   for (std::size_t i = 0; i < all.size(); ++i) {
     JointSetSummary &set = options.joint_sets.emplace_back();
     set.name = blockgen::bare_name(scene.region.joint_sets[i]);
-    set.asked = measures_of(all[i].asked);
+    set.asked = all[i].asked;
     if (all[i].is_drawn) {
-      set.drawn = measures_of(all[i].drawn);
+      set.drawn = all[i].drawn;
       set.joints = all[i].joints;
       set.lines = all[i].lines;
     }

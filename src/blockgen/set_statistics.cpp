@@ -142,7 +142,7 @@ std::string words_on_plane(const JointSet &set, double azimuth) {
                      azimuth * degrees, std::abs(angle), side, plane.spacing, set.spacing.mean);
 }
 
-std::string words_on(const SetMeasures &measures) {
+std::string words_on(const JointSetMeasures &measures) {
   return fmt::format(
       "spacing {}, P21 {:.4g} m/m2{}, traces at {:.4g} degrees{}",
       measures.spacing > 0.0 ? fmt::format("{:.4g} m", measures.spacing) : "unknown", measures.intensity,
@@ -152,7 +152,7 @@ std::string words_on(const SetMeasures &measures) {
                                        : "");
 }
 
-std::string json_of(const SetMeasures &measures) {
+std::string json_of(const JointSetMeasures &measures) {
   return fmt::format(
       "{{\"spacing\": {:.17g}, \"p21\": {:.17g}, \"trace_length\": {:.17g}, \"trace_angle_deg\": {:.17g}, "
       "\"scatter_deg\": {:.17g}}}",

@@ -10,18 +10,9 @@
 
 namespace gcpdda::blockgen {
 
-/// Measures of a joint set in the region, or in the part of it that the set is for. Zero: none to measure.
-struct SetMeasures {
-  double spacing = 0.0;      ///< between neighbouring lines, in the section, m
-  double intensity = 0.0;    ///< P21: length of joint per area, m/m2
-  double trace_length = 0.0; ///< mean, m; through-going joints have none
-  double angle = 0.0;        ///< mean angle of the traces against the x axis, rad
-  double scatter = 0.0;      ///< standard deviation of this angle, rad
-};
-
 struct SetStatistics {
-  SetMeasures asked;
-  SetMeasures drawn;
+  JointSetMeasures asked;
+  JointSetMeasures drawn;
   bool is_drawn = false;    ///< false: so many joints that they have not been counted
   std::int64_t lines = 0;   ///< lines of joints that cross the region
   std::int64_t joints = 0;  ///< joints with a part in the region

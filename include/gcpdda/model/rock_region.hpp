@@ -71,6 +71,15 @@ struct JointSet {
   }
 };
 
+/// Measures of a joint set in the region, or in the part of it that the set is for. Zero: none to measure.
+struct JointSetMeasures {
+  double spacing = 0.0;      ///< between neighbouring lines, in the section, m
+  double intensity = 0.0;    ///< P21: length of joint per area, m/m2
+  double trace_length = 0.0; ///< mean, m; through-going joints have none
+  double angle = 0.0;        ///< mean angle of the traces against the x axis, rad
+  double scatter = 0.0;      ///< standard deviation of this angle, rad
+};
+
 /// A single joint or fault.
 struct FaultLine {
   std::string name;

@@ -63,7 +63,7 @@ TEST(SetStatistics, OfAScatteredSetAreNearThoseAsked) {
   double spacing = 0.0;
   double joints = 0.0;
   constexpr int seeds = 10;
-  SetMeasures asked;
+  JointSetMeasures asked;
   for (int seed = 0; seed < seeds; ++seed) {
     set.seed = seed;
     const SetStatistics one = set_statistics(region_of(set))[0];

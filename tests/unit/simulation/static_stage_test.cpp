@@ -119,6 +119,33 @@ TEST(StaticStage, AWallSettlesWhereDampedMotionLeavesIt) {
   EXPECT_LT(apart, 0.04 * sag);
 }
 
+// A wall comes to rest while a block beside it still falls, and where that lands nothing else is stopped: the
+// static solver needs no help, and the block lies where its weight presses it.
+TEST(StaticStage, AFallingBlockDoesNotHoldUpAWall) {
+  for (const std::string kind : {"rigid", "deformable"}) {
+    const std::string toml =
+        fmt::format("[run]\nfidelity = \"{}\"\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 2e9\n"
+                    "poissons_ratio = 0.25\n[joint.default]\nnormal_stiffness = 1e9\n"
+                    "friction_angle_deg = 30.0\n[output]\ninterval = 10\n",
+                    kind) +
+        block_toml("floor", rectangle({-1.0, -1.0}, {31.0, 0.0}), "fixed = true") +
+        block_toml("falls", rectangle({26.0, 0.3}, {27.0, 1.3})) +
+        "[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 20\ncolumns = 20\n"
+        "block_size = [1.0, 0.5]\n" +
+        settle;
+    Simulation simulation(Communicator::self(), scene_of(toml));
+    run_stages(simulation);
+    EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled) << kind;
+    EXPECT_LT(simulation.stage_results().back().steps, 250) << kind; // 50 of the load, 50 of the fall
+    EXPECT_FALSE(has_fallen_back(simulation)) << kind;
+    // It has closed its joint by w/k_n, and a deformable one has shortened by about half of w/E.
+    const double weight = rock_density * earth_gravity;
+    const double down = -displacement_of(simulation, 1).u.y - 0.3;
+    EXPECT_GT(down, 0.9 * weight / 1e9) << kind;
+    EXPECT_LT(down, 1.1 * (weight / 1e9 + weight / 2e9)) << kind;
+  }
+}
+
 // A column of a deformable block on a rigid one: u = w/2 (1 - nu^2)/E of its own weight (plane strain, sides
 // free) and the joints. The block of constant strain feels half its weight.
 TEST(StaticStage, ADeformableBlockShortensUnderItsWeight) {

@@ -162,6 +162,26 @@ TEST(ContactSprings, SlipTakesMostOfTheTangentialStiffness) {
   EXPECT_NEAR(springs.springs()[0].tangential, rules.slip_share * whole, 1e-9 * whole);
 }
 
+// Turned onto its corner the square touches over millimetres; its spring falls no faster than one that opens.
+TEST(ContactSprings, OfASliverFadeFromWhatTheyWere) {
+  ContactBench bench = stacked_squares(0.1);
+  statics::ContactSprings springs;
+  const statics::SpringRules rules;
+  bench.evaluate();
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  const double whole = springs.springs()[0].normal_stiffness;
+  EXPECT_NEAR(whole, k_n, 1e-9 * k_n);
+  bench.move(0, {{0.0, 0.089}, 0.2}); // the corner goes down by sin(0.2)/2 - (1 - cos(0.2))/2 = 0.089
+  double expected = whole;
+  for (int k = 0; k < 5; ++k) {
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+    ASSERT_EQ(springs.num_closed(), 1U);
+    expected *= rules.fade;
+    EXPECT_NEAR(springs.springs()[0].normal_stiffness, expected, 1e-9 * whole) << k;
+    bench.evaluate();
+  }
+}
+
 TEST(ContactSprings, OfAnOpenContactFadeAndEnd) {
   ContactBench bench = stacked_squares(0.1);
   statics::ContactSprings springs;
