@@ -53,6 +53,8 @@ for target in "${targets[@]}"; do
   fuzz "$target" &
   jobs+=($!)
 done
+failed=0
 for job in "${jobs[@]}"; do
-  wait "$job"
+  wait "$job" || failed=1 # the others still need their files
 done
+exit $failed

@@ -96,8 +96,9 @@ private:
       fault("this is no HDF5 file", "[blocks] file names one", "check the path or write the blocks as HDF5");
       return false;
     }
+    const hdf5::Properties access = hdf5::foreign_access();
     try {
-      file_ = hdf5::open_to_read(path);
+      file_ = hdf5::open_to_read(path, access.get());
     } catch (const FileError &) {
       fault("the file is damaged or cut short", fmt::format("HDF5 says: {}", hdf5::last_error()),
             "write or copy it again");

@@ -114,12 +114,18 @@ Content describe(hid_t object, const std::string &path, const Dataspace &space, 
 
 } // namespace
 
+Properties foreign_access() {
+  Properties access(checked(H5Pcreate(H5P_FILE_ACCESS), "set up file access"));
+  checked(H5Pset_fapl_mpio(access.get(), MPI_COMM_SELF, MPI_INFO_NULL), "set up file access");
+  return access;
+}
+
 // HDF5 would wait for what a pipe gives.
-File open_to_read(const std::filesystem::path &path) {
+File open_to_read(const std::filesystem::path &path, hid_t access) {
   if (const InputFile file = look_at_input_file(path.string()); !file.trouble.empty()) {
     throw FileError("cannot open " + path.string() + ": " + file.trouble);
   }
-  return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open " + path.string()));
+  return File(checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), "open " + path.string()));
 }
 
 std::vector<std::string> list_contents(const File &file) {

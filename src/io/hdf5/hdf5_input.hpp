@@ -15,7 +15,10 @@ namespace gcpdda::hdf5 {
 
 // By one process alone.
 
-File open_to_read(const std::filesystem::path &path);
+File open_to_read(const std::filesystem::path &path, hid_t access = H5P_DEFAULT);
+/// Access to a file of anybody, which may be damaged: by the MPI driver, which does without the accumulator
+/// of metadata, in which an address of such a file makes HDF5 1.10 crash (CVE-2018-13867). Needs MPI.
+Properties foreign_access();
 
 /// A dataset or an attribute as it is in the file.
 struct Content {
