@@ -86,7 +86,7 @@ template <class T> std::vector<T> gathered(const Communicator &communicator, con
 
 } // namespace
 
-std::optional<double> bound_at(Simulation &settled) {
+std::optional<double> bound_at(Simulation &settled, double settled_factor) {
   evaluate_still(settled.state());
   std::vector<OwnedBlock> mine;
   for (std::size_t row = 0; row < settled.blocks().num_owned; ++row) {
@@ -131,7 +131,9 @@ std::optional<double> bound_at(Simulation &settled) {
     joints.push_back(joint);
   }
   const StrengthReduction &reduction = settled.scene().reduction;
-  return bound_of_factor(blocks, joints, reduction.from, reduction.to, 1e-3);
+  const std::optional<double> further =
+      bound_of_factor(blocks, joints, reduction.from / settled_factor, reduction.to / settled_factor, 1e-3);
+  return further ? std::optional(settled_factor * *further) : std::nullopt;
 }
 
 } // namespace gcpdda

@@ -110,7 +110,7 @@ private:
   ExitCode bound() {
     Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_directory()});
     try {
-      report_.bound = bound_at(settled);
+      report_.bound = bound_at(settled, report_.settled.factor);
     } catch (const UnsolvedProgramme &unsolved) {
       say(std::string(unsolved.what()) + "\n");
       return exit_code::undecided;
@@ -238,7 +238,7 @@ private:
   }
 
   RunOutcome run_trial(double factor) {
-    Scene weakened = weakened_scene(scene_, factor);
+    Scene weakened = weakened_scene(scene_, factor, report_.settled.factor);
     weakened.output.contacts = weakened.output.contacts || !options_.quiet; // the pictures show its joints
     weakened.resolved =
         fmt::format("# a trial of gcpdda fos: strengths as below divided by {:.17g}\n", factor) +

@@ -115,6 +115,21 @@ void weaken(Scene &scene, const StrengthReduction &reduction, double factor) {
   }
 }
 
+/// Joint laws between strengths divided by `from` and strengths divided by `to`, in increments of 2 % or
+/// less.
+std::vector<std::vector<JointLaw>> laws_between(const Scene &scene, const StrengthReduction &reduction,
+                                                double from, double to) {
+  constexpr double largest_increment = 1.02;
+  const double increments = std::ceil(std::log(to / from) / std::log(largest_increment));
+  std::vector<std::vector<JointLaw>> laws;
+  for (double k = 1.0; k < increments; k += 1.0) {
+    Scene between = scene;
+    weaken(between, reduction, from * std::pow(to / from, k / increments));
+    laws.push_back(std::move(between.joints.laws));
+  }
+  return laws;
+}
+
 } // namespace
 
 SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &verdicts) {
@@ -196,7 +211,7 @@ bool is_weakened(const StrengthReduction &reduction, std::size_t law) {
   return chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(law)) > 0;
 }
 
-Scene weakened_scene(const Scene &scene, double factor) {
+Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   const auto is_settle = [](const Stage &stage) { return stage.kind == StageKind::settle; };
   const auto last_settle = std::find_if(scene.stages.rbegin(), scene.stages.rend(), is_settle).base();
   Scene weakened = scene;
@@ -211,7 +226,6 @@ Scene weakened_scene(const Scene &scene, double factor) {
     }
   }
   after->stages.clear();
-  weaken(*after, scene.reduction, factor);
   Stage trial;
   trial.name = "trial";
   const double limit = scene.reduction.limit > 0.0 ? scene.reduction.limit : std::prev(last_settle)->duration;
@@ -222,12 +236,16 @@ Scene weakened_scene(const Scene &scene, double factor) {
   trial.local_damping = scene.reduction.local_damping;
   trial.solver = std::prev(last_settle)->solver;
   trial.increments = std::prev(last_settle)->increments;
+  const bool is_static = trial.solver == Solver::statics;
+  if (!is_static) {
+    trial.weakening = laws_between(*after, scene.reduction, settled_factor, factor);
+  }
+  weaken(*after, scene.reduction, factor);
   trial.where = std::prev(last_settle)->where;
   trial.ignored_area = scene.reduction.ignored_area;
   trial.watched_region = scene.reduction.region;
   trial.after = std::move(after);
   weakened.output = {limit, limit, 0.0, scene.output.contacts};
-  const bool is_static = trial.solver == Solver::statics;
   weakened.stages.push_back(std::move(trial));
   if (is_static) {
     Stage confirm = weakened.stages.back();

@@ -48,6 +48,9 @@ inline constexpr const char *confirming_stage = "confirm";
 
 /// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints. Where
 /// the static solver finds that they hold, the dynamic step confirms it in a stage of its own.
-Scene weakened_scene(const Scene &scene, double factor);
+/// @param settled_factor  what strengths were divided by in the settled state; those of a trial by the
+/// dynamic
+///                        step fall from there in increments
+Scene weakened_scene(const Scene &scene, double factor, double settled_factor = 1.0);
 
 } // namespace gcpdda

@@ -53,7 +53,7 @@ static_assert(sizeof(Water) == 96);
 static_assert(sizeof(SupportType) == 128);
 static_assert(sizeof(InSituStress) == 160);
 static_assert(sizeof(Earthquake) == 176);
-static_assert(sizeof(Stage) == 288);
+static_assert(sizeof(Stage) == 312);
 
 void add(Chain &chain, const RunSettings &run) {
   chain.add({run.gravity.x, run.gravity.y, run.gravity_ramp, run.spectral_radius, run.contact_damping,

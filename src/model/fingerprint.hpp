@@ -35,9 +35,9 @@ using ScenePrints = std::array<std::uint64_t, scene_parts.size()>;
 /// Of what a state depends on besides its blocks, once a scene has gone through its first stages: settings of
 /// the run, laws, materials, loads, water, bolts in place, stress, ground motion, and what those stages did.
 ///
-/// Left out is what says nothing of a state: names, duration and limits (of drag as well), the time step (a
-/// checkpoint holds its own), what is written how often, monitors, bolts that have not been put in, stages to
-/// come.
+/// Left out is what says nothing of a state: names, duration and limits (of drag as well), how the strengths
+/// of a trial fall (no run begins with a state of one), the time step (a checkpoint holds its own), what is
+/// written how often, monitors, bolts that have not been put in, stages to come.
 ///
 /// @param start   before its first stage, as it was read; its record, if any, has been opened
 /// @param stages  the first ones

@@ -3,6 +3,7 @@
 #include "base/exact_sum.hpp"
 #include "geometry/holds_point.hpp"
 #include "simulation/loose_blocks.hpp"
+#include "simulation/stage_runner.hpp"
 #include "simulation/stages.hpp"
 
 #include <algorithm>
@@ -131,8 +132,7 @@ Verdict judge_mechanism(RunState &run, const StageLook &look, Verdict of_any) {
   const StageLook of_others = look_at_others(run, look);
   Verdict verdict = judge(stage, of_others, looks_at_loose_blocks(false), state.mechanism);
   if (verdict == Verdict::undecided) {
-    verdict =
-        judge_without_drag(stage, of_others, run.clock.plan.time(run.clock.stage_step()), state.mechanism);
+    verdict = judge_without_drag(stage, of_others, time_of_trial(run), state.mechanism);
   }
   if (verdict == Verdict::failed) {
     state.first_block = Verdict::failed;

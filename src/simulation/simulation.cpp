@@ -25,6 +25,7 @@ void Simulation::step() {
   if (run_.neighbours.stale) { // some block may use up half the skin in this step; all ranks agree
     refresh(run_);
   }
+  weaken_further(run_);
   rows_.begin();
   rows_.send_border_trials();
   for (const PairGroup &group : run_.neighbours.candidates.groups) { // blocks stay in the cache

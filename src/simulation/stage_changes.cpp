@@ -177,6 +177,17 @@ void unload(RunState &run, const std::vector<std::int64_t> &removed, double dura
 
 } // namespace
 
+void take_laws(RunState &run, const std::vector<JointLaw> &laws) {
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    JointLaw &law = run.scene.joints.laws[i];
+    const JointLaw before = std::exchange(law, laws[i]);
+    law.is_on_edges = before.is_on_edges;
+    if (law.allowed_overlap > 0.0) { // it has been resolved for the start
+      law.normal_stiffness = before.normal_stiffness;
+    }
+  }
+}
+
 // Laws keep their order and number, and so do materials and blocks: the scene's reader has seen to that.
 void adopt(RunState &run, const Stage &stage, double begin) {
   if (!stage.after) {
@@ -184,14 +195,7 @@ void adopt(RunState &run, const Stage &stage, double begin) {
   }
   const Scene &after = *stage.after;
   const Rise change{begin, stage.ramp};
-  const std::vector<JointLaw> laws = std::exchange(run.scene.joints, after.joints).laws;
-  for (std::size_t i = 0; i < laws.size(); ++i) {
-    JointLaw &law = run.scene.joints.laws[i];
-    law.is_on_edges = laws[i].is_on_edges;
-    if (law.allowed_overlap > 0.0) { // it has been resolved for the start
-      law.normal_stiffness = laws[i].normal_stiffness;
-    }
-  }
+  take_laws(run, after.joints.laws);
   run.scene.run = after.run;
   run.contacts = ContactForces(contact_parameters(run.scene));
   run.scene.water = after.water;
@@ -210,6 +214,14 @@ void adopt(RunState &run, const Stage &stage, double begin) {
     }
   }
   run.scene.blocks = std::move(blocks);
+}
+
+void change_strengths(RunState &run, const std::vector<JointLaw> &laws) {
+  take_laws(run, laws);
+  run.contacts = ContactForces(contact_parameters(run.scene));
+  std::vector<LawConstants> &known = run.neighbours.candidates.laws;
+  std::transform(run.scene.joints.laws.begin(), run.scene.joints.laws.end(), known.begin(),
+                 [](const JointLaw &law) { return law.constants(); });
 }
 
 // Those that are in place now and were not are put in where the blocks are; those that are no longer, and all

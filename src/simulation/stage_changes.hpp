@@ -14,6 +14,11 @@ namespace gcpdda {
 /// @param begin  s, of the stage
 void adopt(RunState &run, const Stage &stage, double begin);
 
+/// Joint laws from here on; what contacts know of them follows with adopt() or change_strengths().
+void take_laws(RunState &run, const std::vector<JointLaw> &laws);
+/// Joint laws that differ from those in force in their strengths alone, at once.
+void change_strengths(RunState &run, const std::vector<JointLaw> &laws);
+
 /// Bolts that are in place now and were not are put in where the blocks are; those that are no longer, and
 /// all at blocks that are gone, are taken out. Collective.
 /// @param before  Scene::bolts of the stage before

@@ -115,6 +115,34 @@ StageLook look_at_blocks(RunState &run) {
           moved_beyond_sag};
 }
 
+/// Looks at the stage at hand so far.
+std::int64_t looks_before(const RunState &run) {
+  return run.clock.stage_step() / steps_between_verdicts(num_blocks(run.scene));
+}
+
+/// The strengths of a trial fall up to this look. Blocks that fail have failed, those at rest may not stay
+/// there.
+bool is_weakening(const RunState &run) {
+  return !is_static(run) && looks_before(run) <= std::ssize(run.clock.stage().weakening);
+}
+
+/// Steps in which the strengths of a trial fall; its limit counts from there.
+std::int64_t steps_of_weakening(const RunState &run) {
+  return std::ssize(run.clock.stage().weakening) * steps_between_verdicts(num_blocks(run.scene));
+}
+
+} // namespace
+
+double time_of_trial(const RunState &run) {
+  return run.clock.plan.time(std::max<std::int64_t>(0, run.clock.stage_step() - steps_of_weakening(run)));
+}
+
+namespace {
+
+bool drag_has_ended(const RunState &run) {
+  return time_of_trial(run) >= run.clock.stage().drag_limit;
+}
+
 /// Loads of the stage at hand are not there yet.
 bool is_loading(const RunState &run) {
   const bool unloads = std::any_of(
@@ -136,13 +164,12 @@ void look_at_stage(RunState &run) {
   }
   run.clock.state.verdict = judge(stage, look, looks_at_loose_blocks(is_static(run)), run.clock.state.memory);
   if (run.clock.state.verdict == Verdict::undecided && stage.is_trial() && !is_static(run)) {
-    run.clock.state.verdict =
-        judge_without_drag(stage, look, run.clock.plan.time(run.clock.stage_step()), run.clock.state.memory);
+    run.clock.state.verdict = judge_without_drag(stage, look, time_of_trial(run), run.clock.state.memory);
   }
   if (stage.is_trial() && stage.watches_mechanism() && !is_static(run)) {
     run.clock.state.verdict = judge_mechanism(run, look, run.clock.state.verdict);
   }
-  if (is_loading(run)) {
+  if (is_loading(run) || (is_weakening(run) && run.clock.state.verdict == Verdict::settled)) {
     run.clock.state.verdict = Verdict::undecided;
   }
   if (run.clock.state.verdict == Verdict::settled && !stage.is_trial() &&
@@ -273,23 +300,35 @@ void plan_stage(RunState &run) {
     run.clock.plan.duration = 0.0;
     run.clock.plan.num_steps = 0;
   }
+  if (const std::int64_t more = steps_of_weakening(run); more > 0) {
+    run.clock.plan.num_steps += more;
+    run.clock.plan.duration += static_cast<double>(more) * run.clock.plan.time_step;
+  }
   run.local_damping = stage.local_damping_or(run.scene.run.local_damping);
 }
 
 namespace {
 
-bool drag_has_ended(const StageClock &clock) {
-  return clock.plan.time(clock.stage_step()) >= clock.stage().drag_limit;
-}
-
-VerdictMeans means_of_verdict(const StageClock &clock) {
-  return clock.stage().solver == Solver::statics && clock.state.iteration.is_left == 0
+VerdictMeans means_of_verdict(const RunState &run) {
+  return run.clock.stage().solver == Solver::statics && run.clock.state.iteration.is_left == 0
              ? VerdictMeans::static_solver
-         : drag_has_ended(clock) ? VerdictMeans::no_drag
-                                 : VerdictMeans::dynamic_step;
+         : drag_has_ended(run) ? VerdictMeans::no_drag
+                               : VerdictMeans::dynamic_step;
 }
 
 } // namespace
+
+void weaken_further(RunState &run) {
+  const std::vector<std::vector<JointLaw>> &weakening = run.clock.stage().weakening;
+  const std::int64_t number = looks_before(run);
+  const std::int64_t since_look = run.clock.stage_step() % steps_between_verdicts(num_blocks(run.scene));
+  if (number == 0 || number > std::ssize(weakening) || since_look != 0) {
+    return;
+  }
+  change_strengths(run, number < std::ssize(weakening) ? weakening[static_cast<std::size_t>(number)]
+                                                       : run.clock.stage().after->joints.laws);
+  run.clock.state.memory.settled_looks = 0; // the looks so far were not at the strengths of the trial
+}
 
 void judge_stage(RunState &run) {
   if (run.clock.stage().kinetic_damping) {
@@ -297,7 +336,7 @@ void judge_stage(RunState &run) {
   }
   if (run.clock.is_staged && run.clock.stage_step() % steps_between_verdicts(num_blocks(run.scene)) == 0) {
     look_at_stage(run);
-    if (drag_has_ended(run.clock)) {
+    if (drag_has_ended(run)) {
       run.local_damping = 0.0;
     }
   }
@@ -311,8 +350,8 @@ std::vector<StageResult> stage_results(const RunState &run) {
     const StageLook &last = run.clock.state.memory.last;
     results.push_back({run.clock.state.verdict, run.clock.time(), run.clock.stage_step(),
                        contact_steps - run.clock.state.contact_steps_before, last.unbalanced_ratio,
-                       last.kinetic, last.moved, 0, run.clock.state.memory.num_loose,
-                       means_of_verdict(run.clock), run.clock.state.first_block});
+                       last.kinetic, last.moved, 0, run.clock.state.memory.num_loose, means_of_verdict(run),
+                       run.clock.state.first_block});
   }
   return results;
 }
@@ -390,6 +429,10 @@ void begin_next_stage(RunState &run) {
   run.bolts.share(run.communicator);
   const std::vector<Bolt> bolts_before = run.scene.bolts;
   adopt(run, stage, run.clock.time());
+  if (stage.solver == Solver::dynamic && !stage.weakening.empty()) {
+    take_laws(run, stage.weakening.front());
+    run.contacts = ContactForces(contact_parameters(run.scene));
+  }
   change_bolts(run, bolts_before);
   scale_masses(run);
   find_bound(run);

@@ -13,6 +13,10 @@ void plan_all_stages(RunState &run);
 /// The steps of the stage that begins.
 void plan_stage(RunState &run);
 
+/// Time since the strengths of a trial have fallen, of another stage since it began, s.
+[[nodiscard]] double time_of_trial(const RunState &run);
+/// Before a dynamic step: where a look has come before, strengths of a trial fall by the next increment.
+void weaken_further(RunState &run);
 /// After a step: kinetic damping, and every so many steps a look at the stage. Collective.
 void judge_stage(RunState &run);
 

@@ -18,6 +18,11 @@
 // failed: M has reached failure_motion, D is at least half of what it was, and T at least a quarter of the
 // most it was: the blocks are not about to come to rest.
 //
+// The strengths of a trial of gcpdda fos by the dynamic step fall in increments of 2 %, one at each look
+// (Stage::weakening); no trial has settled before they have fallen. Taken away at once, strength leaves
+// forces unbalanced that set blocks in motion, and a structure that softens when it slips fails in that
+// motion though it would hold: a roof wedge between abutments with inertia at 1.21 in place of 1.40.
+//
 // A trial of gcpdda fos that is still undecided after Stage::drag_limit goes on without local damping, which
 // acts as drag on blocks that creep, and is judged by windows of its motion as well. Each window is twice as
 // long as the one before. With g the growth of M over the length of a window and m the mean of log10 r in it,

@@ -5,6 +5,7 @@
 
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
+#include "gcpdda/model/joint_law.hpp"
 
 #include <array>
 #include <cstddef>
@@ -81,6 +82,9 @@ struct Stage {
   bool changes_stress = false; ///< on sides of the region: to that of `after`
   /// The scene from here on where the stage changes it; without stages of its own.
   std::shared_ptr<const Scene> after;
+  /// Joint laws of a trial whose strengths fall in increments, a set from one look to the next, in place of
+  /// those of `after`, which follow; empty where they are in force at once.
+  std::vector<std::vector<JointLaw>> weakening;
   SourcePosition where;
 
   /// Whether time passes in it.

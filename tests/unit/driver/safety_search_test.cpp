@@ -179,6 +179,29 @@ TEST(WeakenedScene, IsSolvedAsTheLastSettleStageIs) {
   EXPECT_EQ(stages.back().solver, Solver::dynamic) << "the dynamic step confirms it";
 }
 
+// Increments of at most 2 % from the strengths of the settled state to those of the trial, which come last.
+TEST(WeakenedScene, FallsInSmallIncrements) {
+  Scene scene = staged_scene();
+  scene.reduction.families = {0};
+  const Stage trial = weakened_scene(scene, 2.0, 0.5).stages.back();
+  ASSERT_FALSE(trial.weakening.empty());
+  double before = 0.8 / 0.5;
+  for (const std::vector<JointLaw> &laws : trial.weakening) {
+    EXPECT_LT(laws[0].tan_friction, before);
+    EXPECT_GT(1.02 * laws[0].tan_friction, before);
+    EXPECT_DOUBLE_EQ(laws[0].cohesion / laws[0].tan_friction, 8e5 / 0.8) << "all strengths alike";
+    EXPECT_EQ(laws[1].tan_friction, 0.8) << "not chosen";
+    before = laws[0].tan_friction;
+  }
+  EXPECT_GT(1.02 * trial.after->joints.laws[0].tan_friction, before);
+  EXPECT_TRUE(weakened_scene(scene, 1.01).stages.back().weakening.empty()) << "one increment";
+  EXPECT_TRUE(weakened_scene(scene, 0.9).stages.back().weakening.empty()) << "gains strength";
+  scene.stages[0].solver = Solver::statics;
+  for (const Stage &stage : weakened_scene(scene, 2.0).stages) {
+    EXPECT_TRUE(stage.weakening.empty()) << "the static solver has no inertia";
+  }
+}
+
 TEST(WeakenedScene, DilatesNoMoreThanItsFrictionAllows) {
   const std::vector<JointLaw> laws = weakened_scene(staged_scene(), 2.0).stages.back().after->joints.laws;
   EXPECT_EQ(laws[0].tan_dilation, 0.35);
