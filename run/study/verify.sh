@@ -11,7 +11,7 @@ build=$1 results=$2 quick=${3:-}
 rows=$results/verification_rows.csv
 
 mkdir -p "$results"
-rm -f "$rows" "$results/goodman_bray.csv"
+rm -f "$rows" "$results/goodman_bray.csv" "$results/safety_limits.csv"
 export GCPDDA_VERIFICATION_TABLE=$rows
 [ -n "$quick" ] || export GCPDDA_VERIFICATION_FULL=1
 verdict=0
