@@ -32,9 +32,6 @@ double end_of_loads(const RunState &run) {
 
 /// Why the stage at hand is not for the static solver; empty if it is.
 std::string not_served(const RunState &run) {
-  const auto has_law = [&](auto &&holds) {
-    return std::any_of(run.scene.joints.laws.begin(), run.scene.joints.laws.end(), holds);
-  };
   double fastest = 0.0; // of what heeds no force
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     if (run.blocks.properties[row].keeps_its_velocity()) {
@@ -47,12 +44,6 @@ std::string not_served(const RunState &run) {
   }
   if (!run.scene.earthquake.viscous.empty()) {
     return "the region has viscous sides";
-  }
-  if (has_law([](const JointLaw &law) { return law.has_bonds; })) {
-    return "bonds break for good, also in a swing of the iteration";
-  }
-  if (has_law([](const JointLaw &law) { return law.dilates(); })) {
-    return "the stiffness of joints that dilate is not known to it";
   }
   return std::isfinite(end_of_loads(run)) ? "" : "its loads go on changing";
 }

@@ -28,9 +28,11 @@
 // let go in `increments` parts, one an evaluation: f = f(x) - (1 - s) f_0 with s from 0 to 1. It is all that
 // the stage has changed (weight, excavated rock, strength, water, stress), whatever that was. Blocks follow
 // the load near equilibrium, and friction takes the path of slow loading. The increments are small where
-// joints that carry nothing yet close, and small again at the end, so that the motion does not run past the
-// equilibrium under all of the load: after the share u of them
-//     s = (u + 3 u^2 - 2 u^3)/2.
+// joints that carry nothing yet close, and fall to nothing at the end, so that the motion neither lags nor
+// runs past the equilibrium under all of the load: after the share u of them
+//     s = 2 u^2 - u^4.
+// (Ramps that begin or end faster lead 40 random rock masses farther from slow loading, in as many
+// evaluations.)
 //
 // A block that nothing touches falls, under a force that does not change. It has no frequency, and in the
 // sums over v would say that nothing needs damping: they leave it out. Where it lands, it begins anew by
@@ -73,7 +75,7 @@ public:
   /// Share of the load that acts after so many evaluations.
   [[nodiscard]] double load_share(std::int64_t evaluations) const {
     const double share = static_cast<double>(evaluations) / static_cast<double>(rules_.increments);
-    return share < 1.0 ? 0.5 * share * (1.0 + share * (3.0 - 2.0 * share)) : 1.0;
+    return share < 1.0 ? share * share * (2.0 - share * share) : 1.0;
   }
   /// The next evaluation needs nothing of those before but what a checkpoint holds.
   [[nodiscard]] bool may_pause(const IterationState &state) const {

@@ -319,6 +319,28 @@ TEST(Identity, OfStagesWithTheStaticSolver) {
   }
 }
 
+// Joints that dilate, and bonds of which some break: those that hang over the opening.
+TEST(Identity, OfStaticStagesWithBondsAndDilation) {
+  const std::string opening = "[[6, 2], [8, 2], [8, 4], [6, 4]]";
+  const auto with = [&](const std::string &tension) {
+    return testing::scene_of(static_wall_toml(20, 16, opening),
+                             {"joint.default.dilation_angle_deg=5", "joint.default.dilation_limit=0.01",
+                              "joint.default.cohesion=1e5", "joint.default.tension=" + tension,
+                              "joint.default.residual_cohesion=0"});
+  };
+  const TwoRuns runs(with("2e4"));
+  EXPECT_GE(runs.counted("refreshes"), 2);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+  const TwoRuns unbroken(with("1e5"));
+  if (runs.world().is_root()) {
+    EXPECT_EQ(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
+    EXPECT_NE(summary_text(runs.alone(), "stages"), summary_text(unbroken.alone(), "stages"))
+        << "bonds break";
+  }
+}
+
 // Friction does not hold this opening: the dynamic solver takes over in the middle of a stage and finds that
 // it has failed.
 TEST(Identity, OfAStaticStageThatIsLeft) {
