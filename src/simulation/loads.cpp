@@ -148,33 +148,22 @@ void adopt_loads(BlockSystem &blocks, std::size_t row, const std::vector<PointLo
   }
 }
 
-double Loads::end_of_changes(double now) const {
+double Loads::end_of_changes(const Scene &scene, const StageState &stage, double now) const {
   double end = now;
-  for (const LoadCourse &course : courses_) {
-    if (course.in.begin <= now) { // else the force comes in with a later stage
-      end = std::max(end, course.end());
-    }
-  }
-  return end;
-}
-
-bool Loads::are_changing(const Scene &scene, const StageState &stage, double now) const {
-  const auto is_changing = [&](std::size_t course) { return now < courses_[course].end(); };
   for (std::size_t k = 1; side_stresses_.size() > 1 && k <= side_stresses_.size(); ++k) {
-    if (courses_[k].in.begin <= now && is_changing(k)) {
-      return true;
+    if (courses_[k].in.begin <= now) { // else the stress comes in with a later stage
+      end = std::max(end, courses_[k].end());
     }
   }
   for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
     const std::vector<PointLoad> &loads = scene.blocks[i].loads;
-    if (!loads.empty() && !is_removed(stage, static_cast<std::int64_t>(i)) &&
-        std::any_of(loads.begin(), loads.end(), [&](const PointLoad &load) {
-          return is_changing(static_cast<std::size_t>(load.course));
-        })) {
-      return true;
+    if (!loads.empty() && !is_removed(stage, static_cast<std::int64_t>(i))) {
+      for (const PointLoad &load : loads) {
+        end = std::max(end, courses_[static_cast<std::size_t>(load.course)].end());
+      }
     }
   }
-  return false;
+  return end;
 }
 
 } // namespace gcpdda

@@ -49,12 +49,10 @@ public:
   /// @param listed  in the scene of the stage
   std::vector<PointLoad> after(std::vector<PointLoad> acting, std::vector<PointLoad> listed,
                                const Rise &change);
-  /// When the forces that act or come in now are what they stay, s; infinite where that is never.
+  /// When the forces on sides, and on blocks that are still there, are what they stay, s; infinite where that
+  /// is never, and at least now.
   /// @param now  s
-  [[nodiscard]] double end_of_changes(double now) const;
-  /// Of forces that act on blocks that are still there.
-  /// @param now  s
-  [[nodiscard]] bool are_changing(const Scene &scene, const StageState &stage, double now) const;
+  [[nodiscard]] double end_of_changes(const Scene &scene, const StageState &stage, double now) const;
 
 private:
   std::int64_t new_course(LoadCourse course);

@@ -150,7 +150,7 @@ bool is_loading(const RunState &run) {
         return std::isfinite(u.duration) && run.clock.time() < u.begin + u.duration;
       });
   return unloads || run.clock.time() < run.scene.run.gravity_ramp ||
-         run.loads.are_changing(run.scene, run.clock.state, run.clock.time());
+         run.clock.time() < run.loads.end_of_changes(run.scene, run.clock.state, run.clock.time());
 }
 
 } // namespace

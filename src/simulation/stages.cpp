@@ -35,8 +35,8 @@ Verdict judge(const Stage &stage, const StageLook &look, std::int64_t looks_at_l
   return look.moved_beyond_sag >= stage.failure_motion && goes_on ? Verdict::failed : Verdict::undecided;
 }
 
-bool note_motion(const StageLook &look, double now, double first_length, double growth,
-                 MotionWindows &windows) {
+std::optional<double> note_motion(const StageLook &look, double now, double first_length, double growth,
+                                  MotionWindows &windows) {
   constexpr double rate_kept = 0.8;
   constexpr double log_kept = 0.05;
   if (windows.length == 0.0) {
@@ -44,20 +44,21 @@ bool note_motion(const StageLook &look, double now, double first_length, double 
     windows.begin = now;
     windows.length = first_length;
     windows.moved = look.moved;
-    return false;
+    return std::nullopt;
   }
   windows.sum_of_logs += std::log10(std::max(look.unbalanced_ratio, 1e-300));
   ++windows.looks;
   if (now < windows.begin + windows.length * (1.0 - 1e-9)) {
-    return false;
+    return std::nullopt;
   }
   const double rate = (look.moved - windows.moved) / (now - windows.begin);
   const double mean = windows.sum_of_logs / static_cast<double>(windows.looks);
   const bool goes_on = windows.closed > 0 && rate > 0.0 && rate >= rate_kept * windows.last_rate &&
                        mean >= windows.last_log - log_kept;
   const std::int64_t in_a_row = goes_on ? windows.undiminished + 1 : 0;
+  const double ratio = windows.last_rate > 0.0 ? rate / windows.last_rate : 0.0;
   windows = {now, growth * windows.length, look.moved, 0.0, 0, windows.closed + 1, rate, mean, in_a_row};
-  return true;
+  return ratio;
 }
 
 Verdict judge_without_drag(const Stage &stage, const StageLook &look, double time, LookMemory &memory) {

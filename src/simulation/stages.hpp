@@ -34,8 +34,11 @@
 // that slide on while what drives them fades.
 //
 // The same rule decides when the static solver leaves a trial to the dynamic one, with windows of equal
-// length: in pseudo-time motion is damped, and a constant force gives a constant speed. It needs two windows
-// in a row, and a block that has moved by 2 % of its size.
+// length: in pseudo-time motion is damped, and a constant force gives a constant speed. Two windows in a row
+// are needed, or a block that has moved by failure_motion, and a series
+//     M + g (q + q^2 + ...)     with q, g over that of the window before, but at most 1
+// that reaches five times failure_motion within 60 windows, twice those of a trial. Near the limit blocks
+// creep to rest for a thousand evaluations, in each window a little less.
 
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/model/stage.hpp"
@@ -43,6 +46,7 @@
 #include "statics/iteration_state.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace gcpdda {
@@ -79,9 +83,9 @@ struct MotionWindows {
 };
 /// Take a look at a trial into its window.
 /// @param growth  of the length from one window to the next
-/// @return true where this look has closed a window
-bool note_motion(const StageLook &look, double now, double first_length, double growth,
-                 MotionWindows &windows);
+/// @return where this look has closed a window: its growth over that of the one before, 0 of the first
+std::optional<double> note_motion(const StageLook &look, double now, double first_length, double growth,
+                                  MotionWindows &windows);
 
 /// What is remembered from one look to the next.
 struct LookMemory {

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,7 +22,8 @@ namespace {
 /// When the loads of the stage at hand are complete, s; infinite where that is never.
 double end_of_loads(const RunState &run) {
   const double now = run.clock.time();
-  double end = std::max({now, run.scene.run.gravity_ramp, run.loads.end_of_changes(now)});
+  double end =
+      std::max({now, run.scene.run.gravity_ramp, run.loads.end_of_changes(run.scene, run.clock.state, now)});
   for (const Unloading &unloading : run.clock.state.unloading) {
     if (std::isfinite(unloading.duration)) { // else the forces stay
       end = std::max(end, unloading.begin + unloading.duration);
@@ -133,6 +135,8 @@ void judge_static_trial(RunState &run) {
   constexpr double window = 50.0; // evaluations
   constexpr double motion_of_failure = 0.02;
   constexpr std::int64_t most_evaluations = 1500;
+  constexpr double windows_ahead = 60.0;
+  constexpr double times_as_far = 5.0;
   const std::int64_t evaluations = run.clock.state.iteration.evaluations;
   const StageLook &look = run.clock.state.memory.last;
   MotionWindows &windows = run.clock.state.memory.windows;
@@ -142,9 +146,15 @@ void judge_static_trial(RunState &run) {
   const bool has_moved_far = run.clock.state.verdict == Verdict::failed;
   run.clock.state.ended = false;
   run.clock.state.verdict = Verdict::undecided;
-  const bool is_closed = note_motion(look, static_cast<double>(evaluations), window, 1.0, windows);
-  const bool fails =
-      has_moved_far || (is_closed && windows.undiminished >= 2 && look.moved > motion_of_failure);
+  const std::optional<double> closed =
+      note_motion(look, static_cast<double>(evaluations), window, 1.0, windows);
+  const double ratio = std::min(closed.value_or(0.0), 1.0);
+  const double series =
+      ratio < 1.0 ? ratio * (1.0 - std::pow(ratio, windows_ahead)) / (1.0 - ratio) : windows_ahead;
+  const double far = times_as_far * run.clock.stage().failure_motion;
+  const bool goes_far = look.moved + series * window * windows.last_rate >= far;
+  const bool goes_on = has_moved_far || (windows.undiminished >= 2 && look.moved > motion_of_failure);
+  const bool fails = look.moved >= far || (closed && goes_on && goes_far);
   if (fails || evaluations >= most_evaluations) {
     windows = {};
     leave_statics(run, fails ? "its motion has gone far or goes on at an undiminished rate"

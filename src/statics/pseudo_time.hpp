@@ -57,7 +57,7 @@ struct IterationRules {
   std::int64_t coarse_every = 5;   ///< evaluations between two coarse matrices
   double steps_of_overlap = 10.0;  ///< largest step of a block
   double step_of_width = 0.05;     ///< largest step of a block over its narrowest width
-  std::int64_t stall_window = 100; ///< evaluations in which the least ratio has to fall by half
+  std::int64_t stall_window = 300; ///< evaluations in which the least ratio has to fall by half
   SpringRules springs;
 };
 
