@@ -62,7 +62,7 @@ def run(gcpdda, out, name, rows, columns, keys, interval, stages, counted=1):
 
 
 def settle(tolerance, more=""):
-    return f'[[stage]]\nkind = "settle"\nlimit = 100.0\ntolerance = {tolerance}\n{more}'
+    return f'[[stage]]\nkind = "settle"\nlimit = 100.0\nsolver = "dynamic"\ntolerance = {tolerance}\n{more}'
 
 
 def main():

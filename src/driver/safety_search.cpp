@@ -234,7 +234,7 @@ Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   trial.until_verdict = true;
   trial.failure_motion = scene.reduction.failure_motion;
   trial.local_damping = scene.reduction.local_damping;
-  trial.solver = std::prev(last_settle)->solver;
+  trial.solver = scene.earthquake.viscous.empty() ? std::prev(last_settle)->solver : Solver::dynamic;
   trial.increments = std::prev(last_settle)->increments;
   const bool is_static = trial.solver == Solver::statics;
   if (!is_static) {

@@ -15,8 +15,9 @@ SCENES = SOURCE / "run" / "scenes"
 
 @pytest.fixture(scope="session")
 def opening(tmp_path_factory):
-    """Stages, excavation, contacts that slip and open: bricks fall into an opening."""
-    return gcpdda.run(SCENES / "opening.toml", ranks=1, out=tmp_path_factory.mktemp("runs") / "opening")
+    """Stages, excavation, contacts that slip and open: bricks fall into an opening, and frames show every motion."""
+    solvers = {f"stage.{stage}.solver": "dynamic" for stage in ("weight", "arch")}
+    return gcpdda.run(SCENES / "opening.toml", ranks=1, set=solvers, out=tmp_path_factory.mktemp("runs") / "opening")
 
 
 @pytest.fixture(scope="session")

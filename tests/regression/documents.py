@@ -37,6 +37,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 RUN = re.compile(r"(build/gcpdda|mpirun|python3|cp|cat|head|tail|grep|cut|run/\w+\.py)$")
 SCRIPT = re.compile(r"(run|tests)/[\w./]+$")
 LARGEST_PICTURE = 150_000  # bytes, of the users' guide
+PICTURES = SOURCE / "run" / "pictures"
 PATIENCE = 600  # s for one command: far more than a slow machine needs
 
 
@@ -142,8 +143,8 @@ def as_toml(value):
 class Page:
     """A page that is followed from top to bottom."""
 
-    def __init__(self, path, build):
-        self.path, self.build = path, build
+    def __init__(self, path, build, draws):
+        self.path, self.build, self.draws = path, build, draws
         self.failures = []
         self.printed = ""  # by the last sh block
         self.unused = {}  # files of the page that no command has named, with their lines
@@ -160,6 +161,9 @@ class Page:
                             ignore=shutil.ignore_patterns("results", "pictures", "study", "*.md"))
             for block in code_blocks(self.path):
                 self.check(block)
+            for picture in self.folder.glob("*.png") if self.draws else ():
+                if (PICTURES / picture.name).exists():
+                    shutil.copy(picture, PICTURES)
             for name, line in self.unused.items():
                 self.fail(line, f"no command of the page after it names {name}")
         self.seconds = time.monotonic() - begin
@@ -215,7 +219,7 @@ class Page:
             self.fail(line, f"{words[0]} is no program of the repository")
         elif RUN.match(words[0]):
             expected = re.search(r"# exit code (\d+)\s*$", command)
-            if comment in ("too long for a test", "too large for a test"):
+            if comment == "too large for a test" or (comment == "too long for a test" and not self.draws):
                 command = self.shortened(words, "inspect" if comment == "too long for a test" else "--help")
             self.execute(line, command, int(expected[1]) if expected else 0)
 
@@ -266,13 +270,15 @@ def main():
     parser.add_argument("build", type=pathlib.Path, help="folder with the program gcpdda")
     parser.add_argument("--only", default="", help="only pages whose path contains this")
     parser.add_argument("--times", action="store_true", help="print the wall time of each page")
+    parser.add_argument("--draw", action="store_true",
+                        help="run the long commands, too, and put the pictures that the pages draw in run/pictures")
     arguments = parser.parse_args()
 
     pages = [page for page in documents() if arguments.only in str(page.relative_to(SOURCE))]
     failures = [wrong for page in pages for wrong in wrong_links(page)]
     followed = [page for page in pages if page.parent == SOURCE or SOURCE / "run" in page.parents]
     with concurrent.futures.ThreadPoolExecutor(max_workers=4) as pool:
-        for page in pool.map(lambda path: Page(path, arguments.build.resolve()).follow(), followed):
+        for page in pool.map(lambda path: Page(path, arguments.build.resolve(), arguments.draw).follow(), followed):
             failures += page.failures
             if arguments.times:
                 print(f"{page.seconds:6.1f} s  {page.path.relative_to(SOURCE)}")

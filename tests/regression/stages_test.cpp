@@ -51,7 +51,8 @@ block = "w.1.5"
 )";
 
 const std::vector<std::string> stages{
-    "[[stage]]\nname = \"gravity\"\nkind = \"settle\"\nlimit = 1.98\ntolerance = 1e-3\n",
+    "[[stage]]\nname = \"gravity\"\nkind = \"settle\"\nlimit = 1.98\nsolver = \"dynamic\"\ntolerance = "
+    "1e-3\n",
     "[[stage]]\nname = \"opening\"\nkind = \"excavate\"\nregion = [[3, 0], [5, 0], [5, 1], [3, 1]]\nrelax = "
     "0.02\n",
     "[[stage]]\nkind = \"run\"\nduration = 0.04\nset = { \"run.rayleigh\" = { ratio = 0.1, frequency = 30.0 "

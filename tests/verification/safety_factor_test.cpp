@@ -131,6 +131,7 @@ TEST(SafetyFactor, OfASlopeThatDoesNotStand) {
 TEST(SafetyFactor, KeepsUndecidedTrialsInTheBracket) {
   std::string toml = plane_failure_toml(0.0);
   toml.replace(toml.find("limit = 30.0"), 12, "limit = 0.35\npatience = 0");
+  toml.replace(toml.find("limit = 10.0"), 12, "limit = 10.0\nsolver = \"dynamic\"");
   toml.replace(toml.find("tolerance = 0.004"), 17, "tolerance = 0.05");
   const Found found(toml);
   EXPECT_EQ(found.exit_code, 7);
@@ -143,6 +144,7 @@ TEST(SafetyFactor, KeepsUndecidedTrialsInTheBracket) {
 TEST(SafetyFactor, GoesOnWithUndecidedTrialsWithoutDrag) {
   std::string toml = plane_failure_toml(0.0);
   toml.replace(toml.find("limit = 30.0"), 12, "limit = 0.7");
+  toml.replace(toml.find("limit = 10.0"), 12, "limit = 10.0\nsolver = \"dynamic\"");
   toml.replace(toml.find("tolerance = 0.004"), 17, "tolerance = 0.01");
   const Found found(toml);
   EXPECT_EQ(found.exit_code, 0);

@@ -39,9 +39,9 @@ SafetyReport search(const std::string &fos_keys, bool is_static) {
   const std::string toml = head({.friction_deg = friction_deg}) +
                            block_on_plane("small", {0.0, 0.0}, steep_deg, 1.0) +
                            block_on_plane("large", {60.0, 0.0}, flat_deg, 6.0);
-  const Scene scene =
-      scene_of(without_duration(toml) + "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n" +
-               (is_static ? "solver = \"static\"\n" : "") + "[fos]\nfrom = 1.0\nto = 1.5\n" + fos_keys);
+  const Scene scene = scene_of(without_duration(toml) + "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n" +
+                               (is_static ? "solver = \"static\"\n" : "solver = \"dynamic\"\n") +
+                               "[fos]\nfrom = 1.0\nto = 1.5\n" + fos_keys);
   SafetyOptions options;
   options.directory = std::filesystem::path(folder) / "fos";
   options.quiet = true;

@@ -79,6 +79,9 @@ public:
     stage.local_damping = stage.kind != StageKind::settle ? -1.0 : stage.kinetic_damping ? 0.0 : 0.8;
     section.read("local_damping", stage.local_damping);
     section.read("mass_scaling", stage.mass_scaling);
+    const bool is_damped =
+        section.given("local_damping") != nullptr || stage.kinetic_damping || stage.mass_scaling;
+    stage.solver = stage.kind == StageKind::settle && !is_damped ? Solver::statics : Solver::dynamic;
     section.read_choice("stage[]", "solver", stage.solver);
     section.read("increments", stage.increments);
     section.read("relax", stage.relax);

@@ -14,7 +14,7 @@
 namespace gcpdda::testing::stages_test {
 namespace {
 
-const std::string settle = "[[stage]]\nkind = \"settle\"\nlimit = 40.0\n";
+const std::string settle = "[[stage]]\nkind = \"settle\"\nlimit = 40.0\nsolver = \"dynamic\"\n";
 const std::string wait_undamped = "[[stage]]\nkind = \"run\"\nlimit = 20.0\n";
 
 struct Slope {
@@ -47,7 +47,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Slope{30.1, wait_undamped, Verdict::settled},
                       Slope{29.9, wait_undamped, Verdict::failed},
                       // Too short for what creeps to be told.
-                      Slope{29.9, "[[stage]]\nkind = \"settle\"\nlimit = 1.0\n", Verdict::undecided},
+                      Slope{29.9, "[[stage]]\nkind = \"settle\"\nlimit = 1.0\nsolver = \"dynamic\"\n",
+                            Verdict::undecided},
                       Slope{29.9, "[[stage]]\nkind = \"run\"\nlimit = 1.0\n", Verdict::undecided}),
     [](const auto &slope) {
       return fmt::format("Case{}_{}deg", slope.index, static_cast<int>(slope.param.friction_deg));

@@ -103,7 +103,7 @@ TEST(StaticStage, AWallSettlesWhereDampedMotionLeavesIt) {
       head() + block_toml("floor", rectangle({-1.0, -1.0}, {9.0, 0.0}), "fixed = true") +
       "[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = 6\ncolumns = 8\n"
       "block_size = [1.0, 0.5]\n[[stage]]\nkind = \"settle\"\nlimit = 40.0\ntolerance = 1e-7\n";
-  Simulation damped(Communicator::self(), scene_of(wall));
+  Simulation damped(Communicator::self(), scene_of(wall + "solver = \"dynamic\"\n"));
   Simulation iterated(Communicator::self(), scene_of(wall + "solver = \"static\"\n"));
   run_stages(damped);
   run_stages(iterated);
