@@ -60,7 +60,7 @@ def draw_growth(axes, rows):
         axes.plot([], [], marker, color=colour, label=way)
     axes.margins(y=0.12)
     finish(axes, "number of blocks", "evaluations to the verdict settled", "Growth: slopes and walls", loc="upper left",
-           bbox_to_anchor=(0.45, 0.72))
+           bbox_to_anchor=(0.45, 1.0))
 
 
 def draw_increments(axes, rows, random, column, words):
@@ -75,7 +75,7 @@ def draw_increments(axes, rows, random, column, words):
         axes.boxplot(values, positions=[1.25 * parts], widths=[0.25 * parts], showfliers=True, manage_ticks=False,
                      flierprops={"markersize": 2})
     axes.axhline(TARGETS[column], color="k", linestyle=":", label="target")
-    axes.set_ylim(1e-8, 2.0)
+    axes.set_ylim(1e-9, 2.0)
     finish(axes, "increments of the load", words, "Static solver; boxes: random rock masses", loc="lower left", ncol=2)
 
 

@@ -257,11 +257,12 @@ def growth(runner, models, ways):
     return rows
 
 
-def with_large_models(path, runner):
-    """The table of growth with the static solver on the large models in place of what it had of them."""
+def known(path, large):
+    """Rows of the large models, or of the others, in the table of growth as it is."""
+    if not path.exists():
+        return []
     with open(path, newline="") as file:
-        rows = [row for row in csv.DictReader(file) if (row["model"], int(row["size"])) not in LARGE]
-    return rows + growth(runner, LARGE, ["static"])
+        return [row for row in csv.DictReader(file) if ((row["model"], int(row["size"])) in LARGE) == large]
 
 
 def main():
@@ -272,13 +273,14 @@ def main():
     parser.add_argument("--only", nargs="+", choices=["cost", "paths", "random", "growth"], metavar="PART")
     parser.add_argument("--large", action="store_true")
     asked = parser.parse_args()
+    table = asked.out / "statics_growth.csv"
     parts = {"cost": cost, "paths": paths, "random": random_masses,
-             "growth": lambda runner, quick: growth(runner, SMALL[:1] if quick else SMALL, [*WAYS])}
+             "growth": lambda runner, quick: growth(runner, SMALL[:1] if quick else SMALL, [*WAYS])
+             + known(table, large=True)}
     with tempfile.TemporaryDirectory() as work:
         runner = Runner(asked.build.resolve() / "gcpdda", Path(work))
         if asked.large:
-            path = asked.out / "statics_growth.csv"
-            write_table(path, with_large_models(path, runner))
+            write_table(table, known(table, large=False) + growth(runner, LARGE, ["static"]))
             return
         for part in asked.only or parts:
             write_table(asked.out / f"statics_{part}.csv", parts[part](runner, asked.quick))

@@ -44,7 +44,7 @@ def slow_excavation(stages, seconds):
 def slow_water(stages, seconds):
     """Gravity over the time, then the density of the water in parts, each until the rock is nearly at rest."""
     weight, low = stages
-    rising = [f'{{name = "rise{k}", kind = "settle", limit = {LIMIT}, tolerance = 1e-4, '
+    rising = [f'{{name = "rise{k}", kind = "settle", limit = {LIMIT}, tolerance = 1e-4, local_damping = 0.8, '
               f'set = {{"water.low.active" = true, "water.low.density" = {1000.0 * (k + 1) / WATER_PARTS}}}}}'
               for k in range(WATER_PARTS - 1)]
     return [weight, *rising, low], [f"run.gravity_ramp={seconds!r}"]

@@ -30,6 +30,11 @@ public:
       }
       note(*middle, *verdict);
     }
+    if (leaves_one_open()) {
+      if (const std::optional<Verdict> verdict = ask(1.0)) {
+        note(1.0, *verdict);
+      }
+    }
     return found_;
   }
 
@@ -42,6 +47,11 @@ private:
       found_.next = factor;
     }
     return verdict;
+  }
+
+  /// Whether the scene stands with its own strength is asked of every search.
+  [[nodiscard]] bool leaves_one_open() const {
+    return found_.undecided.empty() && *found_.holds < 1.0 && *found_.fails > 1.0;
   }
 
   bool holds_at_from() {

@@ -55,7 +55,7 @@ void leave_statics(RunState &run, const std::string &reason) {
   close_statics(run);
   run.notes.push_back({Severity::info, run.clock.stage().where,
                        fmt::format("stage '{}' goes on with solver = \"dynamic\"", run.clock.stage().name),
-                       reason, "leave 'solver' out of the stage, or give it as \"dynamic\""});
+                       reason, "solver = \"dynamic\" in the stage says so from the start"});
 }
 
 // The damping of pseudo-time, and what holds the load back, take all that the forces do together. By the

@@ -161,9 +161,9 @@ class Page:
                             ignore=shutil.ignore_patterns("results", "pictures", "study", "*.md"))
             for block in code_blocks(self.path):
                 self.check(block)
-            for picture in self.folder.glob("*.png") if self.draws else ():
-                if (PICTURES / picture.name).exists():
-                    shutil.copy(picture, PICTURES)
+            shown = re.findall(r"\(\S*pictures/(\S+\.png)\)", self.path.read_text()) if self.draws else []
+            for picture in filter(pathlib.Path.exists, [self.folder / name for name in shown]):
+                shutil.copy(picture, PICTURES)
             for name, line in self.unused.items():
                 self.fail(line, f"no command of the page after it names {name}")
         self.seconds = time.monotonic() - begin
@@ -271,7 +271,7 @@ def main():
     parser.add_argument("--only", default="", help="only pages whose path contains this")
     parser.add_argument("--times", action="store_true", help="print the wall time of each page")
     parser.add_argument("--draw", action="store_true",
-                        help="run the long commands, too, and put the pictures that the pages draw in run/pictures")
+                        help="run the long commands, too, and put the pictures that pages draw and show in run/pictures")
     arguments = parser.parse_args()
 
     pages = [page for page in documents() if arguments.only in str(page.relative_to(SOURCE))]

@@ -55,7 +55,16 @@ TEST(SafetySearch, BracketsTheLimit) {
     EXPECT_GE(*found.search.fails, limit);
     EXPECT_LE(*found.search.fails - *found.search.holds, 0.002 * *found.search.holds);
     EXPECT_EQ(found.search.decisive.size(), found.tried.size()) << "one at a time tries nothing in vain";
-    EXPECT_LE(found.tried.size(), 2 + static_cast<std::size_t>(std::ceil(std::log2(3.5 / (0.002 * 0.5)))));
+    EXPECT_LE(found.tried.size(), 3 + static_cast<std::size_t>(std::ceil(std::log2(3.5 / (0.002 * 0.5)))));
+  }
+}
+
+TEST(SafetySearch, LeavesNoDoubtWhetherTheSceneStands) {
+  StrengthReduction reduction;
+  for (const double limit : {0.99, 0.999, 1.0, 1.001, 1.01}) {
+    const SafetySearch found = search(reduction, limit, 0.0, 1).search;
+    ASSERT_TRUE(found.holds && found.fails) << limit;
+    EXPECT_TRUE(*found.holds >= 1.0 || *found.fails <= 1.0) << limit;
   }
 }
 
