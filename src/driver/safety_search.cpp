@@ -130,11 +130,11 @@ void weaken(Scene &scene, const StrengthReduction &reduction, double factor) {
 std::vector<std::vector<JointLaw>> laws_between(const Scene &scene, const StrengthReduction &reduction,
                                                 double from, double to) {
   constexpr double largest_increment = 1.02;
-  const double increments = std::ceil(std::log(to / from) / std::log(largest_increment));
+  const auto increments = static_cast<int>(std::ceil(std::log(to / from) / std::log(largest_increment)));
   std::vector<std::vector<JointLaw>> laws;
-  for (double k = 1.0; k < increments; k += 1.0) {
+  for (int k = 1; k < increments; ++k) {
     Scene between = scene;
-    weaken(between, reduction, from * std::pow(to / from, k / increments));
+    weaken(between, reduction, from * std::pow(to / from, static_cast<double>(k) / increments));
     laws.push_back(std::move(between.joints.laws));
   }
   return laws;
