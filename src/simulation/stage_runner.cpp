@@ -390,27 +390,32 @@ ContactMemory remembered_of_those_left(const RunState &run) {
   return memory;
 }
 
+/// The state of the clock in a stage in which nothing has happened yet.
+void open_next_stage(RunState &run) {
+  StageState &state = run.clock.state;
+  state.start_time = run.clock.time();
+  state.first_step = run.clock.step_count;
+  ++state.index;
+  state.ended = false;
+  state.verdict = Verdict::undecided;
+  state.memory = {};
+  state.mechanism = {};
+  state.first_block = Verdict::undecided;
+  state.iteration = {};
+  state.contact_steps_before = run.counters.contact_steps;
+  run.communicator.sum(std::span(&state.contact_steps_before, 1));
+  std::erase_if(state.unloading,
+                [&](const Unloading &u) { return run.clock.time() >= u.begin + u.duration; });
+  run.clock.plan.duration = 0.0; // so that time() is the beginning of the stage
+  run.clock.plan.num_steps = 0;
+}
+
 } // namespace
 
 void begin_next_stage(RunState &run) {
   expect(run.clock.stage_is_over() && !run.fault && !run.clock.is_finished(),
          "a stage begins when the one before is over");
-  run.clock.state.start_time = run.clock.time();
-  run.clock.state.first_step = run.clock.step_count;
-  ++run.clock.state.index;
-  run.clock.state.ended = false;
-  run.clock.state.verdict = Verdict::undecided;
-  run.clock.state.memory = {};
-  run.clock.state.mechanism = {};
-  run.clock.state.first_block = Verdict::undecided;
-  run.clock.state.iteration = {};
-  run.clock.state.contact_steps_before = run.counters.contact_steps;
-  run.communicator.sum(std::span(&run.clock.state.contact_steps_before, 1));
-  std::erase_if(run.clock.state.unloading,
-                [&](const Unloading &u) { return run.clock.time() >= u.begin + u.duration; });
-  run.clock.plan.duration = 0.0; // so that time() is the beginning of the stage
-  run.clock.plan.num_steps = 0;
-
+  open_next_stage(run);
   const Stage &stage = run.clock.stage();
   const bool takes_away = stage.kind == StageKind::excavate || opens_viscous_sides(run);
   if (takes_away) {
