@@ -75,7 +75,7 @@ def test_of_a_run_in_stages(opening, tmp_path):
     assert "has failed at t" in text and "Stage arch: settled" in text
     import hashlib
     assert hashlib.sha256((opening.path / "scene.toml").read_bytes()).hexdigest() in text
-    assert opening.summary["version"] in text and opening.summary["command"] in text
+    assert opening.summary["version"] in text and opening.summary["command"] in html.unescape(text)
 
 
 def test_of_a_run_with_bolts_and_water(leaning, tmp_path):
