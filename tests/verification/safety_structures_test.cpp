@@ -2,6 +2,7 @@
 // but the roof wedges belong to the untouched half of the known limits.
 
 #include "safety_limits.hpp"
+#include "semicircular_arch.hpp"
 
 #include "geometry/polygon.hpp"
 
@@ -93,21 +94,8 @@ TEST(SafetyStructures, ThreeHingedArch) {
   expect_factor({"three-hinged arch on feet", std::tan(friction) * rise / arm}, toml);
 }
 
-/// A semicircular arch of voussoirs on its springings, by statics alone.
-struct Arch {
-  int num_voussoirs = 9;
-  double radius = 5.0;    ///< of the middle line, m
-  double thickness = 1.0; ///< m
-
-  [[nodiscard]] Vec2 joint(int k, double distance) const {
-    const double angle = std::numbers::pi * k / num_voussoirs;
-    return distance * Vec2{std::cos(angle), std::sin(angle)};
-  }
-  [[nodiscard]] std::vector<Vec2> voussoir(int k) const {
-    const double inner = radius - 0.5 * thickness;
-    const double outer = radius + 0.5 * thickness;
-    return {joint(k, inner), joint(k, outer), joint(k + 1, outer), joint(k + 1, inner)};
-  }
+/// An arch of voussoirs on its springings, by statics alone.
+struct Arch : SemicircularArch {
   /// Largest shear over normal force of a joint under the thrust H, in weights of the arch; infinite where no
   /// line of thrust stays in the arch. The springing bears half of the weight, and with its moment M_0 as
   /// unknown the moment about the middle of joint k is M_k + M_0, at most N_k t/2.
@@ -156,14 +144,14 @@ struct Arch {
 TEST(SafetyStructures, SemicircularArch) {
   const double friction = 35.0 * degree;
   for (const double thickness : {1.0, 1.5}) {
-    const Arch arch{9, 5.0, thickness};
+    const Arch arch{{9, thickness}};
     std::string toml =
         head({.normal_stiffness = 1e10, .friction_deg = friction / degree}) +
         block_toml("ground", rectangle({-2.0 * arch.radius, -2.0}, {2.0 * arch.radius, 0.0}), "fixed = true");
     for (int k = 0; k < arch.num_voussoirs; ++k) {
       toml += block_toml(fmt::format("voussoir{}", k), arch.voussoir(k));
     }
-    expect_factor({fmt::format("semicircular arch, thickness {:.1f} of its radius", thickness / arch.radius),
+    expect_factor({fmt::format("semicircular arch, thickness {:.1f} of its radius", thickness / Arch::radius),
                    std::tan(friction) / arch.least_friction()},
                   toml);
   }

@@ -18,8 +18,7 @@
 // by 5 to 8 times; one 2 % beyond the limit must fall whatever its joints.
 
 #include "problem.hpp"
-
-#include "geometry/polygon.hpp"
+#include "semicircular_arch.hpp"
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -33,25 +32,11 @@
 namespace gcpdda::testing::voussoir_arch_test {
 namespace {
 
-constexpr double radius = 5.0;   ///< of the middle line, m
+constexpr double radius = SemicircularArch::radius;
 constexpr double ramp = 0.5;     ///< s
 constexpr double at_rest = 1e-5; ///< m/s; what falls has 0.1 m/s soon
 
-struct Arch {
-  int num_voussoirs = 9;
-  double thickness = 1.0; ///< t, m
-
-  /// Point of joint k of n + 1, from the right springing, at a distance from the centre.
-  [[nodiscard]] Vec2 joint(int k, double distance) const {
-    const double angle = std::numbers::pi * k / num_voussoirs;
-    return distance * Vec2{std::cos(angle), std::sin(angle)};
-  }
-  [[nodiscard]] std::vector<Vec2> voussoir(int k) const {
-    const double inner = radius - 0.5 * thickness;
-    const double outer = radius + 0.5 * thickness;
-    return {joint(k, inner), joint(k, outer), joint(k + 1, outer), joint(k + 1, inner)};
-  }
-};
+using Arch = SemicircularArch;
 
 /// Largest of four unknowns' last one under conditions row.x + constant >= 0, by trying all corners.
 double largest_last(const Eigen::MatrixXd &rows, const Eigen::VectorXd &constants) {
