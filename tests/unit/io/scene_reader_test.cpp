@@ -222,6 +222,18 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
   EXPECT_EQ(compared, 50);
 }
 
+TEST(SceneReader, SettleStagesAreStaticUnlessDampingIsAskedFor) {
+  const std::string text = "[run]\n" + small_scene.substr(small_scene.find("[material")) +
+                           "[[stage]]\nkind = \"settle\"\nlimit = 3.0\n";
+  const auto solver = [&](const std::string &keys) { return good(text + keys).stages.at(0).solver; };
+  EXPECT_EQ(solver(""), Solver::statics);
+  EXPECT_EQ(solver("solver = \"dynamic\"\n"), Solver::dynamic);
+  for (const char *keys : {"local_damping = 0.5\n", "kinetic_damping = true\n", "mass_scaling = true\n"}) {
+    EXPECT_EQ(solver(keys), Solver::dynamic) << keys;
+    EXPECT_EQ(solver(std::string(keys) + "solver = \"static\"\n"), Solver::statics) << keys;
+  }
+}
+
 // A duration of the run has no meaning beside stages, so they have a scene of their own.
 TEST(SceneReader, DefaultsOfStagesAreThoseInForce) {
   const std::string text = "[run]\n" + small_scene.substr(small_scene.find("[material"));
