@@ -201,19 +201,25 @@ TEST(StaticStage, BondsBreakWhereTheirStrengthEnds) {
   constexpr double length = 4.0;
   constexpr double height = 0.5;
   const double pull = 3.0 * rock_density * earth_gravity * length * length / height;
-  for (const double strength : {0.99, 1.01}) {
+  const auto settle_beam = [&](double strength, const std::string &fidelity) {
     const std::string toml =
-        fmt::format("[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600.0\n[joint.default]\n"
+        fmt::format("[run]\nfidelity = \"{}\"\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 20e9\n"
+                    "poissons_ratio = 0.25\n[joint.default]\n"
                     "normal_stiffness = 1e10\nfriction_angle_deg = 35.0\ncohesion = 5e6\ntension = {}\n"
                     "[output]\ninterval = 0.1\n",
-                    strength * pull) +
+                    fidelity, strength * pull) +
         block_toml("pier", rectangle({-1.0, -2.0}, {0.0, 1.0}), "fixed = true") +
         block_toml("beam", rectangle({0.0, 0.0}, {length, height}));
     Simulation simulation(Communicator::self(), scene_of(toml + settle));
     run_stages(simulation);
     const StageResult result = simulation.stage_results().back();
-    EXPECT_EQ(result.verdict, strength < 1.0 ? Verdict::failed : Verdict::settled) << strength;
+    EXPECT_EQ(result.verdict, strength < 1.0 ? Verdict::failed : Verdict::settled)
+        << strength << ' ' << fidelity;
     EXPECT_EQ(has_fallen_back(simulation), strength < 1.0) << "only damped motion says that it has failed";
+  };
+  for (const char *fidelity : {"rigid", "deformable"}) {
+    settle_beam(0.99, fidelity);
+    settle_beam(1.01, fidelity);
   }
 }
 
