@@ -43,9 +43,21 @@ SpringMemory moved_on(SpringMemory memory, const RegionState &state, double cap,
     if (memory.side != 0 && memory.side != side) {
       memory.turned = rules.turn_memory;
     }
+    memory.slid_for = static_cast<std::uint8_t>(memory.turned == 0 ? std::min(memory.slid_for + 1, 255) : 0);
     memory.side = side;
+  } else {
+    memory.slid_for = 0;
   }
   return memory;
+}
+
+/// Of k_t, where a region slips.
+double share_of_slipping(const SpringMemory &memory, const SpringRules &rules) {
+  double fading = 1.0;
+  for (int k = rules.slide_memory; k < memory.slid_for && fading > rules.slide_floor; ++k) {
+    fading *= rules.slide_fade;
+  }
+  return rules.slip_share * std::max(fading, rules.slide_floor);
 }
 
 bool is_before(const SpringMemory &a, const SpringMemory &b) {
@@ -102,7 +114,7 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
     const std::int32_t law = state.law >= 0 ? state.law : pair.law;
     ContactSpring spring = spring_of(system, pair, force, state, contacts.parameters().constants(law));
     if (state.state == ContactState::slip && memory.turned == 0) {
-      spring.tangential *= rules.slip_share;
+      spring.tangential *= share_of_slipping(memory, rules);
     }
     spring.normal_stiffness = std::max(spring.normal_stiffness, rules.fade * last.normal_stiffness);
     spring.bending = std::max(spring.bending, rules.fade * last.bending);

@@ -16,7 +16,10 @@
 // is stable as long as the true stiffness is below four times K along each motion and quick where it is near
 // K. Three rules keep it so.
 // - A region whose shear is at its cap has no tangential stiffness. It keeps `slip_share` of k_t here: with
-//   none its blocks would run as far as their mass lets them.
+//   none its blocks would run as far as their mass lets them. A mechanism near its limit slides on with a
+//   force that hardly changes, held back by these springs alone. Where a region has slipped to one side for
+//   `slide_memory` evaluations its share therefore fades, by `slide_fade` at each further one, to
+//   `slide_floor` of it.
 // - Where slip has turned from one cap to the other the region sticks on the way with all of k_t, many
 //   times what the first rule gives it, and would swing between its caps for ever. It keeps all of k_t for
 //   the next `turn_memory` evaluations.
@@ -59,6 +62,7 @@ struct SpringMemory {
   std::int8_t side = 0;      ///< sign of the shear when the region slipped last; 0: never
   std::uint8_t turned = 0;   ///< evaluations for which it keeps all of k_t
   std::uint8_t open_for = 0; ///< evaluations since it has opened; 0: it is closed
+  std::uint8_t slid_for = 0; ///< evaluations in a row that it has slipped to one side; 255: or more
 };
 
 /// A spring that travels: its rows are found where it arrives.
@@ -69,6 +73,9 @@ struct SpringRecord {
 
 struct SpringRules {
   double slip_share = 0.06;
+  std::uint8_t slide_memory = 10;
+  double slide_fade = 0.9;
+  double slide_floor = 0.1;
   std::uint8_t turn_memory = 20;
   double fade = 0.8;
   std::uint8_t open_memory = 40;

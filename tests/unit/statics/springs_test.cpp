@@ -162,6 +162,28 @@ TEST(ContactSprings, SlipTakesMostOfTheTangentialStiffness) {
   EXPECT_NEAR(springs.springs()[0].tangential, rules.slip_share * whole, 1e-9 * whole);
 }
 
+TEST(ContactSprings, OfARegionThatSlidesOnFadeToAFloor) {
+  ContactBench bench = stacked_squares(0.1);
+  statics::ContactSprings springs;
+  const statics::SpringRules rules;
+  bench.evaluate();
+  bench.evaluate();
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  const double slipping = rules.slip_share * springs.springs()[0].tangential;
+  const auto slide = [&](double distance) {
+    bench.move(0, {{distance, 0.0}, 0.0});
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+    return springs.springs()[0].tangential / slipping;
+  };
+  for (int k = 1; k <= 300; ++k) { // counts stay at 255
+    const double faded = std::pow(0.9, std::max(0, k - 10));
+    EXPECT_NEAR(slide(1e-3), std::max(0.1, faded), 1e-12) << k;
+  }
+  bench.move(0, {{-1e-5, 0.0}, 0.0}); // back a little, it sticks
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
+  EXPECT_NEAR(slide(1e-3), 1.0, 1e-12);
+}
+
 // Turned onto its corner the square touches over millimetres; its spring falls no faster than one that opens.
 TEST(ContactSprings, OfASliverFadeFromWhatTheyWere) {
   ContactBench bench = stacked_squares(0.1);
