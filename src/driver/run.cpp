@@ -329,8 +329,9 @@ private:
   void write_checkpoint_if_due() {
     const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
     const bool stage_ends = simulation_.is_staged() && simulation_.stage_is_over();
-    if (simulation_.fault() || is_bare_ || is_once_ ||
-        (!stopping && !stage_ends && !checkpoint_is_due(simulation_.state()))) {
+    const bool is_due = is_once_ ? options_.keeps_end && stage_ends
+                                 : stopping || stage_ends || checkpoint_is_due(simulation_.state());
+    if (simulation_.fault() || is_bare_ || !is_due) {
       return;
     }
     const auto scope = simulation_.phases().measure(Phase::output);

@@ -72,7 +72,6 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time,
       const StageResult &trial = outcome.summary.stages[outcome.summary.stages.size() - 2].result;
       facts.moved = std::max(facts.moved, trial.moved);
       facts.steps += trial.steps;
-      facts.means = static_cast<std::int64_t>(trial.means);
       facts.is_confirmed = 1;
     }
   }
@@ -124,15 +123,19 @@ private:
     const std::size_t at_once = choose_groups();
     while (true) {
       std::vector<double> factors = next_factors(
-          scene_.reduction, [&](double factor) { return verdict_of(factor); }, at_once);
+          range(), [&](double factor) { return verdict_of(factor); }, at_once);
       if (factors.empty() && watches_mechanism()) {
         factors = next_factors(
-            scene_.reduction, [&](double factor) { return verdict_on_first_block(factor); }, at_once);
+            range(), [&](double factor) { return verdict_on_first_block(factor); }, at_once);
+      }
+      const bool confirms = factors.empty();
+      if (confirms) {
+        factors = unconfirmed(at_once);
       }
       if (factors.empty()) {
         break;
       }
-      if (run_trials(factors)) {
+      if (run_trials(factors, confirms)) {
         say(fmt::format("stopped by a signal in trial {}; a search does not go on from there\n",
                         trials_.size()));
         conclude(); // with what is known so far
@@ -215,15 +218,33 @@ private:
     return static_cast<std::size_t>(groups);
   }
 
+  [[nodiscard]] SearchRange range() const { return {scene_.reduction, report_.settled.factor}; }
+
+  /// Largest factors that hold, as far as the static solver alone has said so; at most so many.
+  [[nodiscard]] std::vector<double> unconfirmed(std::size_t most) const {
+    std::set<double> ends;
+    const auto add = [&](const SafetySearch &search) {
+      if (search.holds && unconfirmed_.contains(*search.holds) && ends.size() < most) {
+        ends.insert(*search.holds);
+      }
+    };
+    add(follow(range(), [&](double factor) { return verdict_of(factor); }));
+    if (watches_mechanism()) {
+      add(follow(range(), [&](double factor) { return verdict_on_first_block(factor); }));
+    }
+    return {ends.begin(), ends.end()};
+  }
+
   /// Each group takes one; true if the signal came.
-  bool run_trials(const std::vector<double> &factors) {
+  /// @param confirms  trials that the static solver has found to hold go on by the dynamic step
+  bool run_trials(const std::vector<double> &factors, bool confirms) {
     std::vector<TrialFacts> mine;
     std::string trouble;
     std::string message;
     if (static_cast<std::size_t>(group_number_) < factors.size()) {
       const double factor = factors[static_cast<std::size_t>(group_number_)];
       try {
-        const RunOutcome outcome = run_trial(factor);
+        const RunOutcome outcome = confirms ? run_confirmation(factor) : run_trial(factor);
         message = outcome.exit_code == exit_code::done || outcome.exit_code == exit_code::undecided
                       ? ""
                       : outcome.summary.message;
@@ -234,36 +255,57 @@ private:
         trouble = fmt::format("the trial at factor {:g} cannot run: {}", factor, error.what());
       }
     }
-    return share(mine, message, trouble);
+    return share(mine, message, trouble, confirms);
   }
 
-  RunOutcome run_trial(double factor) {
+  [[nodiscard]] Scene trial_scene(double factor) const {
     Scene weakened = weakened_scene(scene_, factor, report_.settled.factor);
     weakened.output.contacts = weakened.output.contacts || !options_.quiet; // the pictures show its joints
     weakened.resolved =
         fmt::format("# a trial of gcpdda fos: strengths as below divided by {:.17g}\n", factor) +
         scene_.resolved;
-    const fs::path directory = trial_directory(factor);
+    return weakened;
+  }
+
+  /// @param from  the settled state, or a trial that a confirming stage follows
+  RunOutcome run_in(const fs::path &directory, const Scene &scene, const fs::path &from, double factor) {
     const bool shows = !options_.quiet && group_number_ == 0; // of trials at once the first one's
-    const Scene settled = settling_scene(scene_, report_.settled.factor);
-    RunOptions options{directory, false, false, settled_directory(), true};
-    options.computed_with = &settled;
+    const Scene before =
+        from == settled_directory() ? settling_scene(scene_, report_.settled.factor) : trial_scene(factor);
+    RunOptions options{directory, true, false, from, true};
+    options.computed_with = &before;
     options.once = true;
+    options.keeps_end = scene.stages.back().solver == Solver::statics;
     options.progress_of = shows ? fmt::format("factor {:.6g}: ", factor) : std::string();
-    RunOutcome outcome = run_and_tell(*group_, weakened, options);
-    if (outcome.exit_code == exit_code::numerical_failure &&
-        weakened.stages.back().name == confirming_stage) {
-      // Blocks that fall may pass through each other in pseudo-time. The dynamic step keeps them apart.
-      weakened.stages.pop_back();
-      weakened.stages.back().solver = Solver::dynamic;
-      options.overwrite = true;
-      outcome = run_and_tell(*group_, weakened, options);
-    }
-    return outcome;
+    return run_and_tell(*group_, scene, options);
+  }
+
+  RunOutcome run_trial(double factor) {
+    const Scene trial = trial_scene(factor);
+    const RunOutcome outcome = run_in(trial_directory(factor), trial, settled_directory(), factor);
+    return fell_through(outcome, trial) ? run_dynamic_trial(trial_directory(factor), factor) : outcome;
+  }
+  RunOutcome run_confirmation(double factor) {
+    const fs::path directory = confirmation_directory(factor);
+    const Scene trial = trial_scene(factor);
+    const RunOutcome outcome =
+        run_in(directory, with_confirming_stage(trial), trial_directory(factor), factor);
+    return fell_through(outcome, trial) ? run_dynamic_trial(directory, factor) : outcome;
+  }
+
+  // Blocks that fall may pass through each other in pseudo-time. The dynamic step keeps them apart.
+  static bool fell_through(const RunOutcome &outcome, const Scene &trial) {
+    return outcome.exit_code == exit_code::numerical_failure && trial.stages.back().solver == Solver::statics;
+  }
+  RunOutcome run_dynamic_trial(const fs::path &directory, double factor) {
+    Scene trial = trial_scene(factor);
+    trial.stages.back().solver = Solver::dynamic;
+    return run_in(directory, trial, settled_directory(), factor);
   }
 
   /// What every group has found goes to all; the first trouble ends the search on all ranks.
-  bool share(const std::vector<TrialFacts> &mine, const std::string &message, const std::string &trouble) {
+  bool share(const std::vector<TrialFacts> &mine, const std::string &message, const std::string &trouble,
+             bool confirms) {
     const auto texts = world_.all_gather(std::vector<char>(trouble.begin(), trouble.end()));
     for (const std::vector<char> &text : texts) {
       if (!text.empty()) {
@@ -278,14 +320,22 @@ private:
         StrengthTrial trial = trial_of(facts);
         trial.message.assign(messages[rank].begin(), messages[rank].end());
         trial.directory = trial_directory(facts.factor);
+        if (confirms) {
+          trial.directory = confirmation_directory(facts.factor);
+          trial.evaluations += trials_[facts.factor].evaluations;
+          trial.cpu_s += trials_[facts.factor].cpu_s;
+        }
+        is_by_statics_alone(facts) ? void(unconfirmed_.insert(facts.factor))
+                                   : void(unconfirmed_.erase(facts.factor));
         trials_[facts.factor] = trial;
         if (facts.exit_code == exit_code::stopped) {
           stopped = true;
           stopped_.insert(facts.factor);
         }
-        say(fmt::format("factor {:.6g}: {} after {:.4g} s, {} steps, {:.2f} CPU s on {} rank{} {}\n",
-                        facts.factor, word_of(trial.verdict), trial.time, trial.steps, trial.cpu_s,
-                        trial.ranks, trial.ranks == 1 ? "" : "s", trial.message));
+        say(fmt::format("factor {:.6g}: {}{} after {:.4g} s, {} steps, {:.2f} CPU s on {} rank{} {}\n",
+                        facts.factor, word_of(trial.verdict), confirms ? " by the dynamic step" : "",
+                        trial.time, trial.steps, trial.cpu_s, trial.ranks, trial.ranks == 1 ? "" : "s",
+                        trial.message));
       }
     }
     return stopped;
@@ -295,15 +345,20 @@ private:
     return verdict == Verdict::settled ? "holds" : verdict == Verdict::failed ? "fails" : "undecided";
   }
 
+  static bool is_by_statics_alone(const TrialFacts &facts) {
+    return static_cast<Verdict>(facts.verdict) == Verdict::settled && facts.is_confirmed == 0 &&
+           static_cast<VerdictMeans>(facts.means) == VerdictMeans::static_solver;
+  }
+
   static std::string words_on_means(const TrialFacts &facts) {
-    if (static_cast<Verdict>(facts.verdict) == Verdict::undecided) {
+    const auto verdict = static_cast<Verdict>(facts.verdict);
+    if (verdict == Verdict::undecided) {
       return "";
     }
-    const auto means = static_cast<VerdictMeans>(facts.means);
-    return means == VerdictMeans::no_drag ? "dynamic step without damping"
-           : means == VerdictMeans::static_solver
-               ? facts.is_confirmed != 0 ? "static solver and dynamic step" : "static solver"
-               : "dynamic step";
+    return is_by_statics_alone(facts)                               ? "static solver"
+           : facts.is_confirmed != 0 && verdict == Verdict::settled ? "static solver and dynamic step"
+           : static_cast<VerdictMeans>(facts.means) == VerdictMeans::no_drag ? "dynamic step without damping"
+                                                                             : "dynamic step";
   }
 
   static StrengthTrial trial_of(const TrialFacts &facts) {
@@ -343,8 +398,12 @@ private:
     return options_.directory / "trials" / fmt::format("F{:.9g}", factor);
   }
 
+  [[nodiscard]] fs::path confirmation_directory(double factor) const {
+    return trial_directory(factor) / confirming_stage;
+  }
+
   void conclude() {
-    const SafetySearch search = follow(scene_.reduction, [&](double factor) { return verdict_of(factor); });
+    const SafetySearch search = follow(range(), [&](double factor) { return verdict_of(factor); });
     report_.tolerance = scene_.reduction.tolerance;
     report_.settled.directory = fs::absolute(settled_directory()).lexically_normal();
     report_.holds = search.holds;
@@ -353,7 +412,7 @@ private:
     std::vector<double> decisive = search.decisive;
     if (watches_mechanism()) {
       const SafetySearch first =
-          follow(scene_.reduction, [&](double factor) { return verdict_on_first_block(factor); });
+          follow(range(), [&](double factor) { return verdict_on_first_block(factor); });
       report_.first_block = FirstBlock{first.holds, first.fails, {}};
       report_.ignored_area = scene_.reduction.ignored_area;
       decisive.insert(decisive.end(), first.decisive.begin(), first.decisive.end());
@@ -368,6 +427,11 @@ private:
       report_.trials.back().decisive =
           std::count(decisive.begin(), decisive.end(), factor) > 0 || stopped_.contains(factor);
     }
+    on_root(world_, [&] {
+      for (const auto &[factor, trial] : trials_) { // nobody goes on from them now
+        fs::remove_all(trial_directory(factor) / "checkpoints");
+      }
+    });
     if (!options_.quiet) {
       on_root(world_, [&] {
         SafetyPictures pictures;
@@ -389,7 +453,7 @@ private:
 
   // Root alone, which reads the frames of both runs.
   [[nodiscard]] DrawnTrial drawn_trial(double factor, double ignored_area) const {
-    return drawn_trial_of(scene_, settled_directory(), trial_directory(factor), ignored_area);
+    return drawn_trial_of(scene_, settled_directory(), trials_.at(factor).directory, ignored_area);
   }
 
   Communicator world_;
@@ -400,6 +464,7 @@ private:
   double start_time_ = 0.0; ///< of all trials, s
   std::int64_t num_blocks_ = 0;
   std::map<double, StrengthTrial> trials_; ///< by factor
+  std::set<double> unconfirmed_;           ///< factors that hold by the static solver alone
   std::set<double> stopped_;               ///< factors of those without a verdict because the signal came
   SafetyReport report_;
   std::string message_; ///< why there is no factor

@@ -16,11 +16,11 @@ namespace {
 /// Follows the verdicts as far as they are known.
 class Follower {
 public:
-  Follower(const StrengthReduction &reduction, const TrialVerdicts &verdicts)
-      : reduction_(reduction), verdicts_(verdicts) {}
+  Follower(const SearchRange &range, const TrialVerdicts &verdicts)
+      : reduction_(range.reduction), settled_(range.settled), verdicts_(verdicts) {}
 
   SafetySearch follow() {
-    if (!holds_at_from() || !find_failing_end()) {
+    if (!find_holding_end() || !find_failing_end()) {
       return found_;
     }
     while (const std::optional<double> middle = widest_gap()) {
@@ -54,36 +54,45 @@ private:
     return found_.undecided.empty() && *found_.holds < 1.0 && *found_.fails > 1.0;
   }
 
-  bool holds_at_from() {
-    const std::optional<Verdict> verdict = ask(reduction_.from);
-    if (verdict) {
-      note(reduction_.from, *verdict);
-    }
-    return verdict == Verdict::settled;
-  }
-
-  // Far beyond its limit a pile may fall so wildly that the trial breaks down: then the next one is halfway
-  // down.
-  bool find_failing_end() {
-    double top = reduction_.to;
-    double factor = top;
-    while (true) {
+  bool find_holding_end() {
+    const bool is_in_range = reduction_.from < settled_ && settled_ < reduction_.to;
+    for (const double factor : {is_in_range ? settled_ : reduction_.from, reduction_.from}) {
       const std::optional<Verdict> verdict = ask(factor);
       if (!verdict) {
         return false;
       }
       note(factor, *verdict);
-      if (*verdict == Verdict::failed || found_.holds == reduction_.to) {
-        return *verdict == Verdict::failed;
+      if (verdict == Verdict::settled || factor == reduction_.from) {
+        return verdict == Verdict::settled;
       }
+    }
+    return false;
+  }
+
+  // Far beyond its limit a pile may fall so wildly that the trial breaks down: then the next one is halfway
+  // down.
+  bool find_failing_end() {
+    double growth = 1.25;
+    double top = reduction_.to;
+    while (!found_.fails) {
+      const bool broke_down = top < reduction_.to;
+      const double factor =
+          broke_down ? std::midpoint(*found_.holds, top) : std::min(growth * *found_.holds, top);
+      growth *= growth;
+      const std::optional<Verdict> verdict = ask(factor);
+      if (!verdict) {
+        return false;
+      }
+      note(factor, *verdict);
       if (*verdict == Verdict::undecided) {
         top = factor;
       }
-      if (top - *found_.holds <= reduction_.tolerance * *found_.holds) {
+      const double left = top < reduction_.to ? reduction_.tolerance * *found_.holds : 0.0;
+      if (!found_.fails && top - *found_.holds <= left) {
         return false;
       }
-      factor = std::midpoint(*found_.holds, top);
     }
+    return true;
   }
 
   void note(double factor, Verdict verdict) {
@@ -113,6 +122,7 @@ private:
   }
 
   const StrengthReduction &reduction_;
+  double settled_;
   const TrialVerdicts &verdicts_;
   SafetySearch found_;
 };
@@ -142,18 +152,17 @@ std::vector<std::vector<JointLaw>> laws_between(const Scene &scene, const Streng
 
 } // namespace
 
-SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &verdicts) {
-  return Follower(reduction, verdicts).follow();
+SafetySearch follow(const SearchRange &range, const TrialVerdicts &verdicts) {
+  return Follower(range, verdicts).follow();
 }
 
-std::vector<double> next_factors(const StrengthReduction &reduction, const TrialVerdicts &verdicts,
-                                 std::size_t most) {
+std::vector<double> next_factors(const SearchRange &range, const TrialVerdicts &verdicts, std::size_t most) {
   using Guess = std::vector<std::pair<double, Verdict>>;
   std::vector<double> factors;
   std::vector<Guess> guesses{{}};
   for (std::size_t k = 0; k < guesses.size() && factors.size() < most; ++k) {
     const Guess guess = guesses[k];
-    const SafetySearch search = follow(reduction, [&](double factor) -> std::optional<Verdict> {
+    const SafetySearch search = follow(range, [&](double factor) -> std::optional<Verdict> {
       const auto guessed =
           std::find_if(guess.begin(), guess.end(), [&](const auto &g) { return g.first == factor; });
       return guessed != guess.end() ? std::optional(guessed->second) : verdicts(factor);
@@ -257,14 +266,16 @@ Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   trial.after = std::move(after);
   weakened.output = {limit, limit, 0.0, scene.output.contacts};
   weakened.stages.push_back(std::move(trial));
-  if (is_static) {
-    Stage confirm = weakened.stages.back();
-    confirm.name = confirming_stage;
-    confirm.solver = Solver::dynamic;
-    confirm.after = nullptr;
-    confirm.tolerance *= 10.0; // swings of the step about a state of rest are no motion away from it
-    weakened.stages.push_back(std::move(confirm));
-  }
+  return weakened;
+}
+
+Scene with_confirming_stage(Scene weakened) {
+  Stage confirm = weakened.stages.back();
+  confirm.name = confirming_stage;
+  confirm.solver = Solver::dynamic;
+  confirm.after = nullptr;
+  confirm.tolerance *= 10.0; // swings of the step about a state of rest are no motion away from it
+  weakened.stages.push_back(std::move(confirm));
   return weakened;
 }
 

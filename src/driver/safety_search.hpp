@@ -15,6 +15,13 @@ namespace gcpdda {
 /// Verdict of the trial at a factor; none where it has not run.
 using TrialVerdicts = std::function<std::optional<Verdict>(double factor)>;
 
+/// What a search is about. It begins with the strengths of the settled state where that is one of its
+/// factors, and goes up from there in steps that grow.
+struct SearchRange {
+  StrengthReduction reduction;
+  double settled = 1.0; ///< what strengths are divided by in the settled state
+};
+
 /// Where a search stands.
 struct SafetySearch {
   std::optional<double> next; ///< the factor to try; none at the end
@@ -23,12 +30,11 @@ struct SafetySearch {
   std::vector<double> undecided; ///< between these two, ascending
   std::vector<double> decisive;  ///< what all this rests on, in the order they were asked for
 };
-SafetySearch follow(const StrengthReduction &reduction, const TrialVerdicts &verdicts);
+SafetySearch follow(const SearchRange &range, const TrialVerdicts &verdicts);
 
 /// The next factor and those that would follow it after either outcome, in the order of how soon they may be
 /// asked for; at most `most` of them.
-std::vector<double> next_factors(const StrengthReduction &reduction, const TrialVerdicts &verdicts,
-                                 std::size_t most);
+std::vector<double> next_factors(const SearchRange &range, const TrialVerdicts &verdicts, std::size_t most);
 
 /// A scene without stages settles for five times run.duration at most; its trials take run.duration as limit.
 Scene with_settle_stage(Scene scene);
@@ -46,11 +52,14 @@ bool is_weakened(const StrengthReduction &reduction, std::size_t law);
 /// Name of the stage in which the dynamic step confirms what the static solver has found at rest.
 inline constexpr const char *confirming_stage = "confirm";
 
-/// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints. Where
-/// the static solver finds that they hold, the dynamic step confirms it in a stage of its own.
+/// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints.
 /// @param settled_factor  what strengths were divided by in the settled state; those of a trial by the
 /// dynamic
 ///                        step fall from there in increments
 Scene weakened_scene(const Scene &scene, double factor, double settled_factor = 1.0);
+
+/// A trial in which the static solver finds that the blocks hold, and a stage in which the dynamic step
+/// confirms it.
+Scene with_confirming_stage(Scene weakened);
 
 } // namespace gcpdda

@@ -72,7 +72,7 @@ TEST(Fos, WritesWhatItFinds) {
   EXPECT_EQ(json_value(results / "fos.json", "block"), "\"slider\"") << "the block that moves";
   expect_sliding_joint(file_text(results / "fos.svg"));
   EXPECT_TRUE(fs::exists(results / "settled/checkpoints"));
-  EXPECT_TRUE(fs::exists(results / "trials/F2.5/frames/frame_000000.hdf"));
+  EXPECT_TRUE(fs::exists(results / "trials/F1.25/frames/frame_000000.hdf"));
 
   const Outcome again = run_gcpdda(0, call, folder);
   EXPECT_EQ(again.exit_code, 4);
@@ -82,7 +82,7 @@ TEST(Fos, WritesWhatItFinds) {
   std::vector<std::string> replace = call;
   replace.insert(replace.end(), {"--overwrite", "--set", "fos.limit=0.01", "--set", "fos.patience=0"});
   EXPECT_EQ(run_gcpdda(0, replace, folder).exit_code, 7) << "too short for any verdict";
-  EXPECT_FALSE(fs::exists(results / "trials/F2.5")) << "of the search before";
+  EXPECT_FALSE(fs::exists(results / "trials/F1.25")) << "of the search before";
   EXPECT_EQ(json_value(results / "fos.json", "holds"), "null");
 }
 
@@ -134,7 +134,7 @@ TEST(Fos, TellsWhatItKnowsWhereTheSignalStopsIt) {
   const fs::path results = folder / "results/plane_fos";
   const std::string more = fmt::format("{:.7g}", 1.00001 * testing::plane_failure_factor(0.0));
   testing::Process process(
-      testing::gcpdda_words(0, {"fos", "plane.toml", "--from", "0.8", "--to", more, "--set",
+      testing::gcpdda_words(0, {"fos", "plane.toml", "--from", "1.2", "--to", more, "--set",
                                 "fos.failure_motion=1e6", "--set", "fos.limit=1e4"}),
       folder.path());
   const fs::path trial = results / ("trials/F" + more);
@@ -144,11 +144,11 @@ TEST(Fos, TellsWhatItKnowsWhereTheSignalStopsIt) {
   const Outcome stopped = process.wait();
   EXPECT_EQ(stopped.exit_code, 6) << stopped.err;
   EXPECT_NE(stopped.err.find("stopped by a signal in trial 2"), std::string::npos) << stopped.err;
-  EXPECT_NE(stopped.out.find("the blocks still hold at 0.8"), std::string::npos) << stopped.out;
+  EXPECT_NE(stopped.out.find("the blocks still hold at 1.2"), std::string::npos) << stopped.out;
   EXPECT_EQ(stopped.out.find("undecided in the limit"), std::string::npos) << stopped.out;
   EXPECT_EQ(stopped.err.find("gcpdda restart"), std::string::npos) << "a trial is not gone on with";
   EXPECT_EQ(file_text(results / "fos.txt"), stopped.out);
-  EXPECT_EQ(std::stod(json_value(results / "fos.json", "holds")), 0.8);
+  EXPECT_EQ(std::stod(json_value(results / "fos.json", "holds")), 1.2);
   EXPECT_EQ(lines_of(file_text(results / "fos_trials.csv")).size(), 3U);
   EXPECT_TRUE(fs::exists(trial / "frames/frame_000000.hdf")) << "as it was stopped";
   EXPECT_FALSE(fs::exists(trial / "checkpoints"));

@@ -25,6 +25,7 @@ struct RunOptions {
   bool quiet = false; ///< the log goes to its file alone
   bool bare = false;  ///< no frames, histories and checkpoints: what the summary says is all that is wanted
   bool once = false;  ///< nobody goes on from it: no checkpoints, and a last frame where the signal stops it
+  bool keeps_end = false; ///< but a checkpoint at the end of each stage that takes steps
   /// The scene that the state to begin with was computed with; null: that of the run.
   const Scene *computed_with = nullptr;
   EarlierResults earlier = EarlierResults::must_be_whole; ///< of the run that a restart goes on with

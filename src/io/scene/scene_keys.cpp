@@ -261,7 +261,7 @@ constexpr Key keys_after_joints[] = {
 
   {"fos", Kind::table, optional, any, "", "", "[fos]", "How gcpdda fos looks for the factor of safety; the other commands do not care."},
   {"fos.families", Kind::names, optional, any, "", "<all>", "[\"bedding\", \"default\"]", "Names of the [joint.NAME] laws whose friction (its tangent), cohesion and tension are divided by the factor, peak and residual ones."},
-  {"fos.from", Kind::number, optional, above_to(0, 1e6), "", "0.5", "0.8", "Factor at which the blocks are expected to hold; below it is not searched."},
+  {"fos.from", Kind::number, optional, above_to(0, 1e6), "", "0.5", "0.8", "Below it is not searched. A search begins with the strengths of the settled state (1) and comes here where the blocks do not stay at rest with them."},
   {"fos.to", Kind::number, optional, above_to(0, 1e6), "", "4.0", "2.5", "Factor at which they are expected to fail; above it is not searched."},
   {"fos.tolerance", Kind::number, optional, above_to(0, 1), "", "0.01", "0.005", "Width of the bracket at which the search ends, as a share of its lower end."},
   {"fos.limit", Kind::number, optional, above_to(0, 1e12), "", "<that of the last settle stage>", "5.0", "[s] Simulated time of a trial with local damping; one that reaches it without a verdict goes on without (patience)."},

@@ -26,22 +26,22 @@ struct Outcome {
   int rounds = 0;
 };
 
-Outcome search(const StrengthReduction &reduction, double limit, double fog, std::size_t at_once) {
+Outcome search(const SearchRange &range, double limit, double fog, std::size_t at_once) {
   Outcome outcome;
   const TrialVerdicts known = [&](double factor) -> std::optional<Verdict> {
     const auto found = outcome.tried.find(factor);
     return found == outcome.tried.end() ? std::nullopt : std::optional(found->second);
   };
-  for (std::vector<double> next = next_factors(reduction, known, at_once); !next.empty();
-       next = next_factors(reduction, known, at_once)) {
+  for (std::vector<double> next = next_factors(range, known, at_once); !next.empty();
+       next = next_factors(range, known, at_once)) {
     EXPECT_LE(next.size(), at_once);
-    EXPECT_EQ(next.front(), follow(reduction, known).next) << "what is asked for comes first";
+    EXPECT_EQ(next.front(), follow(range, known).next) << "what is asked for comes first";
     for (const double factor : next) {
       EXPECT_TRUE(outcome.tried.emplace(factor, verdict_at(factor, limit, fog)).second) << "no trial twice";
     }
     ++outcome.rounds;
   }
-  outcome.search = follow(reduction, known);
+  outcome.search = follow(range, known);
   return outcome;
 }
 
@@ -49,7 +49,7 @@ TEST(SafetySearch, BracketsTheLimit) {
   StrengthReduction reduction;
   reduction.tolerance = 0.002;
   for (const double limit : {0.51, 1.0, 1.4534, 3.99}) {
-    const Outcome found = search(reduction, limit, 0.0, 1);
+    const Outcome found = search({reduction}, limit, 0.0, 1);
     ASSERT_TRUE(found.search.holds && found.search.fails);
     EXPECT_LT(*found.search.holds, limit);
     EXPECT_GE(*found.search.fails, limit);
@@ -62,7 +62,7 @@ TEST(SafetySearch, BracketsTheLimit) {
 TEST(SafetySearch, LeavesNoDoubtWhetherTheSceneStands) {
   StrengthReduction reduction;
   for (const double limit : {0.99, 0.999, 1.0, 1.001, 1.01}) {
-    const SafetySearch found = search(reduction, limit, 0.0, 1).search;
+    const SafetySearch found = search({reduction}, limit, 0.0, 1).search;
     ASSERT_TRUE(found.holds && found.fails) << limit;
     EXPECT_TRUE(*found.holds >= 1.0 || *found.fails <= 1.0) << limit;
   }
@@ -71,21 +71,21 @@ TEST(SafetySearch, LeavesNoDoubtWhetherTheSceneStands) {
 TEST(SafetySearch, IsTheSameForAnyNumberOfTrialsAtOnce) {
   StrengthReduction reduction;
   for (const double fog : {0.0, 0.05}) {
-    const Outcome alone = search(reduction, 1.4534, fog, 1);
+    const Outcome alone = search({reduction}, 1.4534, fog, 1);
     for (const std::size_t at_once : {2U, 3U, 4U, 7U}) {
-      const Outcome together = search(reduction, 1.4534, fog, at_once);
+      const Outcome together = search({reduction}, 1.4534, fog, at_once);
       EXPECT_EQ(together.search.holds, alone.search.holds);
       EXPECT_EQ(together.search.fails, alone.search.fails);
       EXPECT_EQ(together.search.undecided, alone.search.undecided);
       EXPECT_EQ(together.search.decisive, alone.search.decisive);
     }
-    EXPECT_LE(search(reduction, 1.4534, fog, 3).rounds, (alone.rounds + 2) / 2) << "two levels in a round";
+    EXPECT_LE(search({reduction}, 1.4534, fog, 3).rounds, (alone.rounds + 2) / 2) << "two levels in a round";
   }
 }
 
 TEST(SafetySearch, KeepsWhatIsUndecidedInTheBracket) {
   StrengthReduction reduction;
-  const Outcome found = search(reduction, 1.4534, 0.05, 1);
+  const Outcome found = search({reduction}, 1.4534, 0.05, 1);
   ASSERT_FALSE(found.search.undecided.empty());
   EXPECT_LE(*found.search.holds, 1.4034);
   EXPECT_GE(*found.search.fails, 1.5034);
@@ -98,15 +98,34 @@ TEST(SafetySearch, KeepsWhatIsUndecidedInTheBracket) {
 
 TEST(SafetySearch, EndsWhereTheEndsDoNotBracketIt) {
   const StrengthReduction reduction;
-  const Outcome weak = search(reduction, 0.3, 0.0, 4);
+  const Outcome weak = search({reduction}, 0.3, 0.0, 4);
   EXPECT_FALSE(weak.search.holds);
   EXPECT_EQ(weak.search.fails, reduction.from);
-  const Outcome strong = search(reduction, 9.0, 0.0, 1);
+  const Outcome strong = search({reduction}, 9.0, 0.0, 1);
   EXPECT_EQ(strong.search.holds, reduction.to);
   EXPECT_FALSE(strong.search.fails);
+  StrengthReduction coarse;
+  coarse.tolerance = 3.0;
+  EXPECT_EQ(search({coarse}, 3.0, 0.0, 1).search.fails, coarse.to) << "the end is tried all the same";
 }
 
-// Trials beyond 2.0 break down without a verdict; the limit is below.
+// What is tried is what the settled state makes likely.
+TEST(SafetySearch, GoesUpFromTheSettledState) {
+  const StrengthReduction reduction;
+  const auto first_factors = [&](double settled, double limit) {
+    std::vector<double> factors = search({reduction, settled}, limit, 0.0, 1).search.decisive;
+    factors.resize(4);
+    return factors;
+  };
+  EXPECT_EQ(first_factors(1.0, 1.2), (std::vector<double>{1.0, 1.25, 1.125, 1.1875}));
+  EXPECT_EQ(first_factors(1.0, 3.9), (std::vector<double>{1.0, 1.25, 1.25 * 1.5625, 4.0}));
+  EXPECT_EQ(first_factors(1.0, 0.9), (std::vector<double>{1.0, 0.5, 0.75, 0.875}))
+      << "it did not stay at rest";
+  EXPECT_EQ(first_factors(0.5, 0.9), (std::vector<double>{0.5, 0.625, 0.625 * 1.5625, 0.80078125}));
+  EXPECT_EQ(first_factors(5.0, 0.9)[0], reduction.from) << "beyond what is tried";
+}
+
+// Trials beyond 1.5 break down without a verdict; the limit is below.
 TEST(SafetySearch, ComesDownFromAnEndWithoutAVerdict) {
   const StrengthReduction reduction;
   std::map<double, Verdict> tried;
@@ -114,10 +133,10 @@ TEST(SafetySearch, ComesDownFromAnEndWithoutAVerdict) {
     const auto found = tried.find(factor);
     return found == tried.end() ? std::nullopt : std::optional(found->second);
   };
-  SafetySearch found = follow(reduction, known);
-  for (; found.next; found = follow(reduction, known)) {
+  SafetySearch found = follow({reduction}, known);
+  for (; found.next; found = follow({reduction}, known)) {
     ASSERT_LT(tried.size(), 20U);
-    tried[*found.next] = *found.next > 2.0 ? Verdict::undecided : verdict_at(*found.next, 1.4534);
+    tried[*found.next] = *found.next > 1.5 ? Verdict::undecided : verdict_at(*found.next, 1.4534);
   }
   ASSERT_TRUE(found.holds && found.fails);
   EXPECT_LT(*found.holds, 1.4534);
@@ -182,8 +201,10 @@ TEST(WeakenedScene, IsSolvedAsTheLastSettleStageIs) {
   const auto last_settle = std::find_if(scene.stages.rbegin(), scene.stages.rend(),
                                         [](const Stage &stage) { return stage.kind == StageKind::settle; });
   last_settle->solver = Solver::statics;
-  const std::vector<Stage> stages = weakened_scene(scene, 2.0).stages;
-  EXPECT_EQ(stages[stages.size() - 2].solver, Solver::statics);
+  const Scene trial = weakened_scene(scene, 2.0);
+  EXPECT_EQ(trial.stages.back().solver, Solver::statics);
+  const std::vector<Stage> stages = with_confirming_stage(trial).stages;
+  EXPECT_EQ(stages.size(), trial.stages.size() + 1);
   EXPECT_EQ(stages.back().name, confirming_stage);
   EXPECT_EQ(stages.back().solver, Solver::dynamic) << "the dynamic step confirms it";
 }
