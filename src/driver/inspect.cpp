@@ -87,7 +87,7 @@ public:
     std::string text = fmt::format("scene '{}'\n", simulation_.scene().stem);
     text +=
         blocks_line() + fidelity_line() + joint_lines() + step_lines() + contact_line() + partition_line();
-    text += stage_lines() + water_lines() + bolt_line() + cost_lines() + oddity_lines();
+    text += stage_lines() + water_lines() + support_lines() + cost_lines() + oddity_lines();
     for (const Diagnostic &note : simulation_.notes()) {
       text += to_string(note) + "\n";
     }
@@ -273,14 +273,25 @@ private:
     return text;
   }
 
-  std::string bolt_line() {
-    const std::vector<Bolt> &bolts = simulation_.scene().bolts;
-    if (bolts.empty()) {
-      return "";
+  std::string support_lines() {
+    const auto waiting = [](const auto &list) {
+      return std::count_if(list.begin(), list.end(), [](const auto &one) { return !one.active; });
+    };
+    const std::vector<BoltLink> &links = simulation_.bolts().links();
+    const auto elements =
+        std::count_if(links.begin(), links.end(), [](const BoltLink &link) { return link.liner >= 0; });
+    const Scene &scene = simulation_.scene();
+    std::string text;
+    if (!scene.bolts.empty()) {
+      text +=
+          line("bolts", fmt::format("{}, {} of them put in by a stage; {} links across joints now",
+                                    scene.bolts.size(), waiting(scene.bolts), std::ssize(links) - elements));
     }
-    const auto waiting = std::count_if(bolts.begin(), bolts.end(), [](const Bolt &b) { return !b.active; });
-    return line("bolts", fmt::format("{}, {} of them put in by a stage; {} links across joints now",
-                                     bolts.size(), waiting, simulation_.bolts().links().size()));
+    if (!scene.liners.empty()) {
+      text += line("liners", fmt::format("{}, {} of them put in by a stage; {} elements between blocks now",
+                                         scene.liners.size(), waiting(scene.liners), elements));
+    }
+    return text;
   }
 
   std::string contact_line() {

@@ -128,6 +128,26 @@ void compare_bolts(const Scene &before, const Scene &after, Diagnostics &faults)
   }
 }
 
+/// The same of liners.
+void compare_liners(const Scene &before, const Scene &after, Diagnostics &faults) {
+  bool same = before.liners.size() <= after.liners.size();
+  for (std::size_t i = 0; i < after.liners.size() && same; ++i) {
+    const Liner &b = after.liners[i];
+    if (i >= before.liners.size()) {
+      same = !b.active;
+      continue;
+    }
+    const Liner &a = before.liners[i];
+    same = a.name == b.name && a.path == b.path && a.is_closed == b.is_closed && a.active == b.active;
+  }
+  if (!same) {
+    faults.push_back(
+        refused({}, "liners that are there, or put in others at the start",
+                "the checkpoint holds those in place; further ones stand behind them with active "
+                "= false and are put in by a stage"));
+  }
+}
+
 /// A run that reached its end and left no checkpoint.
 bool is_finished(const Communicator &communicator, const std::filesystem::path &directory) {
   std::int64_t finished = 0;
@@ -147,6 +167,7 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
   compare_joints(before.joints, after.joints, faults);
   compare_blocks(before, after, faults);
   compare_bolts(before, after, faults);
+  compare_liners(before, after, faults);
   const auto in_situ = [](const Scene &scene) {
     const InSituStress &stress = scene.in_situ;
     return std::tuple(stress.present, stress.at_level, stress.growth, stress.down, stress.level);

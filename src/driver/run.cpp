@@ -58,7 +58,7 @@ public:
   SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
       : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
         is_once_(options.once), options_(options), bolts_at_start_(scene.bolts),
-        simulation_(communicator, scene, beginning_of(options)) {
+        liners_at_start_(scene.liners), simulation_(communicator, scene, beginning_of(options)) {
     if (!options.restart) {
       begin_results(scene, options);
     } else if (!simulation_.finished()) {
@@ -158,7 +158,7 @@ private:
       }
       prepare_result_directory(directory_, options.overwrite, scene.resolved);
       keep_drawings(scene);
-      histories_.emplace(directory_, scene.monitors, !scene.bolts.empty());
+      histories_.emplace(directory_, scene.monitors, SupportHistories::of(scene));
     });
     log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet, options.progress_of);
     frames_.emplace(communicator_, directory_, simulation_.num_blocks());
@@ -190,7 +190,7 @@ private:
     frames_->continue_behind(facts.frame_times, facts.results);
     on_root(communicator_, [&] {
       histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step,
-                         !scene.bolts.empty());
+                         SupportHistories::of(scene));
     });
     log_.emplace(communicator_.is_root(), directory_, std::ios::app);
     for (const std::string &rejected : restored.rejected) {
@@ -317,6 +317,9 @@ private:
       if (!bolts_at_start_.empty()) {
         frames_->write_bolts(index, simulation_.time(), collect_bolt_lines(simulation_));
       }
+      if (!liners_at_start_.empty()) {
+        frames_->write_liners(index, simulation_.time(), collect_liner_rows(simulation_));
+      }
     }
     if (history_due) {
       write_history(failed);
@@ -357,6 +360,7 @@ private:
   void write_history(bool failed) {
     const std::vector<BlockHistoryRow> rows = collect_monitors(simulation_);
     const std::vector<BoltHistoryRow> bolts = collect_bolts(simulation_);
+    const std::vector<LinerHistoryRow> liners = collect_liners(simulation_);
     contacts_at_end_ = count_contacts();
     on_root(communicator_, [&] {
       for (std::size_t m = 0; m < rows.size(); ++m) {
@@ -371,6 +375,9 @@ private:
       }
       if (!bolts.empty()) {
         histories_->write_bolts(simulation_.time(), bolts);
+      }
+      if (!liners.empty()) {
+        histories_->write_liners(simulation_.time(), liners);
       }
       histories_->flush();
     });
@@ -422,6 +429,9 @@ private:
     if (!summary.bolts.empty()) {
       log_->line(words_on_loads(summary.bolts));
     }
+    if (!summary.liners.empty()) {
+      log_->line(words_on_loads(summary.liners));
+    }
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());
     if (stopped) {
@@ -440,8 +450,10 @@ private:
     summary.joint_sets = options_.joint_sets;
     summary.contacts = contacts_at_end_;
     summary.energy = energy_;
-    const std::vector<BoltLoad> loads = histories_ ? histories_->bolt_loads() : std::vector<BoltLoad>();
-    summary.bolts = with_installation(loads, bolts_at_start_, simulation_); // of the root
+    if (histories_) { // of the root
+      summary.bolts = with_installation(histories_->bolt_loads(), bolts_at_start_, simulation_);
+      summary.liners = with_installation(histories_->liner_loads(), liners_at_start_, simulation_);
+    }
     summary.wall_s = spread(communicator_, loop_seconds_)[2];
     const auto num_ranks = static_cast<double>(communicator_.size());
     summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
@@ -457,6 +469,7 @@ private:
   bool is_once_;
   const RunOptions &options_;
   std::vector<Bolt> bolts_at_start_;
+  std::vector<Liner> liners_at_start_;
   Simulation simulation_;
   std::optional<HistoryWriter> histories_;
   std::optional<RunLog> log_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numeric>
 
 namespace gcpdda {
 
@@ -157,12 +158,44 @@ std::string words_on_loads(const std::vector<BoltLoad> &loads) {
       count(&BoltHistoryRow::yielded), count(&BoltHistoryRow::broken));
 }
 
+std::string words_on_loads(const std::vector<LinerLoad> &loads) {
+  const auto most = [&](double LinerLoad::*force) {
+    return *std::max_element(loads.begin(), loads.end(),
+                             [force](const LinerLoad &a, const LinerLoad &b) { return a.*force < b.*force; });
+  };
+  const auto sum = [&](std::int64_t LinerHistoryRow::*what) {
+    return std::accumulate(
+        loads.begin(), loads.end(), std::int64_t{0},
+        [what](std::int64_t so_far, const LinerLoad &load) { return so_far + load.last.*what; });
+  };
+  const LinerLoad thrust = most(&LinerLoad::compression);
+  const LinerLoad moment = most(&LinerLoad::moment);
+  const LinerLoad shear = most(&LinerLoad::shear);
+  return fmt::format(
+      "liners: largest thrust {:.4g} N/m in '{}', largest moment {:.4g} N in '{}', largest shear "
+      "{:.4g} N/m in '{}'; of {} elements {} cracked, {} yielded and {} broke",
+      thrust.compression, thrust.last.name, moment.moment, moment.last.name, shear.shear, shear.last.name,
+      sum(&LinerHistoryRow::elements), sum(&LinerHistoryRow::cracked), sum(&LinerHistoryRow::yielded),
+      sum(&LinerHistoryRow::broken));
+}
+
 std::string words_on_bolts(const Simulation &simulation) {
   const StepBound &bound = simulation.bound();
-  return fmt::format("bolts: {} in the scene, springs in place: {}; omega_max {:.6g} rad/s with them, {:.6g} "
-                     "rad/s without",
-                     simulation.scene().bolts.size(), simulation.bolts().links().size(), bound.omega_max,
-                     bound.without_bolts);
+  const std::vector<BoltLink> &links = simulation.bolts().links();
+  const auto elements =
+      std::count_if(links.begin(), links.end(), [](const BoltLink &link) { return link.liner >= 0; });
+  const std::size_t bolts = simulation.scene().bolts.size();
+  const std::size_t liners = simulation.scene().liners.size();
+  std::string text;
+  if (bolts > 0) {
+    text = fmt::format("bolts: {} in the scene, springs in place: {}", bolts, std::ssize(links) - elements);
+  }
+  if (liners > 0) {
+    text += fmt::format("{}liners: {} in the scene, elements in place: {}", text.empty() ? "" : "; ", liners,
+                        elements);
+  }
+  return text + fmt::format("; omega_max {:.6g} rad/s with them, {:.6g} rad/s without", bound.omega_max,
+                            bound.without_bolts);
 }
 
 } // namespace gcpdda

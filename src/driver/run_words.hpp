@@ -32,6 +32,8 @@ void tell_end(const Simulation &simulation, const std::filesystem::path &directo
 
 /// The most loaded bolts, and how many have yielded and broken.
 std::string words_on_loads(const std::vector<BoltLoad> &loads);
+/// The most loaded liners, and how many elements have cracked, yielded and broken.
+std::string words_on_loads(const std::vector<LinerLoad> &loads);
 
 /// How many bolts there are, and what they do to the step.
 std::string words_on_bolts(const Simulation &simulation);

@@ -30,9 +30,68 @@ struct Yielding {
   }
 };
 
+/// The law of an element of a liner.
+LinkLaw law_of_liner(const SupportType &support, double length) {
+  const double t = support.thickness;
+  const double nu = support.poissons_ratio;
+  const double plane_modulus = support.youngs_modulus / (1.0 - nu * nu);
+  const double shear_modulus = support.youngs_modulus / (2.0 * (1.0 + nu));
+  const double rigidity = plane_modulus * t * t * t / 12.0;
+  constexpr double shear_share = 5.0 / 6.0; // of a rectangular section
+  const double phi = 12.0 * rigidity / (shear_share * shear_modulus * t * length * length);
+  LinkLaw law;
+  law.axial_stiffness = plane_modulus * t / length;
+  law.shear_stiffness = 12.0 * rigidity / (length * length * length * (1.0 + phi));
+  law.bending_stiffness = rigidity / length;
+  law.length = length;
+  law.section = section_of(support);
+  return law;
+}
+
+/// Held by the section. What a crack takes is what the element stores less after it: the strength falls at
+/// once, with no deformation that could do work.
+LinkMemory respond_as_liner(const LinkLaw &law, LinkMemory memory) {
+  const LinerForces trial{law.axial_stiffness * (memory.extension - memory.axial_slip),
+                          law.shear_stiffness * (memory.slide - memory.shear_slip),
+                          law.bending_stiffness * (memory.turn - memory.turn_slip)};
+  const auto take = [&](const LinerForces &forces) {
+    memory.axial = forces.axial;
+    memory.shear = forces.shear;
+    memory.moment = forces.moment;
+  };
+  take(trial);
+  const double stored = stored_energy(law, memory);
+  const bool cracks = !memory.cracked && is_overstretched(law.section, law.length, trial);
+  memory.cracked = memory.cracked || cracks;
+  const LinerForces held = held_forces(law.section, memory.cracked, law.length, trial);
+  take(held);
+  const LinerForces slip{(trial.axial - held.axial) / law.axial_stiffness,
+                         (trial.shear - held.shear) / law.shear_stiffness,
+                         (trial.moment - held.moment) / law.bending_stiffness};
+  memory.axial_slip += slip.axial;
+  memory.shear_slip += slip.shear;
+  memory.turn_slip += slip.moment;
+  const bool yields = slip.axial != 0.0 || slip.shear != 0.0 || slip.moment != 0.0;
+  memory.yielded = memory.yielded || yields;
+  if (yields) {
+    memory.dissipated += cracks
+                             ? stored - stored_energy(law, memory)
+                             : held.axial * slip.axial + held.shear * slip.shear + held.moment * slip.moment;
+  }
+  if (std::abs(held.shear) > law.section.shear_limit) {
+    memory.dissipated += stored_energy(law, memory);
+    take({});
+    memory.broken = true;
+  }
+  return memory;
+}
+
 } // namespace
 
 LinkLaw law_of(const SupportType &support, const BoltLink &link) {
+  if (support.kind == SupportType::Kind::liner) {
+    return law_of_liner(support, link.length);
+  }
   const bool is_grouted = support.kind == SupportType::Kind::grouted;
   const double stiffness =
       support.axial_stiffness > 0.0 ? support.axial_stiffness : support.axial_rigidity / link.length;
@@ -63,7 +122,10 @@ LinkPose pose_of(const BlockSystem &system, const BoltLink &link, const std::arr
   LinkPose pose;
   pose.extension = distance - link.length;
   pose.axis = distance > 0.0 ? (1.0 / distance) * r : Vec2{};
-  const Vec2 sum = map_a(link.end[0].along) + map_b(link.end[1].along);
+  const Vec2 along_a = map_a(link.end[0].along);
+  const Vec2 along_b = map_b(link.end[1].along);
+  pose.turn = link.liner >= 0 ? std::atan2(cross(along_a, along_b), dot(along_a, along_b)) : 0.0;
+  const Vec2 sum = along_a + along_b;
   const double size = norm(sum);
   if (size > 0.0) {
     const Vec2 mean = (1.0 / size) * sum;
@@ -76,11 +138,15 @@ LinkPose pose_of(const BlockSystem &system, const BoltLink &link, const std::arr
   return pose;
 }
 
-LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, double slide) {
+LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, double slide, double turn) {
   memory.extension = extension;
   memory.slide = slide;
+  memory.turn = turn;
   if (memory.broken) {
     return memory;
+  }
+  if (law.section.thickness > 0.0) {
+    return respond_as_liner(law, memory);
   }
   double trial = law.pretension + law.axial_stiffness * (extension - memory.axial_slip);
   if (law.slack_in_compression) {
@@ -105,8 +171,14 @@ LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, doub
 }
 
 double stored_energy(const LinkLaw &law, const LinkMemory &memory) {
-  const double axial = 0.5 * memory.axial * memory.axial / law.axial_stiffness;
-  return law.shear_stiffness > 0.0 ? axial + 0.5 * memory.shear * memory.shear / law.shear_stiffness : axial;
+  double energy = 0.5 * memory.axial * memory.axial / law.axial_stiffness;
+  if (law.shear_stiffness > 0.0) {
+    energy += 0.5 * memory.shear * memory.shear / law.shear_stiffness;
+  }
+  if (law.bending_stiffness > 0.0) {
+    energy += 0.5 * memory.moment * memory.moment / law.bending_stiffness;
+  }
+  return energy;
 }
 
 LinkForce force_of(const BlockSystem &system, const BoltLink &link, const std::array<std::size_t, 2> &rows,
@@ -123,15 +195,24 @@ LinkForce force_of(const BlockSystem &system, const BoltLink &link, const std::a
     if (memory.shear != 0.0) {
       act((sign * memory.shear) * pose.tangent, pose.shear_point[k]);
     }
+    if (memory.moment != 0.0) {
+      const Vec2 direction = map(link.end[k].along);
+      const double couple = sign * memory.moment;
+      force.rigid[k].r += couple;
+      force.gradient[k] += outer((couple / dot(direction, direction)) * perp(direction), link.end[k].along);
+    }
   }
   return force;
 }
 
-std::array<PointSpring, 2> springs_of(const LinkLaw &law, const BoltLink &link, std::size_t end) {
+std::array<PointSpring, 4> springs_of(const LinkLaw &law, const BoltLink &link, std::size_t end) {
   const double sign = end == 0 ? 1.0 : -1.0;
   const LinkEnd &at = link.end[end];
+  const Vec2 half = (0.5 * link.length) * at.along;
+  const double bending = 2.0 * law.bending_stiffness / (link.length * link.length);
   return {PointSpring{at.point, law.axial_stiffness},
-          PointSpring{at.point + (0.5 * sign * link.length) * at.along, law.shear_stiffness}};
+          PointSpring{at.point + (0.5 * sign * link.length) * at.along, law.shear_stiffness},
+          PointSpring{at.point - half, bending}, PointSpring{at.point + half, bending}};
 }
 
 Vec2 trial_position(const BlockSystem &system, std::size_t row, Vec2 point) {

@@ -1,7 +1,7 @@
 #pragma once
 
 // A spring between two blocks where a bolt crosses the joint between them, or between the two ends of a
-// cable.
+// cable, and the element of a liner between two neighbouring blocks of a face.
 //
 // Its ends are material points A of one block and B of the other, r = x_B - x_A, L = |r| when it was put in.
 //   axial   e = |r| - L,  N = T_0 + k_a (e - e_p),  along r, T_0 the pre-tension.
@@ -9,23 +9,31 @@
 //           is convected with each of them, d_A = F_A D_A, d_B = F_B D_B, and with m along d_A + d_B and
 //           t = perp(m)
 //               s = t . r,  Q = k_s (s - s_p),  along t.
-// e and s do not change when both blocks move as one, so neither N nor Q does; an elastic link has the
-// potential N^2/(2 k_a) + Q^2/(2 k_s). The variation of s,
+//   bending (liner)  the angle between both convected directions,
+//               phi = angle(d_A -> d_B),  M = k_b (phi - phi_p).
+// e, s and phi do not change when both blocks move as one, so neither N, Q nor M does; an elastic link has
+// the potential N^2/(2 k_a) + Q^2/(2 k_s) + M^2/(2 k_b). The variation of s,
 //     ds = t . dr - (m . r)/|d_A + d_B| t . (dF_A D_A + dF_B D_B),
 // is that of two forces -Q t at x_B - c d_B and Q t at x_A + c d_A, c = (m . r)/|d_A + d_B|: about the middle
 // of the link. These points differ by s t, so the pair has no torque, and all of it holds for rigid and
 // deformable blocks alike (material points X_B - c D_B, X_A + c D_A). A long slip turns r, so a grouted bolt
-// takes shear as tension too, as it does in rock.
+// takes shear as tension too, as it does in rock. That of phi is perp(d).dF D/|d|^2 for B less that for A: a
+// couple M on both.
+//
+// A liner's element is a straight beam that is clamped in both blocks; e, s and phi are all of its modes of
+// deformation: stretch, bending with one point of inflexion (the moment Q L/2 at the ends, none in the
+// middle), and bending by a constant moment M (dynamics/liner_section.hpp).
 //
 // Both are elastic and perfectly plastic: e_p and s_p grow where N and Q would exceed their capacity. The
 // axial capacity is the yield force or, where less, what the grout on the shorter side bears. A cable with a
 // free length is slack in compression. Rupture: e + T_0/k_a beyond rupture_strain L breaks it for good. What
-// plastic flow and rupture take is counted link by link.
+// plastic flow and rupture take is counted link by link. A liner yields, cracks and breaks by its section.
 //
 // Forces are taken at the trial configuration like contact forces. All numbers are per metre of thickness:
 // those of a bolt divided by its spacing out of plane.
 
 #include "dynamics/frequency_bound.hpp"
+#include "dynamics/liner_section.hpp"
 #include "gcpdda/model/support.hpp"
 #include "model/block_system.hpp"
 
@@ -44,6 +52,9 @@ struct LinkLaw {
   double pretension = 0.0;
   double rupture = SupportType::unlimited; ///< extension with that of the pre-tension, m
   bool slack_in_compression = false;
+  double bending_stiffness = 0.0; ///< k_b, N; of a liner, and the next two
+  double length = 0.0;            ///< L, m
+  LinerSection section;
 };
 
 struct LinkMemory {
@@ -56,6 +67,10 @@ struct LinkMemory {
   double slide = 0.0;      ///< s, m
   bool yielded = false;
   bool broken = false;
+  bool cracked = false;   ///< a liner, this and the next three
+  double turn_slip = 0.0; ///< phi_p, rad
+  double moment = 0.0;    ///< M, N
+  double turn = 0.0;      ///< phi, rad
 
   friend bool operator==(const LinkMemory &, const LinkMemory &) = default;
 };
@@ -67,9 +82,10 @@ struct LinkEnd {
 };
 
 struct BoltLink {
-  std::int32_t bolt = 0;            ///< index into Scene::bolts
+  std::int32_t bolt = 0;            ///< index into Scene::bolts; -1 of a liner
+  std::int32_t liner = -1;          ///< index into Scene::liners; -1 of a bolt
   std::array<LinkEnd, 2> end;       ///< by block id
-  bool head_first = true;           ///< end[0] is on the side of the bolt's head
+  bool head_first = true;           ///< end[0] is on the side of the bolt's head, or first on the face
   double length = 0.0;              ///< L, m
   double bond_length = 0.0;         ///< grout on the shorter side, m
   std::array<double, 2> overhang{}; ///< from the link's ends to the bolt's: towards the head, the tip, m
@@ -82,6 +98,7 @@ LinkLaw law_of(const SupportType &support, const BoltLink &link);
 struct LinkPose {
   double extension = 0.0;
   double slide = 0.0;
+  double turn = 0.0;
   Vec2 axis;                       ///< along r
   Vec2 tangent;                    ///< t
   std::array<Vec2, 2> shear_point; ///< material points the shear force acts at, reference axes
@@ -90,8 +107,8 @@ struct LinkPose {
 /// @param rows  of the blocks of the link's ends
 LinkPose pose_of(const BlockSystem &system, const BoltLink &link, const std::array<std::size_t, 2> &rows);
 
-/// The memory at a new extension and slide.
-LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, double slide);
+/// The memory at a new extension, slide and turn.
+LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, double slide, double turn = 0.0);
 
 /// J/m.
 double stored_energy(const LinkLaw &law, const LinkMemory &memory);
@@ -105,8 +122,9 @@ LinkForce force_of(const BlockSystem &system, const BoltLink &link, const std::a
                    const LinkPose &pose, const LinkMemory &memory);
 
 /// Springs that hold a block at least as stiffly as one end of the link does, whichever way the link turns,
-/// up to a strain of 1: the stiffness of a tensioned link across itself, N/|r|, is less than k_a.
-std::array<PointSpring, 2> springs_of(const LinkLaw &law, const BoltLink &link, std::size_t end);
+/// up to a strain of 1: the stiffness of a tensioned link across itself, N/|r|, is less than k_a. Bending has
+/// two springs of k_b/(2 h^2) at the distance h = L/2 before and behind the end.
+std::array<PointSpring, 4> springs_of(const LinkLaw &law, const BoltLink &link, std::size_t end);
 
 /// Position of a material point in the trial configuration.
 Vec2 trial_position(const BlockSystem &system, std::size_t row, Vec2 point);

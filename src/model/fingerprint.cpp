@@ -50,7 +50,7 @@ private:
 static_assert(sizeof(RunSettings) == 136);
 static_assert(sizeof(PointLoad) == 72);
 static_assert(sizeof(Water) == 96);
-static_assert(sizeof(SupportType) == 128);
+static_assert(sizeof(SupportType) == 200);
 static_assert(sizeof(InSituStress) == 160);
 static_assert(sizeof(Earthquake) == 176);
 static_assert(sizeof(Stage) == 312);
@@ -105,7 +105,9 @@ void add(Chain &chain, const SupportType &type) {
   chain.add(type.kind);
   chain.add({type.axial_stiffness, type.axial_rigidity, type.axial_yield, type.shear_stiffness,
              type.shear_yield, type.rupture_strain, type.pretension, type.active_length, type.bond_strength,
-             type.spacing});
+             type.spacing, type.thickness, type.youngs_modulus, type.poissons_ratio,
+             type.compressive_strength, type.tensile_strength, type.residual_tensile_strength,
+             type.shear_strength, type.adhesion, type.bond_width});
   chain.add(std::uint64_t{type.plate});
 }
 
@@ -118,6 +120,19 @@ void add_bolts_in_place(Chain &chain, const Scene &scene) {
       chain.add(bolt.from);
       chain.add(bolt.to);
       add(chain, scene.supports[static_cast<std::size_t>(bolt.support)]);
+    }
+  }
+}
+
+void add_liners_in_place(Chain &chain, const Scene &scene) {
+  for (std::size_t i = 0; i < scene.liners.size(); ++i) {
+    const Liner &liner = scene.liners[i];
+    if (liner.active) {
+      chain.add(std::uint64_t{i});
+      chain.add(liner.path);
+      chain.add(std::uint64_t{liner.is_closed});
+      chain.add(std::uint64_t{liner.has_rock_on_right});
+      add(chain, scene.supports[static_cast<std::size_t>(liner.support)]);
     }
   }
 }
@@ -164,7 +179,7 @@ ScenePrints fingerprints(const Scene &start, std::span<const Stage> stages) {
     chains.emplace_back(part);
   }
   auto &run = chains[0], &joint = chains[1], &material = chains[2], &block = chains[3], &water = chains[4],
-       &bolt = chains[5], &stress = chains[6], &ground = chains[7], &stage = chains[8];
+       &bolt = chains[5], &stress = chains[6], &ground = chains[7], &stage = chains[8], &liner = chains[9];
   const auto add_scene = [&](const Scene &scene) {
     add(run, scene.run);
     add(joint, scene.joints);
@@ -172,6 +187,7 @@ ScenePrints fingerprints(const Scene &start, std::span<const Stage> stages) {
     add(block, scene.blocks);
     add(water, scene.water);
     add_bolts_in_place(bolt, scene);
+    add_liners_in_place(liner, scene);
     add(stress, scene.in_situ);
   };
   add_scene(start);

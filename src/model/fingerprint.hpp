@@ -29,15 +29,16 @@ std::uint64_t fingerprint(std::span<const Material> materials);
 
 /// Parts of a scene with a fingerprint each, so that a message can name what is different: keys of the scene.
 inline constexpr std::array scene_parts{"[run]",    "[joint]",   "[material]",   "[[block]]", "[water]",
-                                        "[[bolt]]", "[in_situ]", "[earthquake]", "[[stage]]"};
+                                        "[[bolt]]", "[in_situ]", "[earthquake]", "[[stage]]", "[[liner]]"};
 using ScenePrints = std::array<std::uint64_t, scene_parts.size()>;
 
 /// Of what a state depends on besides its blocks, once a scene has gone through its first stages: settings of
-/// the run, laws, materials, loads, water, bolts in place, stress, ground motion, and what those stages did.
+/// the run, laws, materials, loads, water, bolts and liners in place, stress, ground motion, and what those
+/// stages did.
 ///
 /// Left out is what says nothing of a state: names, duration and limits (of drag as well), how the strengths
 /// of a trial fall (no run begins with a state of one), the time step (a checkpoint holds its own), what is
-/// written how often, monitors, bolts that have not been put in, stages to come.
+/// written how often, monitors, bolts and liners that have not been put in, stages to come.
 ///
 /// @param start   before its first stage, as it was read; its record, if any, has been opened
 /// @param stages  the first ones

@@ -78,16 +78,25 @@ Vec2 point_at(const std::vector<Vec2> &outline, double way) {
   }
 }
 
+/// Ways along the outline where an arc begins and ends.
+struct Arc {
+  double begin = 0.0;
+  double end = 0.0;
+};
+Arc arc_between(const std::vector<Stop> &stops, double from_angle, double to_angle) {
+  constexpr double rounding = 1e-9; // a side whose normal is one of the two directions belongs to the arc
+  const double from =
+      from_angle + whole_turn * std::ceil((stops.front().angle - from_angle) / whole_turn - rounding);
+  const double begin = way_at(stops, from - rounding, 0.0);
+  return {begin, way_at(stops, from + (to_angle - from_angle) + rounding, begin)};
+}
+
 } // namespace
 
 std::vector<BoltLine> bolts_of(const BoltPattern &pattern, const std::vector<Vec2> &outline) {
   expect(outline.size() >= 3 && pattern.to_angle > pattern.from_angle, "a pattern on an arc of an outline");
   const std::vector<Stop> stops = stops_of(outline);
-  constexpr double rounding = 1e-9; // a side whose normal is one of the two directions belongs to the arc
-  double from = pattern.from_angle;
-  from += whole_turn * std::ceil((stops.front().angle - from) / whole_turn - rounding);
-  const double begin = way_at(stops, from - rounding, 0.0);
-  const double end = way_at(stops, from + (pattern.to_angle - pattern.from_angle) + rounding, begin);
+  const auto [begin, end] = arc_between(stops, pattern.from_angle, pattern.to_angle);
   const double arc = end - begin;
   const std::int64_t count =
       pattern.count > 0 ? pattern.count : std::max<std::int64_t>(1, std::llround(arc / pattern.spacing));
@@ -98,6 +107,21 @@ std::vector<BoltLine> bolts_of(const BoltPattern &pattern, const std::vector<Vec
     bolts.push_back({head, head + pattern.length * normal_at(stops, way)});
   }
   return bolts;
+}
+
+std::vector<Vec2> arc_of(const std::vector<Vec2> &outline, double from_angle, double to_angle) {
+  expect(outline.size() >= 3 && to_angle > from_angle, "an arc of an outline");
+  const auto [begin, end] = arc_between(stops_of(outline), from_angle, to_angle);
+  std::vector<Vec2> path{point_at(outline, begin)};
+  double way = 0.0;
+  for (std::size_t k = 0; way < end; ++k) {
+    if (way > begin) {
+      path.push_back(outline[k % outline.size()]);
+    }
+    way += norm(outline[(k + 1) % outline.size()] - outline[k % outline.size()]);
+  }
+  path.push_back(point_at(outline, end));
+  return path;
 }
 
 } // namespace gcpdda

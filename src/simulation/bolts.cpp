@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tuple>
 
 namespace gcpdda {
 
@@ -114,9 +115,6 @@ void Bolts::install(const Communicator &communicator, const Scene &scene, const 
     links_.insert(links_.end(), links.begin(), links.end());
   }
   find_ends(communicator, system, first);
-  std::stable_sort(links_.begin(), links_.end(),
-                   [](const BoltLink &a, const BoltLink &b) { return a.bolt < b.bolt; });
-  connected_ = false;
 }
 
 // The owner of a block knows its axes; fixed ones are the same everywhere.
@@ -138,6 +136,10 @@ void Bolts::find_ends(const Communicator &communicator, const BlockSystem &syste
       links_[record.link].end[record.side] = record.end;
     }
   }
+  std::stable_sort(links_.begin(), links_.end(), [](const BoltLink &a, const BoltLink &b) {
+    return std::tuple(a.liner, a.bolt) < std::tuple(b.liner, b.bolt);
+  });
+  connected_ = false;
 }
 
 void Bolts::remove(const std::function<bool(const BoltLink &)> &is_gone) {
@@ -148,8 +150,9 @@ void Bolts::remove(const std::function<bool(const BoltLink &)> &is_gone) {
 void Bolts::take_laws(const Scene &scene) {
   laws_.clear();
   for (const BoltLink &link : links_) {
-    const Bolt &bolt = scene.bolts[static_cast<std::size_t>(link.bolt)];
-    laws_.push_back(law_of(scene.supports[static_cast<std::size_t>(bolt.support)], link));
+    const std::int32_t support = link.liner >= 0 ? scene.liners[static_cast<std::size_t>(link.liner)].support
+                                                 : scene.bolts[static_cast<std::size_t>(link.bolt)].support;
+    laws_.push_back(law_of(scene.supports[static_cast<std::size_t>(support)], link));
   }
   std::vector<std::pair<std::int64_t, PointSpring>> all;
   for (std::size_t k = 0; k < 2 * links_.size(); ++k) {
@@ -234,7 +237,7 @@ void Bolts::evaluate(const BlockSystem &system) {
     const auto &[number, rows, counts] = here_[k];
     BoltLink &link = links_[number];
     const LinkPose pose = pose_of(system, link, rows);
-    link.memory = respond(laws_[number], link.memory, pose.extension, pose.slide);
+    link.memory = respond(laws_[number], link.memory, pose.extension, pose.slide, pose.turn);
     forces_[k] = force_of(system, link, rows, pose, link.memory);
   }
   std::fill(gradient_.begin(), gradient_.end(), Mat2{});
@@ -293,7 +296,7 @@ void Bolts::add_energies_at(const BlockSystem &system, double share, LinkEnergie
     if (here.counts) {
       const BoltLink &link = links_[here.link];
       const LinkPose pose = pose_of(system, link, here.rows);
-      const LinkMemory then = respond(laws_[here.link], link.memory, pose.extension, pose.slide);
+      const LinkMemory then = respond(laws_[here.link], link.memory, pose.extension, pose.slide, pose.turn);
       sums.stored.add(share * stored_energy(laws_[here.link], then));
       sums.dissipated.add(share * then.dissipated);
     }
@@ -317,10 +320,10 @@ std::array<double, 2> Bolts::reach_of(std::size_t link) const {
 std::vector<LinkLine> Bolts::lines(const Communicator &communicator, const BlockSystem &system) const {
   std::vector<LinkLine> mine;
   for (const Here &here : here_) {
-    if (!here.counts) {
+    const BoltLink &link = links_[here.link];
+    if (!here.counts || link.liner >= 0) {
       continue;
     }
-    const BoltLink &link = links_[here.link];
     const std::size_t head = link.head_first ? 0 : 1;
     const double sign = link.head_first ? 1.0 : -1.0; // of the bolt's direction in D
     const auto position = [&](std::size_t side, double beyond) {
@@ -377,11 +380,18 @@ void Bolts::to_numbers(const std::vector<BoltLink> &links, std::vector<std::int6
     const auto &[a, b] = link.end;
     const LinkMemory &m = link.memory;
     counts.insert(counts.end(), {link.bolt, a.block, b.block, link.head_first ? 1 : 0, m.yielded ? 1 : 0,
-                                 m.broken ? 1 : 0});
-    numbers.insert(numbers.end(),
-                   {a.point.x, a.point.y, a.along.x, a.along.y, b.point.x, b.point.y, b.along.x, b.along.y,
-                    link.length, link.bond_length, link.overhang[0], link.overhang[1], m.axial_slip,
-                    m.shear_slip, m.dissipated, m.axial, m.shear, m.extension, m.slide});
+                                 m.broken ? 1 : 0, link.liner, m.cracked ? 1 : 0});
+    numbers.insert(numbers.end(), {a.point.x,        a.point.y,
+                                   a.along.x,        a.along.y,
+                                   b.point.x,        b.point.y,
+                                   b.along.x,        b.along.y,
+                                   link.length,      link.bond_length,
+                                   link.overhang[0], link.overhang[1],
+                                   m.axial_slip,     m.shear_slip,
+                                   m.dissipated,     m.axial,
+                                   m.shear,          m.extension,
+                                   m.slide,          m.turn_slip,
+                                   m.moment,         m.turn});
   }
 }
 
@@ -401,7 +411,9 @@ Bolts Bolts::from_numbers(std::span<const std::int64_t> counts, std::span<const 
     link.length = x[8];
     link.bond_length = x[9];
     link.overhang = {x[10], x[11]};
-    link.memory = {x[12], x[13], x[14], x[15], x[16], x[17], x[18], c[4] != 0, c[5] != 0};
+    link.memory = {x[12],     x[13],     x[14],     x[15], x[16], x[17], x[18],
+                   c[4] != 0, c[5] != 0, c[7] != 0, x[19], x[20], x[21]};
+    link.liner = static_cast<std::int32_t>(c[6]);
   }
   return bolts;
 }

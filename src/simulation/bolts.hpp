@@ -1,12 +1,13 @@
 #pragma once
 
-// The bolts of a run: where they cross which blocks, and what their links do in the step.
+// The bolts and liners of a run: where they hold which blocks, and what their links do in the step. A link is
+// a bolt at a joint, or the element of a liner between two blocks; all the rest is the same for both.
 //
-// Every rank knows all links, as it knows the scene (250 bytes each); a rank computes those of its own
+// Every rank knows all links, as it knows the scene (300 bytes each); a rank computes those of its own
 // blocks, a link between blocks of two ranks on both from bit-equal data. The blocks of a link are ghosts of
 // each other's owners however far apart they lie. At a refresh the ranks tell each other the memory of their
-// links, so that whoever owns a block next has it; sums over links go in their order along bolts in the order
-// of the scene.
+// links, so that whoever owns a block next has it; sums over links go in their order: along bolts in the
+// order of the scene, then along liners.
 
 #include "base/exact_sum.hpp"
 #include "dynamics/bolt_link.hpp"
@@ -47,6 +48,16 @@ struct BoltReport {
   std::int64_t broken = 0;
 };
 
+/// An element of a liner as a line from node to node; rock lies on the right.
+struct LinerLine {
+  std::uint32_t link = 0;     ///< index into Bolts::links()
+  std::array<Vec2, 2> points; ///< m
+  LinkMemory memory;
+  /// At both nodes, positive where the side of the rock is in tension, N.
+  std::array<double, 2> moments{};
+  double strength_used = 0.0; ///< largest share; 1 where it is broken
+};
+
 /// What a link does to an owned row at the last evaluation.
 struct LinkPull {
   std::size_t row = 0;
@@ -71,6 +82,10 @@ public:
   /// @param which  indices into Scene::bolts, ascending
   void install(const Communicator &communicator, const Scene &scene, const BlockSystem &system,
                std::span<const std::int64_t> which, Diagnostics &notes);
+  /// The same for liners.
+  /// @param which  indices into Scene::liners, ascending
+  void install_liners(const Communicator &communicator, const Scene &scene, const BlockSystem &system,
+                      std::span<const std::int64_t> which, Diagnostics &notes);
   /// Take out the links for which it holds. The memory has been shared.
   void remove(const std::function<bool(const BoltLink &)> &is_gone);
   /// The laws of the scene from here on.
@@ -105,16 +120,19 @@ public:
   /// ... and as they would be in the posed trial configuration.
   void add_energies_at(const BlockSystem &system, double share, LinkEnergies &sums) const;
 
-  /// Of all links, in their order, in the posed trial configuration. Collective.
+  /// Of all links of bolts, in their order, in the posed trial configuration. Collective.
   [[nodiscard]] std::vector<LinkLine> lines(const Communicator &communicator,
                                             const BlockSystem &system) const;
+  /// Of all elements of liners, in the same way. Collective.
+  [[nodiscard]] std::vector<LinerLine> liner_lines(const Communicator &communicator,
+                                                   const BlockSystem &system) const;
   /// Of all bolts that have links, in their order. Collective.
   [[nodiscard]] std::vector<BoltReport> report(const Communicator &communicator, const Scene &scene,
                                                const BlockSystem &system) const;
 
   /// For a checkpoint, and back.
-  static constexpr std::size_t counts_per_link = 6;
-  static constexpr std::size_t numbers_per_link = 19;
+  static constexpr std::size_t counts_per_link = 8;
+  static constexpr std::size_t numbers_per_link = 22;
   static void to_numbers(const std::vector<BoltLink> &links, std::vector<std::int64_t> &counts,
                          std::vector<double> &numbers);
   static Bolts from_numbers(std::span<const std::int64_t> counts, std::span<const double> numbers);
@@ -126,6 +144,7 @@ private:
     std::array<std::size_t, 2> rows{};
     bool counts = false; ///< this rank tells the others of it
   };
+  /// Links in their order, once the ends of those from `first` on are in the axes of their blocks.
   void find_ends(const Communicator &communicator, const BlockSystem &system, std::size_t first);
   [[nodiscard]] std::array<double, 2> reach_of(std::size_t link) const;
 

@@ -328,6 +328,14 @@ void judge_supports(Doubts &doubts) {
     judge("active_length", support.active_length);
     judge("bond_strength", support.bond_strength);
     judge("spacing", support.spacing);
+    judge("thickness", support.thickness);
+    judge("youngs_modulus", support.youngs_modulus);
+    judge("compressive_strength", support.compressive_strength);
+    judge("tensile_strength", support.tensile_strength);
+    judge("residual_tensile_strength", support.residual_tensile_strength);
+    judge("shear_strength", support.shear_strength);
+    judge("adhesion", support.adhesion);
+    judge("bond_width", support.bond_width);
   }
   for (const Bolt &bolt : doubts.scene().bolts) {
     doubts.judge("bolt.*.length", "bolt." + bolt.name + ": length", norm(bolt.to - bolt.from), bolt.where);

@@ -20,6 +20,7 @@ const std::vector<UnitSlip> of_density{
 const std::vector<UnitSlip> of_force{{1e3, "kN"}, {1e6, "MN"}};
 const std::vector<UnitSlip> of_force_per_length{{1e3, "kN/m"}, {1e6, "MN/m"}};
 
+constexpr std::string_view liner_sources = "ACI 506R (2016); Barrett & McCreath (1995)";
 constexpr std::string_view bolt_sources = "Stillborg (1994); Hoek, Kaiser & Bawden (1995)";
 
 // Bounds are rounded outwards from what the sources have: what lies beyond is another unit, not another rock.
@@ -61,6 +62,14 @@ const std::vector<PlausibleRange> ranges_after_joints{
   {"support.*.active_length", "m", 0.01, 5, 0.3, of_length, "about 20 diameters of a bolt are", bolt_sources},
   {"support.*.bond_strength", "N/m", 5e3, 1e7, 3e5, of_force_per_length, "grout has", bolt_sources},
   {"support.*.spacing", "m", 0.1, 20, 1.5, of_length, "bolts have distances of", bolt_sources},
+  {"support.*.thickness", "m", 0.003, 3, 0.1, of_length, "sprayed membranes to cast linings have thicknesses of", liner_sources},
+  {"support.*.youngs_modulus", "Pa", 1e8, 2.5e11, 2e10, {{1e9, "GPa"}, {1e6, "MPa"}}, "fresh shotcrete to steel has", "ACI 506R (2016): shotcrete 17 to 40 GPa; EN 1993-1-1: steel 210 GPa"},
+  {"support.*.compressive_strength", "Pa", 5e5, 5e8, 3e7, of_stress, "fresh shotcrete to steel has", liner_sources},
+  {"support.*.tensile_strength", "Pa", 1e5, 5e8, 2e6, of_stress, "fresh shotcrete to steel has", liner_sources},
+  {"support.*.residual_tensile_strength", "Pa", 1e4, 5e8, 1e6, of_stress, "fibres and meshes bear", liner_sources},
+  {"support.*.shear_strength", "Pa", 1e5, 5e8, 2e6, of_stress, "fresh shotcrete to steel has", liner_sources},
+  {"support.*.adhesion", "Pa", 1e4, 5e6, 5e5, of_stress, "shotcrete on rock has", "Barrett & McCreath (1995): 0 to 1.5 MPa"},
+  {"support.*.bond_width", "m", 0.003, 1, 0.03, of_length, "bonds act over", "Barrett & McCreath (1995): about 30 mm"},
   {"bolt.*.length", "m", 0.1, 300, 4, of_length, "bolts and cables have", bolt_sources},
 };
 // clang-format on
@@ -104,7 +113,9 @@ Besides these values the following is warned of, each kind in one line with the 
 
 ## Sources
 
+- ACI 506R (2016): Guide to Shotcrete, American Concrete Institute.
 - Bandis, S. C., Lumsden, A. C., Barton, N. R. (1983): Fundamentals of rock joint deformation. Int. J. Rock Mech. Min. Sci. 20, 249-268.
+- Barrett, S. V. L., McCreath, D. R. (1995): Shotcrete support design in blocky ground: towards a deterministic approach. Tunn. Undergr. Space Technol. 10, 79-89.
 - Barton, N., Choubey, V. (1977): The shear strength of rock joints in theory and practice. Rock Mech. 10, 1-54.
 - Bowles, J. E. (1996): Foundation Analysis and Design, 5th ed., McGraw-Hill.
 - Brown, E. T., Hoek, E. (1978): Trends in relationships between measured in-situ stresses and depth. Int. J. Rock Mech. Min. Sci. 15, 211-215.

@@ -337,32 +337,111 @@ BoltFrame collect_bolt_lines(const Simulation &simulation) {
   return frame;
 }
 
-// A bolt is put in when it becomes active, at the end of the stage before.
-std::vector<BoltLoad> with_installation(std::vector<BoltLoad> loads, const std::vector<Bolt> &at_start,
-                                        const Simulation &simulation) {
+std::vector<LinerHistoryRow> collect_liners(const Simulation &simulation) {
+  std::vector<LinerHistoryRow> rows;
+  const auto note = [](LinerPeak &peak, double value, Vec2 where) {
+    peak = value > peak.value ? LinerPeak{value, where} : peak;
+  };
+  const Scene &scene = simulation.scene();
+  std::int32_t last = -1;
+  for (const LinerLine &line :
+       simulation.bolts().liner_lines(simulation.communicator(), simulation.blocks())) {
+    const std::int32_t number = simulation.bolts().links()[line.link].liner;
+    const Vec2 middle = 0.5 * (line.points[0] + line.points[1]);
+    if (number != last) {
+      last = number;
+      const LinerPeak none{0.0, middle};
+      rows.push_back({scene.liners[static_cast<std::size_t>(number)].name, 0, none, none, none, none});
+    }
+    LinerHistoryRow &row = rows.back();
+    ++row.elements;
+    note(row.compression, -line.memory.axial, middle);
+    note(row.tension, line.memory.axial, middle);
+    note(row.moment, std::max(std::abs(line.moments[0]), std::abs(line.moments[1])), middle);
+    note(row.shear, std::abs(line.memory.shear), middle);
+    row.strength_used = std::max(row.strength_used, line.strength_used);
+    row.cracked += line.memory.cracked ? 1 : 0;
+    row.yielded += line.memory.yielded || line.memory.broken ? 1 : 0;
+    row.broken += line.memory.broken ? 1 : 0;
+  }
+  return rows;
+}
+
+std::vector<LinerRow> collect_liner_rows(const Simulation &simulation) {
+  const Scene &scene = simulation.scene();
+  std::vector<LinerRow> rows;
+  for (const LinerLine &line :
+       simulation.bolts().liner_lines(simulation.communicator(), simulation.blocks())) {
+    const BoltLink &link = simulation.bolts().links()[line.link];
+    const LinkMemory &memory = line.memory;
+    LinerRow row;
+    row.liner = link.liner;
+    row.support = scene.liners[static_cast<std::size_t>(link.liner)].support;
+    row.state = memory.broken ? 2 : memory.yielded ? 1 : 0;
+    row.cracked = memory.cracked ? 1 : 0;
+    row.axial_force = memory.axial;
+    row.shear_force = memory.shear;
+    row.moment_begin = line.moments[0];
+    row.moment_end = line.moments[1];
+    row.extension = memory.extension;
+    row.slide = memory.slide;
+    row.turn = link.head_first ? memory.turn : -memory.turn;
+    row.thickness = scene.supports[static_cast<std::size_t>(row.support)].thickness;
+    row.strength_used = line.strength_used;
+    row.nodes = line.points;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+namespace {
+
+/// When support of a scene was put in last: when it became active, at the end of the stage before.
+/// @param list  Scene::bolts or Scene::liners
+template <class List>
+double installed_at(const Simulation &simulation, List list, bool is_active, std::size_t number) {
   const StageState &stage = simulation.stage();
+  double installed = 0.0;
+  for (std::size_t k = 1; k <= static_cast<std::size_t>(stage.index); ++k) {
+    if (const auto &after = simulation.stages()[k].after) {
+      const bool becomes = ((*after).*list)[number].active;
+      installed = becomes && !is_active ? stage.results[k - 1].time : installed;
+      is_active = becomes;
+    }
+  }
+  return installed;
+}
+
+template <class Load, class T, class List, class Owner>
+std::vector<Load> with_stages(std::vector<Load> loads, const std::vector<T> &at_start,
+                              const Simulation &simulation, List list, Owner owner) {
   const std::vector<BoltLink> &links = simulation.bolts().links();
-  for (BoltLoad &load : loads) {
+  for (Load &load : loads) {
     const auto found = std::find_if(at_start.begin(), at_start.end(),
-                                    [&](const Bolt &bolt) { return bolt.name == load.last.name; });
+                                    [&](const T &support) { return support.name == load.last.name; });
     if (found == at_start.end()) {
       continue;
     }
     const auto number = static_cast<std::size_t>(found - at_start.begin());
-    bool is_active = found->active;
-    for (std::size_t k = 1; k <= static_cast<std::size_t>(stage.index); ++k) {
-      if (const auto &after = simulation.stages()[k].after) {
-        load.installed =
-            after->bolts[number].active && !is_active ? stage.results[k - 1].time : load.installed;
-        is_active = after->bolts[number].active;
-      }
-    }
+    load.installed = installed_at(simulation, list, found->active, number);
     load.in_place = std::any_of(links.begin(), links.end(), [&](const BoltLink &link) {
-      return static_cast<std::size_t>(link.bolt) == number;
+      return link.*owner == static_cast<std::int32_t>(number);
     });
     load.support = simulation.scene().supports[static_cast<std::size_t>(found->support)].name;
   }
   return loads;
+}
+
+} // namespace
+
+std::vector<BoltLoad> with_installation(std::vector<BoltLoad> loads, const std::vector<Bolt> &at_start,
+                                        const Simulation &simulation) {
+  return with_stages(std::move(loads), at_start, simulation, &Scene::bolts, &BoltLink::bolt);
+}
+
+std::vector<LinerLoad> with_installation(std::vector<LinerLoad> loads, const std::vector<Liner> &at_start,
+                                         const Simulation &simulation) {
+  return with_stages(std::move(loads), at_start, simulation, &Scene::liners, &BoltLink::liner);
 }
 
 } // namespace gcpdda

@@ -60,10 +60,16 @@ std::vector<BoltHistoryRow> collect_bolts(const Simulation &simulation);
 /// Lines of the bolts that are in place; complete on every rank. Collective.
 BoltFrame collect_bolt_lines(const Simulation &simulation);
 
-/// The loads of a history with what the stages know of their bolts.
-/// @param at_start  Scene::bolts as the scene states them
+/// The same of liners.
+std::vector<LinerHistoryRow> collect_liners(const Simulation &simulation);
+std::vector<LinerRow> collect_liner_rows(const Simulation &simulation);
+
+/// The loads of a history with what the stages know of their bolts and liners.
+/// @param at_start  Scene::bolts or Scene::liners as the scene states them
 std::vector<BoltLoad> with_installation(std::vector<BoltLoad> loads, const std::vector<Bolt> &at_start,
                                         const Simulation &simulation);
+std::vector<LinerLoad> with_installation(std::vector<LinerLoad> loads, const std::vector<Liner> &at_start,
+                                         const Simulation &simulation);
 
 /// Rows of the scene's monitors, in their order; complete on every rank. Collective.
 std::vector<BlockHistoryRow> collect_monitors(Simulation &simulation);

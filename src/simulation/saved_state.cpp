@@ -64,8 +64,10 @@ void begin_as_restored(RunState &run, const Scene &start, const BlockSystem &row
   run.bolts = Bolts::from_numbers(facts.bolt_counts, facts.bolt_numbers);
   run.saved_statics = to_static_state(facts.static_counts, facts.static_numbers);
   for (const BoltLink &link : run.bolts.links()) {
-    if (link.bolt < 0 || link.bolt >= std::ssize(run.scene.bolts)) {
-      throw FileError("a bolt of it is not in the scene");
+    const bool is_known = link.liner < 0 ? link.bolt >= 0 && link.bolt < std::ssize(run.scene.bolts)
+                                         : link.bolt == -1 && link.liner < std::ssize(run.scene.liners);
+    if (!is_known) {
+      throw FileError("a bolt or liner of it is not in the scene");
     }
   }
   list_applied(run.blocks, !run.scene.water.empty() || !run.clock.state.unloading.empty());

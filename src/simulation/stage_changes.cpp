@@ -201,6 +201,7 @@ void adopt(RunState &run, const Stage &stage, double begin) {
   run.scene.water = after.water;
   run.scene.supports = after.supports;
   run.scene.bolts = after.bolts;
+  run.scene.liners = after.liners;
   adopt_materials(run, std::exchange(run.scene.materials, after.materials));
   if (stage.changes_stress) {
     run.loads.change_side_stress(change);
@@ -224,24 +225,38 @@ void change_strengths(RunState &run, const std::vector<JointLaw> &laws) {
                  [](const JointLaw &law) { return law.constants(); });
 }
 
-// Those that are in place now and were not are put in where the blocks are; those that are no longer, and all
-// at blocks that are gone, are taken out.
-void change_bolts(RunState &run, const std::vector<Bolt> &before) {
-  if (run.scene.bolts.empty()) {
-    return;
-  }
+namespace {
+
+/// Indices of what is in place and was not.
+template <class T>
+std::vector<std::int64_t> put_in(const std::vector<T> &before, const std::vector<T> &after) {
   std::vector<std::int64_t> added;
-  for (std::size_t i = 0; i < run.scene.bolts.size(); ++i) {
-    if (run.scene.bolts[i].active && !(i < before.size() && before[i].active)) {
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    if (after[i].active && !(i < before.size() && before[i].active)) {
       added.push_back(static_cast<std::int64_t>(i));
     }
   }
+  return added;
+}
+
+} // namespace
+
+// Those that are in place now and were not are put in where the blocks are; those that are no longer, and all
+// at blocks that are gone, are taken out.
+void change_support(RunState &run, const std::vector<Bolt> &bolts, const std::vector<Liner> &liners) {
+  const Scene &scene = run.scene;
+  if (scene.bolts.empty() && scene.liners.empty()) {
+    return;
+  }
   run.bolts.remove([&](const BoltLink &link) {
-    return !run.scene.bolts[static_cast<std::size_t>(link.bolt)].active ||
-           is_removed(run.clock.state, link.end[0].block) || is_removed(run.clock.state, link.end[1].block);
+    const bool is_active = link.liner >= 0 ? scene.liners[static_cast<std::size_t>(link.liner)].active
+                                           : scene.bolts[static_cast<std::size_t>(link.bolt)].active;
+    return !is_active || is_removed(run.clock.state, link.end[0].block) ||
+           is_removed(run.clock.state, link.end[1].block);
   });
-  run.bolts.install(run.communicator, run.scene, run.blocks, added, run.notes);
-  run.bolts.take_laws(run.scene);
+  run.bolts.install(run.communicator, scene, run.blocks, put_in(bolts, scene.bolts), run.notes);
+  run.bolts.install_liners(run.communicator, scene, run.blocks, put_in(liners, scene.liners), run.notes);
+  run.bolts.take_laws(scene);
 }
 
 std::vector<std::int64_t> select_blocks(const RunState &run, const BlockSelection &selection) {

@@ -19,10 +19,10 @@ void take_laws(RunState &run, const std::vector<JointLaw> &laws);
 /// Joint laws that differ from those in force in their strengths alone, at once.
 void change_strengths(RunState &run, const std::vector<JointLaw> &laws);
 
-/// Bolts that are in place now and were not are put in where the blocks are; those that are no longer, and
-/// all at blocks that are gone, are taken out. Collective.
-/// @param before  Scene::bolts of the stage before
-void change_bolts(RunState &run, const std::vector<Bolt> &before);
+/// Bolts and liners that are in place now and were not are put in where the blocks are; those that are no
+/// longer, and all links at blocks that are gone, are taken out. Collective.
+/// @param bolts, liners  those of the scene in the stage before
+void change_support(RunState &run, const std::vector<Bolt> &bolts, const std::vector<Liner> &liners);
 
 /// Ids of the selected blocks, ascending, the same on all ranks. Collective.
 [[nodiscard]] std::vector<std::int64_t> select_blocks(const RunState &run, const BlockSelection &selection);

@@ -433,12 +433,13 @@ void begin_next_stage(RunState &run) {
   }
   run.bolts.share(run.communicator);
   const std::vector<Bolt> bolts_before = run.scene.bolts;
+  const std::vector<Liner> liners_before = run.scene.liners;
   adopt(run, stage, run.clock.time());
   if (stage.solver == Solver::dynamic && !stage.weakening.empty()) {
     take_laws(run, stage.weakening.front());
     run.contacts = ContactForces(contact_parameters(run.scene));
   }
-  change_bolts(run, bolts_before);
+  change_support(run, bolts_before, liners_before);
   scale_masses(run);
   find_bound(run);
   plan_stage(run);

@@ -307,7 +307,7 @@ void start(RunState &run, const Beginning &beginning) {
   open_earthquake(run);
   stop_on_errors(run.notes);
   distribute(run, beginning);
-  run.restored ? run.bolts.take_laws(run.scene) : change_bolts(run, {});
+  run.restored ? run.bolts.take_laws(run.scene) : change_support(run, {}, {});
   scale_masses(run);
   find_bound(run);
   plan_stage(run);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rows of the frames of a result folder: blocks, contacts, bolts.
+// Rows of the frames of a result folder: blocks, contacts, bolts, liners.
 
 #include "gcpdda/geometry/vec2.hpp"
 
@@ -50,6 +50,25 @@ struct BoltRow {
   double shear_force = 0.0; ///< N, positive where the rock towards the tip has moved to the left
   double extension = 0.0;   ///< m
   double slide = 0.0;       ///< m, with the sign of the shear force
+};
+
+/// An element of a liner between two neighbouring blocks: a line from node to node, with the rock on its
+/// right. Forces are per metre of tunnel.
+struct LinerRow {
+  std::int64_t liner = 0; ///< in the order of the scene
+  std::int32_t support = 0;
+  std::uint8_t state = 0;      ///< 0 elastic, 1 has yielded, 2 broken
+  std::uint8_t cracked = 0;    ///< 1 where it has cracked
+  double axial_force = 0.0;    ///< N/m, tension positive
+  double shear_force = 0.0;    ///< N/m, positive where the block further along has moved into the void
+  double moment_begin = 0.0;   ///< N, at the first node, positive where the side of the rock is in tension
+  double moment_end = 0.0;     ///< N
+  double extension = 0.0;      ///< m
+  double slide = 0.0;          ///< m, with the sign of the shear force
+  double turn = 0.0;           ///< rad, with the sign of the moments
+  double thickness = 0.0;      ///< m
+  double strength_used = 0.0;  ///< largest share, 0 to 1
+  std::array<Vec2, 2> nodes{}; ///< m
 };
 
 /// All bolts, the same on every rank; points concatenated in the order of `rows`.

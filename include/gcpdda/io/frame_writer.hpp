@@ -1,6 +1,6 @@
 #pragma once
 
-// Frames of a result folder: the blocks, contacts and bolts of one time in a file each.
+// Frames of a result folder: the blocks, contacts, bolts and liners of one time in a file each.
 
 #include "gcpdda/io/frame_rows.hpp"
 #include "gcpdda/io/result_manifest.hpp"
@@ -72,6 +72,8 @@ public:
   void write_contacts(int index, double time, const ContactSource &source);
   /// The same for frames/bolts_INDEX.hdf, behind write(index), and bolts.hdf.series.
   void write_bolts(int index, double time, const BoltFrame &frame);
+  /// The same for frames/liners_INDEX.hdf and liners.hdf.series; rows are the same on every rank.
+  void write_liners(int index, double time, const std::vector<LinerRow> &rows);
   /// All frames have their final names.
   void finish();
   /// And the indices are on the disk, too. A restart makes them anew.
@@ -86,7 +88,7 @@ public:
 private:
   void publish_behind(CollectiveFile &file, const std::filesystem::path &path);
   void write_indices_behind();
-  /// The index of frames of contacts or bolts, which `kind` says.
+  /// The index of frames of contacts, bolts or liners, which `kind` says.
   void write_series_behind(const char *name, const std::vector<std::pair<int, double>> &frames,
                            const char *kind);
 
@@ -122,6 +124,7 @@ private:
   std::vector<std::pair<int, double>> frames_;
   std::vector<std::pair<int, double>> contact_frames_;
   std::vector<std::pair<int, double>> bolt_frames_;
+  std::vector<std::pair<int, double>> liner_frames_;
 };
 
 } // namespace gcpdda

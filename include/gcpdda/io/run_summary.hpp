@@ -1,6 +1,7 @@
 #pragma once
 
-// What summary.json says of a run, and the rows of energies and bolts that it takes from the histories.
+// What summary.json says of a run, and the rows of energies, bolts and liners that it takes from the
+// histories.
 
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/scene.hpp"
@@ -27,7 +28,7 @@ struct EnergyRow {
   double residual = 0.0;
   double unbalanced_ratio = 0.0;
   double max_speed = 0.0;
-  double support = 0.0; ///< this and the next in scenes with bolts only
+  double support = 0.0; ///< this and the next in scenes with bolts or liners only
   double support_loss = 0.0;
   double excess = 0.0; ///< at least so much is in contact_normal only because it is a mean; not written
 };
@@ -52,6 +53,40 @@ struct BoltLoad {
   double time = 0.0;      ///< of it, s
   double axial = 0.0;     ///< largest tension of all its rows, N
   double shear = 0.0;     ///< N
+  double installed = 0.0; ///< when it was put in last, s; the next two are not known to the history
+  bool in_place = false;
+  std::string support;
+};
+
+/// A largest value and the middle of the element that has it.
+struct LinerPeak {
+  double value = 0.0;
+  Vec2 where; ///< m
+};
+
+/// One row of history/liners.csv: largest values over the elements of one liner, per metre of tunnel.
+struct LinerHistoryRow {
+  std::string name;
+  std::int64_t elements = 0;
+  LinerPeak compression;      ///< thrust, N/m
+  LinerPeak tension;          ///< N/m
+  LinerPeak moment;           ///< absolute value at the ends of elements, N
+  LinerPeak shear;            ///< absolute value, N/m
+  double strength_used = 0.0; ///< largest share
+  std::int64_t cracked = 0;   ///< elements
+  std::int64_t yielded = 0;
+  std::int64_t broken = 0;
+};
+
+/// What one liner has borne, for summary.json.
+struct LinerLoad {
+  LinerHistoryRow last;     ///< its last row
+  double time = 0.0;        ///< of it, s
+  double compression = 0.0; ///< largest of all its rows, as the next ones
+  double tension = 0.0;
+  double moment = 0.0;
+  double shear = 0.0;
+  double strength_used = 0.0;
   double installed = 0.0; ///< when it was put in last, s; the next two are not known to the history
   bool in_place = false;
   std::string support;
@@ -108,6 +143,7 @@ struct RunSummary {
   };
   std::vector<JointSetSummary> joint_sets;
   std::vector<BoltLoad> bolts;   ///< those that have been in place
+  std::vector<LinerLoad> liners; ///< those that have been in place
   std::vector<StageLine> stages; ///< those that have begun; none in a scene without stages
   std::string verdict;
   std::string message;

@@ -183,7 +183,8 @@ struct Scene {
   JointLaws joints;
   std::vector<Water> water; ///< in file order
   std::vector<SupportType> supports;
-  std::vector<Bolt> bolts; ///< single ones, then those of patterns, in file order
+  std::vector<Bolt> bolts;   ///< single ones, then those of patterns, in file order
+  std::vector<Liner> liners; ///< in file order
   InSituStress in_situ;
   Earthquake earthquake;
   std::vector<SceneBlock> blocks;                   ///< of the scene file, the first BlockIds

@@ -1,6 +1,6 @@
 #pragma once
 
-// Bolts and cables across joints, as the scene states them.
+// Bolts and cables across joints, and liners on faces, as the scene states them.
 
 #include "gcpdda/base/diagnostic.hpp"
 #include "gcpdda/geometry/vec2.hpp"
@@ -12,10 +12,11 @@
 
 namespace gcpdda {
 
-/// What bolts of one type are made of, for one bolt.
+/// What support of one type is made of: a bolt's values are those of one bolt, a liner's those of its
+/// material.
 struct SupportType {
-  /// How it holds the rock: at its ends, or along its length.
-  enum class Kind { anchored, grouted };
+  /// How it holds the rock: at its ends, along its length, or as a layer on a face.
+  enum class Kind { anchored, grouted, liner };
   static constexpr double unlimited = std::numeric_limits<double>::infinity();
 
   std::string name;
@@ -32,6 +33,17 @@ struct SupportType {
   bool plate = false;                ///< the head of a grouted bolt cannot be pulled into the rock
   double spacing = 1.0;              ///< m out of plane
 
+  // Of a liner.
+  double thickness = 0.0;      ///< m
+  double youngs_modulus = 0.0; ///< Pa
+  double poissons_ratio = 0.2;
+  double compressive_strength = unlimited; ///< Pa, this and the next four
+  double tensile_strength = unlimited;
+  double residual_tensile_strength = 0.0; ///< once it has cracked
+  double shear_strength = unlimited;
+  double adhesion = unlimited; ///< tensile strength of the bond to the rock
+  double bond_width = 0.03;    ///< m beside a joint that the bond acts on
+
   /// Equal in all parameters.
   friend bool operator==(const SupportType &, const SupportType &) = default;
 };
@@ -43,6 +55,17 @@ struct Bolt {
   Vec2 from;                ///< head, m
   Vec2 to;                  ///< tip, m
   bool active = true;       ///< it is in place
+  SourcePosition where;
+};
+
+/// A layer of shotcrete or concrete on a face of the rock.
+struct Liner {
+  std::string name;
+  std::int32_t support = 0;      ///< index into Scene::supports
+  std::vector<Vec2> path;        ///< along the face, m
+  bool is_closed = false;        ///< the path returns to its first point
+  bool has_rock_on_right = true; ///< of the path; false: the blocks tell on which side they lie
+  bool active = true;            ///< it is in place
   SourcePosition where;
 };
 
@@ -67,5 +90,9 @@ struct BoltLine {
 /// turn evenly between the middles of neighbouring edges, so that those of a polygon stand like those of the
 /// curve it was made from.
 std::vector<BoltLine> bolts_of(const BoltPattern &pattern, const std::vector<Vec2> &outline);
+
+/// The part of a counter-clockwise outline where the normal goes from one angle to another (rad, the second
+/// larger by one turn at most).
+std::vector<Vec2> arc_of(const std::vector<Vec2> &outline, double from_angle, double to_angle);
 
 } // namespace gcpdda

@@ -113,7 +113,7 @@ private:
   FieldDatasets<decltype(changing_block_fields)> fields_;
 };
 
-/// @param kind  of the files, "frame" or "bolts"
+/// @param kind  of the files, "frame", "bolts" or "liners"
 std::string series_index(const std::vector<std::pair<int, double>> &frames, const char *kind) {
   std::string text = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [";
   const char *separator = "\n";
@@ -343,6 +343,15 @@ void FrameWriter::write_bolts(int index, double time, const BoltFrame &frame) {
   write_series_behind("bolts.hdf.series", bolt_frames_, "bolts");
 }
 
+void FrameWriter::write_liners(int index, double time, const std::vector<LinerRow> &rows) {
+  const std::filesystem::path path = directory_ / "frames" / fmt::format("liners_{:06}.hdf", index);
+  CollectiveFile file(communicator_, path);
+  write_liner_frame(communicator_, file, time, rows);
+  publish_behind(file, path);
+  liner_frames_.emplace_back(index, time);
+  write_series_behind("liners.hdf.series", liner_frames_, "liners");
+}
+
 void FrameWriter::finish() {
   on_root(communicator_, [this] { behind_->finish(); });
 }
@@ -360,6 +369,9 @@ void FrameWriter::sync() {
     }
     if (!bolt_frames_.empty()) {
       sync_file(directory_ / "bolts.hdf.series");
+    }
+    if (!liner_frames_.empty()) {
+      sync_file(directory_ / "liners.hdf.series");
     }
   });
 }
@@ -406,7 +418,7 @@ void remove_frames_from(const std::filesystem::path &folder, std::ptrdiff_t coun
   for (const std::filesystem::directory_entry &entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     std::optional<std::int64_t> number = number_of(name, "topology", ".h5");
-    for (const char *kind : {"frame", "contacts", "bolts"}) {
+    for (const char *kind : {"frame", "contacts", "bolts", "liners"}) {
       number = number ? number : number_of(name, kind, ".hdf");
     }
     if (number.value_or(-1) >= count) {
@@ -445,6 +457,9 @@ void FrameWriter::continue_behind(const std::vector<double> &times, const std::v
       if (std::filesystem::exists(folder / fmt::format("bolts_{:06}.hdf", index))) {
         bolt_frames_.emplace_back(index, time);
       }
+      if (std::filesystem::exists(folder / fmt::format("liners_{:06}.hdf", index))) {
+        liner_frames_.emplace_back(index, time);
+      }
     }
   });
   const auto told = communicator_.all_gather(numbers);
@@ -457,6 +472,7 @@ void FrameWriter::continue_behind(const std::vector<double> &times, const std::v
   write_indices_behind();
   write_series_behind("contacts.hdf.series", contact_frames_, "contacts");
   write_series_behind("bolts.hdf.series", bolt_frames_, "bolts");
+  write_series_behind("liners.hdf.series", liner_frames_, "liners");
   finish();
   on_root(communicator_, [&] { remove_frames_from(folder, std::ssize(times)); });
 }

@@ -37,6 +37,13 @@ constexpr const char *bolt_header = "time[s],bolt,x_head[m],y_head[m],x_tip[m],y
                                     "extension[m],slide[m],joints,yielded,broken\n";
 constexpr const char *energy_name = "energy";
 constexpr const char *bolts_name = "bolts";
+constexpr const char *liner_header =
+    "time[s],liner,elements,compression[N/m],x_compression[m],y_compression[m],tension[N/m],x_tension[m],"
+    "y_tension[m],moment[N],x_moment[m],y_moment[m],shear[N/"
+    "m],x_shear[m],y_shear[m],strength_used[-],cracked,"
+    "yielded,broken\n";
+constexpr std::size_t liner_columns = 19;
+constexpr const char *liners_name = "liners";
 
 void append_row(std::string &text, std::initializer_list<double> values) {
   const char *separator = "";
@@ -87,13 +94,20 @@ void note_appended(ResultFile &file, const std::string &rows) {
 
 } // namespace
 
-HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, bool has_bolts)
+HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors,
+                             SupportHistories support)
     : HistoryWriter(std::move(directory), std::move(monitors), -std::numeric_limits<double>::infinity(),
-                    has_bolts) {}
+                    support) {}
 
 HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time,
-                             bool has_bolts)
-    : directory_(std::move(directory)), monitors_(std::move(monitors)), has_bolts_(has_bolts) {
+                             SupportHistories support)
+    : directory_(std::move(directory)), monitors_(std::move(monitors)), tables_{energy_name} {
+  if (support.bolts) {
+    tables_.emplace_back(bolts_name);
+  }
+  if (support.liners) {
+    tables_.emplace_back(liners_name);
+  }
   for (std::size_t m = 0; m < monitors_.size(); ++m) {
     const bool goes_on = m > 0 && monitors_[m].is_on_profile && monitors_[m - 1].is_on_profile &&
                          monitors_[m].name == monitors_[m - 1].name;
@@ -103,7 +117,7 @@ HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monito
     history_of_.push_back(first_of_.size() - 1);
   }
   is_short_.assign(first_of_.size(), false);
-  pending_.resize(first_of_.size() + (has_bolts ? 2 : 1));
+  pending_.resize(first_of_.size() + tables_.size());
   expect(std::none_of(monitors_.begin(), monitors_.end(),
                       [](const Monitor &monitor) { return monitor.name == energy_name; }),
          "no monitor by the name of the energy history");
@@ -120,7 +134,7 @@ HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monito
       note_appended(files_.back(), rows);
       write_file(path_of(i), header + rows);
       if (i > first_of_.size()) {
-        note_bolts(rows);
+        note_rows(tables_[i - first_of_.size()], rows);
       }
     } else {
       write_to(path_of(i), header, std::ios::trunc);
@@ -135,17 +149,17 @@ std::string HistoryWriter::header_of(std::size_t history) const {
                                  : fmt::format("{}{}\n", monitor.is_point ? point_header : block_header,
                                                is_short_[history] ? "" : displacement_columns);
   }
-  if (history > first_of_.size()) {
-    return bolt_header;
+  const std::string &table = tables_[history - first_of_.size()];
+  if (table != energy_name) {
+    return table == bolts_name ? bolt_header : liner_header;
   }
   std::string header = energy_header;
-  return has_bolts_ ? header.insert(header.size() - 1, support_columns) : header;
+  return tables_.size() > 1 ? header.insert(header.size() - 1, support_columns) : header;
 }
 
 std::filesystem::path HistoryWriter::path_of(std::size_t history) const {
-  const std::string name = history < first_of_.size()    ? monitors_[first_of_[history]].name
-                           : history == first_of_.size() ? energy_name
-                                                         : bolts_name;
+  const std::string &name =
+      history < first_of_.size() ? monitors_[first_of_[history]].name : tables_[history - first_of_.size()];
   return directory_ / "history" / (name + ".csv");
 }
 
@@ -175,24 +189,41 @@ void HistoryWriter::write_monitor(std::size_t monitor, double time, const BlockH
 }
 
 void HistoryWriter::write_energy(double time, const EnergyRow &row) {
-  std::string &text = pending_[first_of_.size()];
+  std::string &text = pending_of(energy_name);
   append_row(text, {time, row.kinetic, row.strain, row.contact_normal, row.contact_stick, row.gravity,
                     row.friction_loss, row.damping_loss, row.boundary_work, row.residual,
                     row.unbalanced_ratio, row.max_speed});
-  if (has_bolts_) {
+  if (tables_.size() > 1) {
     text.pop_back();
     text += fmt::format(",{:.17g},{:.17g}\n", row.support, row.support_loss);
   }
 }
 
+std::string &HistoryWriter::pending_of(std::string_view table) {
+  const auto found = std::find(tables_.begin(), tables_.end(), table);
+  expect(found != tables_.end(), "a history of this kind of support");
+  return pending_[first_of_.size() + static_cast<std::size_t>(found - tables_.begin())];
+}
+
 void HistoryWriter::write_bolts(double time, const std::vector<BoltHistoryRow> &rows) {
-  expect(has_bolts_, "a history of bolts");
   for (const BoltHistoryRow &row : rows) {
-    pending_.back() +=
+    pending_of(bolts_name) +=
         fmt::format("{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{}\n",
                     time, row.name, row.head.x, row.head.y, row.tip.x, row.tip.y, row.axial, row.shear,
                     row.extension, row.slide, row.links, row.yielded, row.broken);
     note_bolt(time, row);
+  }
+}
+
+void HistoryWriter::write_liners(double time, const std::vector<LinerHistoryRow> &rows) {
+  for (const LinerHistoryRow &row : rows) {
+    std::string &text = pending_of(liners_name);
+    text += fmt::format("{:.17g},{},{}", time, row.name, row.elements);
+    for (const LinerPeak &peak : {row.compression, row.tension, row.moment, row.shear}) {
+      text += fmt::format(",{:.17g},{:.17g},{:.17g}", peak.value, peak.where.x, peak.where.y);
+    }
+    text += fmt::format(",{:.17g},{},{},{}\n", row.strength_used, row.cracked, row.yielded, row.broken);
+    note_liner(time, row);
   }
 }
 
@@ -208,26 +239,53 @@ void HistoryWriter::note_bolt(double time, const BoltHistoryRow &row) {
   load.shear = std::max(load.shear, row.shear);
 }
 
-// As write_bolts has written them.
-void HistoryWriter::note_bolts(std::string_view rows) {
+void HistoryWriter::note_liner(double time, const LinerHistoryRow &row) {
+  const auto [found, is_new] = liner_of_.emplace(row.name, liner_loads_.size());
+  if (is_new) {
+    liner_loads_.emplace_back();
+  }
+  LinerLoad &load = liner_loads_[found->second];
+  load.last = row;
+  load.time = time;
+  load.compression = std::max(load.compression, row.compression.value);
+  load.tension = std::max(load.tension, row.tension.value);
+  load.moment = std::max(load.moment, row.moment.value);
+  load.shear = std::max(load.shear, row.shear.value);
+  load.strength_used = std::max(load.strength_used, row.strength_used);
+}
+
+namespace {
+
+/// Numbers of a row as they have been written.
+template <std::size_t columns> struct Numbers {
+  CsvRow<columns> row;
+
+  explicit Numbers(std::string_view text) : row(text) {}
+  [[nodiscard]] double number(std::size_t k) const {
+    return to_number(row.fields[k], std::numeric_limits<double>::max()).value_or(0.0);
+  }
+  [[nodiscard]] std::int64_t count(std::size_t k) const { return static_cast<std::int64_t>(number(k)); }
+  [[nodiscard]] Vec2 point(std::size_t k) const { return {number(k), number(k + 1)}; }
+  [[nodiscard]] LinerPeak peak(std::size_t k) const { return {number(k), point(k + 1)}; }
+};
+
+} // namespace
+
+// As write_bolts and write_liners have written them.
+void HistoryWriter::note_rows(const std::string &table, std::string_view rows) {
   while (!rows.empty()) {
     const std::size_t end = rows.find('\n');
-    const CsvRow<13> row(rows.substr(0, end));
+    const std::string_view text = rows.substr(0, end);
     rows.remove_prefix(end + 1);
-    const auto number = [&](std::size_t k) {
-      return to_number(row.fields[k], std::numeric_limits<double>::max()).value_or(0.0);
-    };
-    const auto count = [&](std::size_t k) { return static_cast<std::int64_t>(number(k)); };
-    note_bolt(number(0), {std::string(row.fields[1]),
-                          {number(2), number(3)},
-                          {number(4), number(5)},
-                          number(6),
-                          number(7),
-                          number(8),
-                          number(9),
-                          count(10),
-                          count(11),
-                          count(12)});
+    if (table == bolts_name) {
+      const Numbers<13> r(text);
+      note_bolt(r.number(0), {std::string(r.row.fields[1]), r.point(2), r.point(4), r.number(6), r.number(7),
+                              r.number(8), r.number(9), r.count(10), r.count(11), r.count(12)});
+    } else {
+      const Numbers<liner_columns> r(text);
+      note_liner(r.number(0), {std::string(r.row.fields[1]), r.count(2), r.peak(3), r.peak(6), r.peak(9),
+                               r.peak(12), r.number(15), r.count(16), r.count(17), r.count(18)});
+    }
   }
 }
 

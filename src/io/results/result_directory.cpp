@@ -34,7 +34,8 @@ bool is_own_file(const fs::path &folder, const fs::path &path) {
   }
   if (folder == "frames") {
     return is_numbered(name, "frame", ".hdf") || is_numbered(name, "contacts", ".hdf") ||
-           is_numbered(name, "bolts", ".hdf") || is_numbered(name, "topology", ".h5");
+           is_numbered(name, "bolts", ".hdf") || is_numbered(name, "liners", ".hdf") ||
+           is_numbered(name, "topology", ".h5");
   }
   if (folder == "checkpoints") {
     return is_numbered(name, "checkpoint", ".h5") || name == "past_scenes.txt";
@@ -46,7 +47,8 @@ bool is_own_file(const fs::path &folder, const fs::path &path) {
     return is_own_history(path);
   }
   return name == "run.hdf.series" || name == "contacts.hdf.series" || name == "bolts.hdf.series" ||
-         name == "run.xdmf" || name == "summary.json" || is_numbered(name, "joint_map", ".geojson");
+         name == "liners.hdf.series" || name == "run.xdmf" || name == "summary.json" ||
+         is_numbered(name, "joint_map", ".geojson");
 }
 
 std::vector<fs::path> own_files(const fs::path &directory) {

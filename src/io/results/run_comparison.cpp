@@ -52,7 +52,8 @@ std::vector<fs::path> files_of_run(const fs::path &directory) {
       }
     }
   }
-  for (const char *index : {"run.hdf.series", "run.xdmf", "contacts.hdf.series", "bolts.hdf.series"}) {
+  for (const char *index :
+       {"run.hdf.series", "run.xdmf", "contacts.hdf.series", "bolts.hdf.series", "liners.hdf.series"}) {
     if (fs::exists(directory / index)) {
       files.emplace_back(index);
     }

@@ -11,9 +11,9 @@
 namespace gcpdda {
 
 /// Are two runs identical? Every file of frames/ and history/, run.hdf.series, contacts.hdf.series,
-/// bolts.hdf.series and run.xdmf is compared byte for byte, HDF5 files by their datasets and attributes
-/// before (path, type, shape, bytes; links into other files are followed), which name what differs.
-/// summary.json, run.log, scene.toml, checkpoints/ and decomposition/ are exempt.
+/// bolts.hdf.series, liners.hdf.series and run.xdmf is compared byte for byte, HDF5 files by their datasets
+/// and attributes before (path, type, shape, bytes; links into other files are followed), which name what
+/// differs. summary.json, run.log, scene.toml, checkpoints/ and decomposition/ are exempt.
 ///
 /// @return the first differences, a line each; empty means identical. Folders without frames differ: there is
 ///         nothing to compare.

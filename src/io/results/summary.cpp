@@ -67,6 +67,32 @@ std::vector<JsonObject> bolt_objects(const std::vector<BoltLoad> &loads) {
   return objects;
 }
 
+std::vector<JsonObject> liner_objects(const std::vector<LinerLoad> &loads) {
+  std::vector<JsonObject> objects;
+  for (const LinerLoad &load : loads) {
+    objects.push_back(JsonObject()
+                          .add("name", load.last.name)
+                          .add("support", load.support)
+                          .add("installed", load.installed)
+                          .add("in_place", load.in_place)
+                          .add("elements", load.last.elements)
+                          .add("compression", load.last.compression.value)
+                          .add("tension", load.last.tension.value)
+                          .add("moment", load.last.moment.value)
+                          .add("shear", load.last.shear.value)
+                          .add("strength_used", load.last.strength_used)
+                          .add("largest_compression", load.compression)
+                          .add("largest_tension", load.tension)
+                          .add("largest_moment", load.moment)
+                          .add("largest_shear", load.shear)
+                          .add("largest_strength_used", load.strength_used)
+                          .add("cracked", load.last.cracked)
+                          .add("yielded", load.last.yielded)
+                          .add("broken", load.last.broken));
+  }
+  return objects;
+}
+
 JsonObject measures_object(const JointSetMeasures &measures) {
   constexpr double degrees = 180.0 / std::numbers::pi;
   return JsonObject()
@@ -140,6 +166,9 @@ void write_summary(const std::filesystem::path &directory, const RunSummary &sum
   }
   if (!summary.bolts.empty()) {
     object.add("bolts", bolt_objects(summary.bolts));
+  }
+  if (!summary.liners.empty()) {
+    object.add("liners", liner_objects(summary.liners));
   }
   if (!summary.stages.empty()) {
     object.add("stages", stage_objects(summary));

@@ -84,7 +84,8 @@ private:
 
   /// The name of another history.
   bool is_taken(const std::string &name) const {
-    return name == "energy" || (name == "bolts" && !scene_->bolts.empty());
+    return name == "energy" || (name == "bolts" && !scene_->bolts.empty()) ||
+           (name == "liners" && !scene_->liners.empty());
   }
   static std::string why_taken(const std::string &name) {
     return fmt::format("history/{}.csv holds the {} of the scene", name,

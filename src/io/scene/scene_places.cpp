@@ -34,9 +34,9 @@ void add_places(const Origins &origins, const toml::node &node, const std::strin
 
 std::map<std::string, SourcePosition> places_of(const SceneSource &source) {
   Places places;
-  for (const char *name :
-       {"run", "material", "joint", "wall", "pyramid", "region", "joint_set", "fault", "joint_map", "opening",
-        "layer", "voronoi", "bricks", "water", "in_situ", "earthquake", "output", "support", "bolt"}) {
+  for (const char *name : {"run",     "material",   "joint",   "wall",    "pyramid", "region", "joint_set",
+                           "fault",   "joint_map",  "opening", "layer",   "voronoi", "bricks", "water",
+                           "in_situ", "earthquake", "output",  "support", "bolt",    "liner"}) {
     if (const toml::node *node = source.root.get(name)) {
       add_places(source.faults.origins(), *node, name, name, places);
     }

@@ -64,6 +64,7 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.region = read_region(source, materials, scene.joints, file);
   scene.supports = read_supports(source);
   scene.bolts = read_bolts(source, scene);
+  scene.liners = read_liners(source, scene);
   add_rollers(source, scene);
   if (source.root.contains("stage")) {
     scene.run.duration = duration_of_stages(source);

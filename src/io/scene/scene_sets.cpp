@@ -148,7 +148,7 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
 
 bool is_named_list(std::string_view key) {
   return key == "block" || key == "wall" || key == "pyramid" || key == "joint_set" || key == "fault" ||
-         key == "opening" || key == "stage" || key == "bolt" || key == "bolt_pattern";
+         key == "opening" || key == "stage" || key == "bolt" || key == "bolt_pattern" || key == "liner";
 }
 
 // Finds the block, wall, joint set or other element with a name that path[1], or path[1] to path[k] joined by
@@ -208,7 +208,7 @@ bool can_change(const Path &path) {
   if (path.front() == "support") {
     return path.size() == 3 && !is_one_of({"kind"}) && find_key("support.*", last) != nullptr;
   }
-  if (path.front() == "bolt" || path.front() == "bolt_pattern") {
+  if (path.front() == "bolt" || path.front() == "bolt_pattern" || path.front() == "liner") {
     return path.size() > 2 && is_one_of({"active"});
   }
   if (path.front() == "in_situ") {
@@ -279,11 +279,12 @@ void apply_set(toml::table &root, const std::string &set, std::size_t index, Fau
 void apply_change(toml::table &root, const toml::key &dotted, toml::node &value, Faults &faults) {
   const auto path = split(trimmed(dotted.str()));
   if (!path || !can_change(*path)) {
-    faults.add(
-        dotted.source(), fmt::format("a stage cannot set '{}'", shown(dotted.str())),
-        "it sets values of joints, materials, water and support, in_situ.KEY, region.stress, "
-        "block.NAME.fixed, block.NAME.load, bolt.NAME.active, bolt_pattern.NAME.active and some of [run]",
-        "for example set = { \"joint.default.friction_angle_deg\" = 25.0 }");
+    faults.add(dotted.source(), fmt::format("a stage cannot set '{}'", shown(dotted.str())),
+               "it sets values of joints, materials, water and support, in_situ.KEY, region.stress, "
+               "block.NAME.fixed, block.NAME.load, bolt.NAME.active, bolt_pattern.NAME.active, "
+               "liner.NAME.active and some of "
+               "[run]",
+               "for example set = { \"joint.default.friction_angle_deg\" = 25.0 }");
     return;
   }
   Path below = *path;

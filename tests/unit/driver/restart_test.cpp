@@ -293,13 +293,13 @@ TEST_F(CutResults, LoadsOfBoltsGoOnAsIfNeverStopped) {
     writer.write_bolts(0.3, {row("pulled", 2e4, 6.0, 1), row("late", 1.0, 0.0, 0)});
     writer.flush();
   };
-  HistoryWriter whole(folder_, {}, true);
+  HistoryWriter whole(folder_, {}, SupportHistories{true, false});
   whole.write_bolts(0.1, {row("pulled", 1e4, 7.0, 0), row("pressed", -1.0, 0.0, 0)});
   whole.write_bolts(0.2, {row("pulled", 1e5 / 3.0, 5.0, 0)});
   whole.flush();
   write_last(whole);
   expect_loads(whole.bolt_loads());
-  HistoryWriter resumed(folder_, {}, 0.2 + 0.5e-3, true);
+  HistoryWriter resumed(folder_, {}, 0.2 + 0.5e-3, {true, false});
   EXPECT_EQ(resumed.bolt_loads().size(), 2U);
   write_last(resumed);
   expect_loads(resumed.bolt_loads());

@@ -15,7 +15,14 @@
 namespace gcpdda::testing::bolt_link_test {
 namespace {
 
-constexpr LinkLaw elastic{5e7, 2e7, SupportType::unlimited, SupportType::unlimited, 3e4};
+LinkLaw elastic_law() {
+  LinkLaw law;
+  law.axial_stiffness = 5e7;
+  law.shear_stiffness = 2e7;
+  law.pretension = 3e4;
+  return law;
+}
+const LinkLaw elastic = elastic_law();
 
 /// A rigid block and a deformable one above it, both displaced, turned and the upper one strained.
 struct TwoBlocks {
