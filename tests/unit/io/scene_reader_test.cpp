@@ -194,6 +194,8 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
       "[water.lake]\nphreatic = [[0, 0], [1, 0]]\n[earthquake]\nrecord = \"r.csv\"\n"
       "[support.bar]\nkind = \"grouted\"\naxial_stiffness = 1e8\nactive_length = 0.3\n"
       "bond_strength = 1e5\n[[bolt]]\nsupport = \"bar\"\nfrom = [0, 0]\nto = [0, 1]\n"
+      "[support.layer]\nkind = \"liner\"\nthickness = 0.1\nyoungs_modulus = 2e10\ntensile_strength = 2e6\n"
+      "adhesion = 1e6\n[[liner]]\nsupport = \"layer\"\npoints = [[0, 0], [1, 0]]\n"
       "[region]\nmaterial = \"granite\"\npolygon = [[20, 0], [30, 0], [30, 9], [20, 9]]\n"
       "[[opening]]\nname = \"o\"\nshape = \"circle\"\ncentre = [25, 4]\nwidth = 3\n"
       "[[bolt_pattern]]\nsupport = \"bar\"\nopening = \"o\"\nlength = 2\ncount = 3\n"
@@ -208,6 +210,9 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     std::string path(key.path);
     for (const auto &[from, to] :
          {std::pair("block[]", "block.slider"), std::pair("joint.*", "joint.default"),
+          std::pair("support.*.poissons", "support.layer.poissons"),
+          std::pair("support.*.residual", "support.layer.residual"),
+          std::pair("support.*.bond_width", "support.layer.bond_width"), std::pair("liner[]", "liner.liner0"),
           std::pair("wall[]", "wall.wall0"), std::pair("pyramid[]", "pyramid.pyramid0"),
           std::pair("water.*", "water.lake"), std::pair("support.*", "support.bar"),
           std::pair("bolt[]", "bolt.bolt0"), std::pair("bolt_pattern[]", "bolt_pattern.bolt_pattern0")}) {
@@ -219,7 +224,7 @@ TEST(SceneReader, DefaultsOfTheKeyTableAreThoseInForce) {
     expect_same(good(text, {path + "=" + std::string(key.fallback)}), scene);
     ++compared;
   }
-  EXPECT_EQ(compared, 50);
+  EXPECT_EQ(compared, 54);
 }
 
 TEST(SceneReader, SettleStagesAreStaticUnlessDampingIsAskedFor) {

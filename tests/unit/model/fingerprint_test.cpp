@@ -103,6 +103,21 @@ support = "bolt"
 from = [0.7, 1.0]
 to = [0.7, -0.5]
 active = false
+[support.layer]
+kind = "liner"
+thickness = 0.1
+youngs_modulus = 2e10
+tensile_strength = 2e6
+adhesion = 1e6
+[[liner]]
+name = "face"
+support = "layer"
+points = [[-0.5, 0.0], [1.5, 0.0]]
+[[liner]]
+name = "next"
+support = "layer"
+points = [[-0.5, 1.0], [1.5, 1.0]]
+active = false
 [water.lake]
 phreatic = [[-5, 0.2], [5, 0.2]]
 )";
@@ -147,12 +162,24 @@ TEST(Fingerprint, TellsScenesApartByWhatAStateDependsOn) {
            {"water.lake.density=1001", "[water]"},
            {"support.bolt.axial_stiffness=2e7", "[[bolt]]"},
            {"bolt.first.active=false", "[[bolt]]"},
+           {"support.layer.thickness=0.2", "[[liner]]"},
+           {"support.layer.youngs_modulus=3e10", "[[liner]]"},
+           {"support.layer.poissons_ratio=0.25", "[[liner]]"},
+           {"support.layer.compressive_strength=3e7", "[[liner]]"},
+           {"support.layer.tensile_strength=3e6", "[[liner]]"},
+           {"support.layer.residual_tensile_strength=1e6", "[[liner]]"},
+           {"support.layer.shear_strength=3e6", "[[liner]]"},
+           {"support.layer.adhesion=2e6", "[[liner]]"},
+           {"support.layer.bond_width=0.1", "[[liner]]"},
+           {"liner.face.active=false", "[[liner]]"},
+           {"liner.face.points=[[-0.5, 0.0], [1.0, 0.0]]", "[[liner]]"},
        }) {
     EXPECT_EQ(changed_parts(scene, scene_of(text, {set})), std::vector<std::string>{part}) << set;
   }
-  for (const char *set : {"run.duration=3", "run.time_step=1e-4", "run.safety=0.1", "output.interval=0.2",
-                          "output.checkpoint_interval=0.2", "output.contacts=false", "monitor=[]",
-                          "bolt.later.to=[0.7, -0.6]", "fos.tolerance=0.1"}) {
+  for (const char *set :
+       {"run.duration=3", "run.time_step=1e-4", "run.safety=0.1", "output.interval=0.2",
+        "output.checkpoint_interval=0.2", "output.contacts=false", "monitor=[]", "bolt.later.to=[0.7, -0.6]",
+        "liner.next.points=[[0, 1], [1, 1]]", "fos.tolerance=0.1"}) {
     EXPECT_EQ(changed_parts(scene, scene_of(text, {set})), std::vector<std::string>()) << set;
   }
 }

@@ -181,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(
             head + region + first + "[[stage]]\nkind = \"change\"\nset = { \"region.roller\" = [\"top\"] }\n",
             "19:9: error: a stage cannot set 'region.roller', it sets values of joints, materials, water and "
             "support, in_situ.KEY, region.stress, block.NAME.fixed, block.NAME.load, bolt.NAME.active, "
-            "bolt_pattern.NAME.active and some of [run], for example set = { "
+            "bolt_pattern.NAME.active, liner.NAME.active and some of [run], for example set = { "
             "\"joint.default.friction_angle_deg\" = 25.0 }"},
         Bad{"HeldSide",
             head + region + first +

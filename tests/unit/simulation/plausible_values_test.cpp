@@ -125,6 +125,21 @@ spacing = 1.5
 [support.cable]
 kind = "anchored"
 axial_rigidity = 1e8
+[support.shell]
+kind = "liner"
+thickness = 0.1
+youngs_modulus = 2e10
+compressive_strength = 3e7
+tensile_strength = 2e6
+residual_tensile_strength = 1e6
+shear_strength = 2e6
+adhesion = 5e5
+bond_width = 0.03
+[support.plain]
+kind = "liner"
+thickness = 0.1
+youngs_modulus = 2e10
+tensile_strength = 2e6
 [[bolt]]
 name = "one"
 support = "cable"
@@ -243,6 +258,21 @@ const std::vector<Slip> slips{
      "if it is in kN/m, write 3e+05"},
     {"support.bolt.spacing=1500", "support.bolt.spacing is 1500 m",
      "if it is in mm, write 1.5; if it is in cm, write 15"},
+    {"support.shell.thickness=100", "support.shell.thickness is 100 m",
+     "if it is in mm, write 0.1; if it is in cm, write 1"},
+    {"support.shell.youngs_modulus=20", "support.shell.youngs_modulus is 20 Pa",
+     "if it is in GPa, write 2e+10"},
+    {"support.shell.compressive_strength=30", "support.shell.compressive_strength is 30 Pa",
+     "if it is in MPa, write 3e+07"},
+    {"support.plain.tensile_strength=2000", "support.plain.tensile_strength is 2000 Pa",
+     "if it is in kPa, write 2e+06"},
+    {"support.shell.residual_tensile_strength=1000", "support.shell.residual_tensile_strength is 1000 Pa",
+     "if it is in kPa, write 1e+06"},
+    {"support.shell.shear_strength=2", "support.shell.shear_strength is 2 Pa",
+     "if it is in MPa, write 2e+06"},
+    {"support.shell.adhesion=0.5", "support.shell.adhesion is 0.5 Pa", "if it is in MPa, write 5e+05"},
+    {"support.shell.bond_width=30", "support.shell.bond_width is 30 m",
+     "if it is in mm, write 0.03; if it is in cm, write 0.3"},
     {"bolt.one.to=[20,6019]", "bolt.one: length is 6000 m",
      "if it is in mm, write 6; if it is in cm, write 60"},
     {"output.interval=4", "output.interval is 4 s, and the run takes 2 s", "use at most 2"},
