@@ -154,19 +154,28 @@ void Bolts::take_laws(const Scene &scene) {
                                                  : scene.bolts[static_cast<std::size_t>(link.bolt)].support;
     laws_.push_back(law_of(scene.supports[static_cast<std::size_t>(support)], link));
   }
+  springs_ = springs_of_links(true);
+  bolt_springs_ = springs_of_links(false);
+}
+
+Bolts::BlockSprings Bolts::springs_of_links(bool of_liners) const {
   std::vector<std::pair<std::int64_t, PointSpring>> all;
   for (std::size_t k = 0; k < 2 * links_.size(); ++k) {
-    for (const PointSpring &spring : springs_of(laws_[k / 2], links_[k / 2], k % 2)) {
-      all.emplace_back(links_[k / 2].end[k % 2].block, spring);
+    const BoltLink &link = links_[k / 2];
+    if (link.liner >= 0 && !of_liners) {
+      continue;
+    }
+    for (const PointSpring &spring : springs_of(laws_[k / 2], link, k % 2)) {
+      all.emplace_back(link.end[k % 2].block, spring);
     }
   }
   std::stable_sort(all.begin(), all.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
-  spring_block_.clear();
-  springs_.clear();
+  BlockSprings sorted;
   for (const auto &[block, spring] : all) {
-    spring_block_.push_back(block);
-    springs_.push_back(spring);
+    sorted.block.push_back(block);
+    sorted.springs.push_back(spring);
   }
+  return sorted;
 }
 
 void Bolts::share(const Communicator &communicator) {
@@ -276,9 +285,9 @@ std::vector<LinkPull> Bolts::pulls_from(const std::function<bool(std::int64_t)> 
   return pulls;
 }
 
-std::span<const PointSpring> Bolts::springs_at(std::int64_t block) const {
-  const auto [first, last] = std::equal_range(spring_block_.begin(), spring_block_.end(), block);
-  return {springs_.data() + (first - spring_block_.begin()), static_cast<std::size_t>(last - first)};
+std::span<const PointSpring> Bolts::BlockSprings::at(std::int64_t wanted) const {
+  const auto [first, last] = std::equal_range(block.begin(), block.end(), wanted);
+  return {springs.data() + (first - block.begin()), static_cast<std::size_t>(last - first)};
 }
 
 void Bolts::add_energies(double share, LinkEnergies &sums) const {

@@ -14,6 +14,7 @@
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "parallel/ghosts.hpp"
+#include "statics/springs.hpp"
 
 #include <array>
 #include <cstdint>
@@ -113,7 +114,16 @@ public:
                                                  const BlockSystem &system) const;
 
   /// Of the links at a block.
-  [[nodiscard]] std::span<const PointSpring> springs_at(std::int64_t block) const;
+  [[nodiscard]] std::span<const PointSpring> springs_at(std::int64_t block) const {
+    return springs_.at(block);
+  }
+  /// Of those of bolts alone.
+  [[nodiscard]] std::span<const PointSpring> bolt_springs_at(std::int64_t block) const {
+    return bolt_springs_.at(block);
+  }
+  /// Elements of liners in the posed trial configuration as springs of the static solver, about their
+  /// middles.
+  [[nodiscard]] std::vector<statics::ContactSpring> liner_springs(const BlockSystem &system) const;
 
   /// Of the links that count on this rank: as they are ...
   void add_energies(double share, LinkEnergies &sums) const;
@@ -150,8 +160,17 @@ private:
 
   std::vector<BoltLink> links_;
   std::vector<LinkLaw> laws_;
-  std::vector<std::int64_t> spring_block_; ///< ascending, of each of springs_
-  std::vector<PointSpring> springs_;
+  /// Springs by block.
+  struct BlockSprings {
+    std::vector<std::int64_t> block; ///< ascending, of each of springs
+    std::vector<PointSpring> springs;
+
+    [[nodiscard]] std::span<const PointSpring> at(std::int64_t wanted) const;
+  };
+  [[nodiscard]] BlockSprings springs_of_links(bool of_liners) const;
+
+  BlockSprings springs_;
+  BlockSprings bolt_springs_;
   std::vector<Here> here_;
   std::vector<LinkForce> forces_; ///< by here_
   std::vector<Mat2> gradient_;    ///< by entry of BlockSystem::deformation

@@ -134,6 +134,32 @@ void Bolts::install_liners(const Communicator &communicator, const Scene &scene,
   find_ends(communicator, system, first);
 }
 
+// The normal of the spring is across the element: its `bending` is then the angle between the two convected
+// directions of the element, also of blocks that shear.
+std::vector<statics::ContactSpring> Bolts::liner_springs(const BlockSystem &system) const {
+  std::vector<statics::ContactSpring> springs;
+  for (const Here &here : here_) {
+    const BoltLink &link = links_[here.link];
+    if (link.liner < 0 || link.memory.broken) {
+      continue;
+    }
+    const LinkLaw &law = laws_[here.link];
+    const LinkPose pose = pose_of(system, link, here.rows);
+    const Vec2 middle = 0.5 * (trial_position(system, here.rows[0], link.end[0].point) +
+                               trial_position(system, here.rows[1], link.end[1].point));
+    statics::ContactSpring &spring = springs.emplace_back();
+    spring.lower = static_cast<std::uint32_t>(here.rows[0]);
+    spring.higher = static_cast<std::uint32_t>(here.rows[1]);
+    spring.normal = pose.tangent;
+    spring.lower_arm = middle - system.motion[here.rows[0]].centroid;
+    spring.higher_arm = middle - system.motion[here.rows[1]].centroid;
+    spring.normal_stiffness = law.shear_stiffness;
+    spring.tangential = law.axial_stiffness;
+    spring.bending = law.bending_stiffness;
+  }
+  return springs;
+}
+
 std::vector<LinerLine> Bolts::liner_lines(const Communicator &communicator, const BlockSystem &system) const {
   std::vector<LinerLine> mine;
   for (const Here &here : here_) {

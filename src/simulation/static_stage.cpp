@@ -77,6 +77,7 @@ void book_static_work(RunState &run) {
 void find_static_motion(RunState &run) {
   const auto scope = run.phases.measure(Phase::update);
   const double overlap = run.communicator.max(run.force_report.max_overlap);
+  run.statics->springs().set_links(run.bolts.liner_springs(run.blocks));
   run.statics->find_motion(run.blocks, run.neighbours.candidates, run.neighbours.history, run.contacts,
                            overlap, run.clock.state.iteration);
 }

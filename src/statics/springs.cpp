@@ -181,11 +181,13 @@ void add_any(const BlockSystem &system, std::span<const ContactSpring> springs, 
 } // namespace
 
 void ContactSprings::add_product(const BlockSystem &system, const Field &p, Field &y) const {
-  if (p.width() == 3) {
-    add_rigid(springs_, p, y);
-  } else {
-    add_any(system, springs_, p, y);
-  }
+  for_lists([&](std::span<const ContactSpring> springs) {
+    if (p.width() == 3) {
+      add_rigid(springs, p, y);
+    } else {
+      add_any(system, springs, p, y);
+    }
+  });
 }
 
 std::vector<SpringRecord> ContactSprings::records() const {

@@ -30,6 +30,9 @@
 // A kept spring also ends when its blocks are farther apart than `reach`, which both ranks of a border pair
 // know from exact copies.
 //
+// Elements of liners are springs of the same kind, with the middle of the element in the place of the region
+// (`links`): what they hold is as stiff as a joint, and between two blocks of which none is at rest.
+//
 // The list ascends by pair as Candidates::pairs do, so that a block adds its springs in the order of its
 // partners' ids and gets the same bits on any number of ranks.
 
@@ -39,6 +42,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace gcpdda::statics {
@@ -91,6 +95,13 @@ public:
 
   [[nodiscard]] std::span<const ContactSpring> springs() const { return springs_; }
   [[nodiscard]] std::span<const SpringMemory> memories() const { return memories_; }
+  /// Springs of links, from here on, in an order that every rank knows.
+  void set_links(std::vector<ContactSpring> links) { links_ = std::move(links); }
+  /// Call f with each list of springs, those of contacts first.
+  template <class F> void for_lists(F &&f) const {
+    f(std::span<const ContactSpring>(springs_));
+    f(std::span<const ContactSpring>(links_));
+  }
   [[nodiscard]] std::size_t num_closed() const { return num_closed_; }
 
   /// y += K p. Rows of y that are not owned get sums that mean nothing.
@@ -107,6 +118,7 @@ private:
 
   std::vector<ContactSpring> springs_;
   std::vector<SpringMemory> memories_;
+  std::vector<ContactSpring> links_;
   std::vector<ContactSpring> next_springs_;
   std::vector<SpringMemory> next_memories_;
   std::size_t num_closed_ = 0;

@@ -66,10 +66,13 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
         inverse_.of(row)[i] = own_.of(row)[i] + holds_cells * mass_.of(row)[i];
       }
     });
-    coarse_.factorise(system, springs.springs(), inverse_);
+    std::vector<ContactSpring> all;
+    springs.for_lists(
+        [&](std::span<const ContactSpring> list) { all.insert(all.end(), list.begin(), list.end()); });
+    coarse_.factorise(system, all, inverse_);
   }
   for_rows(moving_, [&](std::size_t row) { std::copy_n(own_.of(row), width * width, inverse_.of(row)); });
-  add_diagonal(system, springs.springs(), inverse_);
+  springs.for_lists([&](std::span<const ContactSpring> list) { add_diagonal(system, list, inverse_); });
   for_rows(moving_, [&](std::size_t row) { invert(inverse_.of(row), num_freedoms(system, row), width); });
 }
 

@@ -166,7 +166,7 @@ TEST(LinedBlock, LosesWhatCracksAndBondsTake) {
     Simulation simulation(Communicator::self(),
                           scene_of(roof_toml(fidelity) + layer_toml(strength) + liner_toml("roof", face) +
                                        "[[stage]]\nkind = \"run\"\nduration = 0.1\n",
-                                   {"run.contact_damping=0"}));
+                                   {"run.contact_damping=0", "run.safety=0.1"}));
     EnergyLedger ledger(simulation.state());
     while (!simulation.stage_is_over()) {
       step(simulation);
@@ -177,11 +177,13 @@ TEST(LinedBlock, LosesWhatCracksAndBondsTake) {
     EXPECT_EQ(row.support, 0.0);
     const std::string what = fmt::format("liners: {} block falls through its liner, ", fidelity);
     expect_value(what + "energy lost, J/m", 2.0 * memory.dissipated, row.support_loss, 1e-9);
-    expect_below(what + "energy residual over what is lost", 0.02, std::abs(row.residual) / row.support_loss);
+    expect_below(what + "energy residual over what is lost", 0.01, std::abs(row.residual) / row.support_loss);
   }
 }
 
 /// Wedges around a circle, apart from each other, pressed inwards by P each. The nodes are on the apothem R.
+/// The first one is fixed, because forces that keep their directions would turn a free ring around; it takes
+/// P.
 std::string ring_toml(int count, double radius, double load, const std::string &fidelity) {
   std::string toml = rock(fidelity, {});
   std::string points;
@@ -198,9 +200,10 @@ std::string ring_toml(int count, double radius, double load, const std::string &
                                   at(side - gap, radius + 1.0), at(side - gap, radius)};
     const Vec2 centre = at(0.0, radius + 0.5);
     const Vec2 force = at(0.0, -load);
-    toml += block_toml(fmt::format("w{}", k), wedge) +
-            fmt::format("[[block.load]]\npoint = [{:.17g}, {:.17g}]\nforce = [{:.17g}, {:.17g}]\n", centre.x,
-                        centre.y, force.x, force.y);
+    toml += block_toml(fmt::format("w{}", k), wedge, k == 0 ? "fixed = true" : "");
+    toml += k == 0 ? ""
+                   : fmt::format("[[block.load]]\npoint = [{:.17g}, {:.17g}]\nforce = [{:.17g}, {:.17g}]\n",
+                                 centre.x, centre.y, force.x, force.y);
     const Vec2 corner = at(-side, radius);
     points += fmt::format("{}[{:.17g}, {:.17g}]", k > 0 ? ", " : "", corner.x, corner.y);
   }
@@ -234,11 +237,11 @@ TEST(LinedRing, BearsPressureByThrust) {
         least = std::min(least, -link.memory.axial);
         most = std::max(most, -link.memory.axial);
       }
-      expect_value(what + "smallest thrust, N/m", thrust, least, 1e-6);
-      expect_value(what + "largest thrust, N/m", thrust, most, 1e-6);
+      expect_value(what + "smallest thrust, N/m", thrust, least, 1e-5);
+      expect_value(what + "largest thrust, N/m", thrust, most, 1e-5);
       if (fidelity == "rigid") {
-        expect_value(what + "closure, m", thrust * radius / (plane_modulus * thickness),
-                     -displacement_of(simulation, 0).u.x, 1e-6);
+        expect_value(what + "closure across, m", 2.0 * thrust * radius / (plane_modulus * thickness),
+                     displacement_of(simulation, count / 2).u.x, 1e-6);
       }
     }
   }
