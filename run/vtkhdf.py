@@ -2,7 +2,7 @@
 """All frames of a run in one file for ParaView 5.12 and later (temporal VTKHDF):
 
     run/vtkhdf.py results/wall                      writes results/wall/run.vtkhdf
-    run/vtkhdf.py results/wall --kind contacts      its contacts, or bolts
+    run/vtkhdf.py results/wall --kind contacts      its contacts, or bolts, liners
 """
 import argparse
 import pathlib

@@ -18,7 +18,8 @@ PLOT = """Pictures and animations of a run: blocks coloured by a field, joints, 
     run/plot.py results/seismic_slope --rayleigh --out damping.png
 
 Fixed blocks are grey and hatched, phreatic lines blue and dashed. Bolts are coloured by their tension, joint by joint,
-with a dot where they have yielded and dashed where they are broken. Panels and pictures of one call share axes and
+with a dot where they have yielded and dashed where they are broken. Liners are drawn in their thickness, coloured by
+their thrust (--liners), with a dot where they have cracked and a cross where they are broken. Panels and pictures of one call share axes and
 scales, which fit the window that is shown.
 """
 
@@ -28,7 +29,7 @@ def _frame(word):
 
 
 def _plot_parser():
-    from .plot import ARROWS, FIELDS, HISTORIES, JOINTS
+    from .plot import ARROWS, FIELDS, HISTORIES, JOINTS, LINERS
     parser = argparse.ArgumentParser(prog="plot.py", description=PLOT,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", type=pathlib.Path, metavar="DIR", help="result folder of a run")
@@ -47,6 +48,10 @@ def _plot_parser():
                         help="draw a monitored line instead of blocks: displacement, or what --history says")
     parser.add_argument("--energy", action="store_true", help="draw energies over time instead of blocks")
     parser.add_argument("--bolts", action="store_true", help="draw the tension of bolts over time instead of blocks")
+    parser.add_argument("--liners", choices=LINERS, default="thrust", help="what liners are coloured by")
+    parser.add_argument("--moments", action="store_true", help="draw the bending moments of liners across them")
+    parser.add_argument("--liner-history", action="store_true",
+                        help="draw the largest thrust and moment of liners over time instead of blocks")
     parser.add_argument("--rayleigh", action="store_true",
                         help="draw the damping ratio of run.rayleigh instead of blocks")
     parser.add_argument("--out", required=True, type=pathlib.Path, help="FILE.png, .pdf, .svg; FILE.gif is animated")
@@ -85,6 +90,8 @@ def _draw(result, chosen):
         plots.energy(**file)
     elif chosen.bolts:
         plots.bolts(**file)
+    elif chosen.liner_history:
+        plots.liners(**file)
     elif chosen.profile:
         plots.profile(chosen.profile, chosen.history or "displacement", **file)
     elif chosen.history:
@@ -96,11 +103,11 @@ def _draw(result, chosen):
         plots.map(chosen.field, joints=chosen.joints, arrows=chosen.arrows, chains=chosen.chains,
                   crosses=chosen.crosses, pressure=chosen.pressure, frame=frames, window=chosen.window,
                   scale=chosen.scale, compare=chosen.compare, since=chosen.since, title=chosen.title,
-                  seconds=chosen.seconds, fps=chosen.fps, **file)
+                  seconds=chosen.seconds, fps=chosen.fps, liners=chosen.liners, moments=chosen.moments, **file)
 
 
 REPORT = """One HTML file about the result folder of a run, of `gcpdda fos` or of `gcpdda ensemble`, which opens without
-a network: scene, stages with verdicts, pictures, histories, energy, warnings, bolts, factor of safety and its
+a network: scene, stages with verdicts, pictures, histories, energy, warnings, bolts, liners, factor of safety and its
 mechanism, speed.
 
     run/report.py results/wall

@@ -1,4 +1,4 @@
-"""One output time of a run: blocks, contacts, joints and bolts as arrays and tables."""
+"""One output time of a run: blocks, contacts, joints, bolts and liners as arrays and tables."""
 
 import functools
 
@@ -8,6 +8,8 @@ from .joints import STATES, track
 
 KINDS = ("fixed", "rigid", "deformable")
 BOLT_STATES = ("elastic", "yielded", "broken")
+LINER_NUMBERS = ("axial_force", "shear_force", "moment_begin", "moment_end", "extension", "slide", "turn", "thickness",
+                 "strength_used")
 
 
 def polygon_facts(points, offsets):
@@ -31,7 +33,7 @@ class Frame:
     points, offsets corners in m: block k has points[offsets[k]:offsets[k + 1]]
     values(NAME)    a dataset of the frame by name: displacement, rotation, velocity, stress, contact_force, kind,
                     material
-    blocks, contacts, bolts, joints     tables, one row each
+    blocks, contacts, bolts, liners, joints     tables, one row each
     """
 
     def __init__(self, result, number, path):
@@ -224,6 +226,37 @@ class Frame:
         table["support"] = [list(self.result.scene["support"])[k] for k in table["support"]]
         table["state"] = np.array(BOLT_STATES, dtype=object)[table["state"].to_numpy(dtype=int)]
         return table[["bolt", "support", "state", "axial_force", "shear_force", "extension", "slide"]]
+
+    @functools.cached_property
+    def liner_lines(self):
+        """Both nodes of each element of a liner, (n, 2, 2), in m; the rock lies on the right of the way between them."""
+        return self._liner_data[0]
+
+    @functools.cached_property
+    def _liner_data(self):
+        import h5py
+        path = self.path.with_name(self.path.name.replace("frame_", "liners_"))
+        if not path.exists():
+            return np.empty((0, 2, 2)), {name: np.empty(0) for name in LINER_NUMBERS} | {
+                name: np.empty(0, dtype=int) for name in ("liner", "support", "state", "cracked")}
+        with h5py.File(path, "r") as file:
+            grid = file["VTKHDF"]
+            return grid["Points"][:, :2].reshape(-1, 2, 2), {name: grid["CellData"][name][:]
+                                                             for name in grid["CellData"]}
+
+    @functools.cached_property
+    def liners(self):
+        """One row for each of `liner_lines`: liner, support, state, cracked, forces per metre of tunnel: axial_force
+        (tension positive) and shear_force in N/m, moments at both nodes in N (positive: the side of the rock in
+        tension); extension and slide in m, turn in rad, thickness in m, strength_used from 0 to 1."""
+        import pandas
+        table = pandas.DataFrame(self._liner_data[1])
+        names = [liner.get("name", f"liner{k}") for k, liner in enumerate(self.result.scene.get("liner", []))]
+        table["liner"] = [names[k] for k in table["liner"]]
+        table["support"] = [list(self.result.scene["support"])[k] for k in table["support"]]
+        table["state"] = np.array(BOLT_STATES, dtype=object)[table["state"].to_numpy(dtype=int)]
+        table["cracked"] = table["cracked"].to_numpy() > 0
+        return table[["liner", "support", "state", "cracked", *LINER_NUMBERS]]
 
     def __repr__(self):
         return f"<Frame {self.number} of {self.result.path.name}, t = {self.time:g} s, {len(self.ids)} blocks>"

@@ -18,24 +18,24 @@ def show_scale(name, preset, title, view):
     return bar
 
 
-def show_bolts(path, view):
-    """Draws the bolts in place at the view's time, coloured by their tension."""
+def show_support(path, view, kind, title):
+    """Draws the bolts or liners in place at the view's time, coloured by their axial force."""
     bolts = OpenDataFile(str(path))
     bolts.UpdatePipeline(view.ViewTime)
     count = bolts.GetDataInformation().GetNumberOfCells()
-    print(f"{count} lines of bolts")
+    print(f"{count} lines of {kind}")
     if count == 0:
         return
     lines = Show(bolts, view)
     lines.LineWidth = 5.0
     ColorBy(lines, ("CELLS", "axial_force"))
     lines.RescaleTransferFunctionToDataRange(False, True)
-    bar = show_scale("axial_force", "Inferno (matplotlib)", "tension of a bolt (N)", view)
+    bar = show_scale("axial_force", "Inferno (matplotlib)", title, view)
     bar.WindowLocation = "Upper Right Corner"
 
 
 def draw(directory, picture, time=None):
-    """Blocks coloured by displacement, and bolts by tension, at a time or in the last frame."""
+    """Blocks coloured by displacement, bolts and liners by tension, at a time or in the last frame."""
     run = OpenDataFile(str(pathlib.Path(directory).resolve() / "run.hdf.series"))
     if run is None:
         raise FileNotFoundError(f"cannot open {directory}/run.hdf.series")
@@ -62,8 +62,9 @@ def draw(directory, picture, time=None):
     ColorBy(edges, ("CELLS", None))
     edges.AmbientColor = edges.DiffuseColor = [0.12, 0.14, 0.16]
 
-    if (series := pathlib.Path(directory).resolve() / "bolts.hdf.series").exists():
-        show_bolts(series, view)
+    for kind, title in (("bolts", "tension of a bolt (N)"), ("liners", "tension of a liner (N/m)")):
+        if (series := pathlib.Path(directory).resolve() / f"{kind}.hdf.series").exists():
+            show_support(series, view, kind, title)
 
     view.ResetCamera(True)
     Render(view)

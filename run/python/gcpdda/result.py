@@ -38,7 +38,7 @@ class Result(Folder):
 
     frames, frame(WHICH)       `Frame`s: a number, "first", "last", or the one at or before a time: at(TIME)
     times                      of the frames, in s
-    histories, history(NAME)   names of the monitors; the table of one. energy, bolts: tables of the same kind
+    histories, history(NAME)   names of the monitors; the table of one. energy, bolts, liners: tables of the same kind
     profiles                   names of the monitored lines
     summary                    summary.json as a dictionary, None while the run goes on; verdict, stages come from it
     scene, log                 the resolved scene as a dictionary; what the program has printed
@@ -60,7 +60,7 @@ class Result(Folder):
         return self._json("summary.json")
 
     def to_vtkhdf(self, out=None, kind="blocks"):
-        """All frames in one temporal VTKHDF file, of blocks, contacts or bolts; returns its path."""
+        """All frames in one temporal VTKHDF file, of blocks, contacts, bolts or liners; returns its path."""
         from . import vtkhdf
         return vtkhdf.write(self.path, out, kind)
 
@@ -163,7 +163,7 @@ class Result(Folder):
     @property
     def _monitors(self):
         names = sorted(path.stem for path in (self.path / "history").glob("*.csv"))
-        return [name for name in names if name not in ("energy", "bolts")]
+        return [name for name in names if name not in ("energy", "bolts", "liners")]
 
     def _is_profile(self, name):
         with open(self.path / "history" / f"{name}.csv") as file:
@@ -184,6 +184,13 @@ class Result(Folder):
         """Forces of bolts over time; empty without bolts."""
         import pandas
         path = self.path / "history" / "bolts.csv"
+        return read_csv(path) if path.exists() else pandas.DataFrame()
+
+    @property
+    def liners(self):
+        """Largest forces of liners over time; empty without liners."""
+        import pandas
+        path = self.path / "history" / "liners.csv"
         return read_csv(path) if path.exists() else pandas.DataFrame()
 
     @functools.cached_property

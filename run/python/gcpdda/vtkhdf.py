@@ -10,7 +10,7 @@ import pathlib
 import h5py
 import numpy as np
 
-KINDS = {"blocks": "frame", "contacts": "contacts", "bolts": "bolts"}
+KINDS = {"blocks": "frame", "contacts": "contacts", "bolts": "bolts", "liners": "liners"}
 TOPOLOGY = ("Connectivity", "Offsets", "Types")
 LEAST_CHUNK, MOST_CHUNK = 256, 65536  # rows
 
@@ -66,7 +66,7 @@ class Writer:
 
 
 def write(directory, out=None, kind="blocks"):
-    """Writes DIRECTORY/run.vtkhdf, or contacts.vtkhdf or bolts.vtkhdf, or `out`; returns the path.
+    """Writes DIRECTORY/run.vtkhdf, or contacts.vtkhdf, bolts.vtkhdf or liners.vtkhdf, or `out`; returns the path.
 
     @raises FileNotFoundError  where the folder has no frames of this kind
     """

@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import over_time, style
-from .layers import FIELDS, Arrows, Blocks, Bolts, Chains, Crosses, JointLines, JointStates, Layer, Shown
+from .layers import FIELDS, LINERS, Arrows, Blocks, Bolts, Chains, Crosses, JointLines, JointStates, Layer, Liners, Shown
 from .water import Pressure, Water
 
 __all__ = ["Plots", "FIELDS", "JOINTS", "ARROWS", "HISTORIES", "Layer"]
@@ -85,7 +85,7 @@ class Plots:
         """Times and PNG images of at most so many frames, all of one size and with one scale: what a player shows."""
         every = -(-len(self.result.frames) // most)
         frames = self.result.frames[::-every][::-1]
-        shown, layers, limits = self._prepared(frames, [Blocks(field), Water(), Bolts(frames)], 1.0, window)
+        shown, layers, limits = self._prepared(frames, [Blocks(field), Water(), Liners(frames), Bolts(frames)], 1.0, window)
         figure, (axes,) = style.map_figure(1, limits, layers)
         for one in shown:
             _clear(axes)
@@ -94,8 +94,11 @@ class Plots:
         plt.close(figure)
 
     def map(self, field=None, *, joints=None, arrows=None, chains=False, crosses=False, pressure=False, frame="last",
-            window=None, scale=1.0, compare=None, since=None, title=None, dpi=160, out=None, seconds=None, fps=None):
-        """Any of these over each other. Blocks are filled by `field`, or left plain where something else is drawn."""
+            window=None, scale=1.0, compare=None, since=None, title=None, dpi=160, out=None, seconds=None, fps=None,
+            liners="thrust", moments=False):
+        """Any of these over each other. Blocks are filled by `field`, or left plain where something else is drawn.
+        Liners, if there are any, are coloured by thrust, moment, shear or strength_used; `moments` draws their
+        moments across them, on the side that is in tension."""
         plain = joints or arrows or chains or crosses or pressure
         frames = self._frames(frame)
         if ("permanent" in (field, arrows)) != (since is not None):
@@ -109,7 +112,7 @@ class Plots:
         layers += [Chains()] if chains else []
         layers += [Crosses()] if crosses else []
         layers += [Arrows(_known(arrows, ARROWS, "arrows"), start)] if arrows else []
-        layers.append(Bolts(frames))
+        layers += [Liners(frames, _known(liners, LINERS, "liners by"), moments), Bolts(frames)]
         shown, layers, limits = self._prepared(frames, layers, scale, window)
         if out is not None and pathlib.Path(out).suffix == ".gif":
             return _animate(shown, layers, limits, out, title, dpi, seconds, fps)
@@ -142,6 +145,10 @@ class Plots:
     def bolts(self, *, dpi=160, out=None):
         """Tension of bolts over time."""
         return _finished(over_time.draw_bolts(self.result), out, dpi)
+
+    def liners(self, *, dpi=160, out=None):
+        """Largest thrust, moment and share of the strength used of liners over time."""
+        return _finished(over_time.draw_liners(self.result), out, dpi)
 
     def rayleigh(self, *, dpi=160, out=None):
         """Damping ratio over frequency of run.rayleigh."""

@@ -478,3 +478,90 @@ class Bolts(Layer):
     def explain(self, figure, axes):
         if self.bars:
             style.colour_bar(figure, axes, self.scale, f"tension of a bolt ({self.unit})")
+
+
+# name: (label, unit, signed, values of a table of elements)
+LINERS = {
+    "thrust": ("thrust of liners, compression positive", "N/m", True, lambda t: -t["axial_force"]),
+    "moment": ("largest moment of an element", "N m/m", False,
+               lambda t: np.maximum(t["moment_begin"].abs(), t["moment_end"].abs())),
+    "shear": ("shear force of liners", "N/m", False, lambda t: t["shear_force"].abs()),
+    "strength_used": ("strength of liners used", "-", False, lambda t: t["strength_used"]),
+}
+
+
+class Liners(Layer):
+    """Elements of liners in their true thickness, or as thick as can be seen, on the side of the void; a white dot
+    where one has cracked, a cross where one is broken. `moments` draws the bending moment across the face."""
+
+    least_width = 1.0 / 150.0  # of the size of the window
+    longest_moment = 0.08      # of the same
+
+    def __init__(self, frames, quantity="thrust", moments=False):
+        self.quantity, self.moments = quantity, moments
+        self.bars = int(any(len(frame.liner_lines) for frame in frames))
+        self.has_legend = bool(self.bars)
+        self.label, self.unit, self.signed, self.values_of = LINERS[quantity]
+
+    def prepare(self, shown, window):
+        self.size = float(np.ptp(np.asarray(window), axis=0).max())
+        tables = [one.frame.liners for one in shown] if self.bars else []
+        values = np.concatenate([self.values_of(table).to_numpy() for table in tables] or [np.empty(0)])
+        largest = 1.0 if self.quantity == "strength_used" else float(np.abs(values).max(initial=0.0))
+        self.factor, self.shown_unit = style.unit_prefix(self.unit, largest)
+        top = largest * self.factor or 1.0
+        bottom = min(0.0, float(values.min(initial=0.0)) * self.factor)
+        colours = style.USED if self.quantity == "strength_used" else style.LINERS
+        self.scale = ScalarMappable(Normalize(bottom, top), colours)
+        self.states = {state for table in tables for state, rows in (
+            ("cracked", table["cracked"] & (table["state"] != "broken")), ("broken", table["state"] == "broken"))
+            if rows.any()}
+        self.largest_moment = max((float(table[["moment_begin", "moment_end"]].abs().max().max())
+                                   for table in tables if len(table)), default=0.0)
+
+    def draw(self, axes, shown, window):
+        lines, table = shown.frame.liner_lines, shown.frame.liners
+        if not len(lines):
+            return
+        way = lines[:, 1] - lines[:, 0]
+        across = np.stack([-way[:, 1], way[:, 0]], axis=1)  # into the void
+        across /= np.maximum(np.hypot(*across.T), 1e-300)[:, None]
+        width = np.maximum(table["thickness"].to_numpy(), self.least_width * self.size)[:, None]
+        corners = np.stack([lines[:, 0], lines[:, 1], lines[:, 1] + width * across, lines[:, 0] + width * across], axis=1)
+        whole = (table["state"] != "broken").to_numpy()
+        colours = self.scale.to_rgba(self.values_of(table).to_numpy() * self.factor)
+        axes.add_collection(PolyCollection(corners[whole], facecolors=colours[whole], edgecolors=style.EDGE,
+                                           linewidths=0.5, zorder=6))
+        axes.add_collection(PolyCollection(corners[~whole], facecolors="white", edgecolors=style.EDGE, linewidths=0.5,
+                                           linestyles=(0, (2, 2)), zorder=6))
+        if self.moments and self.largest_moment > 0.0:
+            self._draw_moments(axes, lines, across, table)
+        middle = corners.mean(axis=1)
+        cracked = table["cracked"].to_numpy() & whole
+        axes.scatter(*middle[cracked].T, s=9.0, c="white", edgecolors=style.EDGE, linewidths=0.7, zorder=9)
+        axes.scatter(*middle[~whole].T, s=16.0, c=style.OUTLINE, marker="x", linewidths=1.1, zorder=9)
+
+    def _draw_moments(self, axes, lines, across, table):
+        reach = self.longest_moment * self.size / self.largest_moment
+        ends = [lines[:, k] - reach * table[name].to_numpy()[:, None] * across  # tension on the rock: into the rock
+                for k, name in enumerate(("moment_begin", "moment_end"))]
+        shapes = np.stack([lines[:, 0], ends[0], ends[1], lines[:, 1]], axis=1)
+        axes.add_collection(PolyCollection(shapes, facecolors=(0.13, 0.45, 0.73, 0.35), edgecolors="#1f5fae",
+                                           linewidths=0.6, zorder=7))
+
+    def explain(self, figure, axes):
+        if self.bars:
+            unit = f" ({self.shown_unit})"
+            style.colour_bar(figure, axes, self.scale, self.label + unit)
+
+    def handles(self):
+        marks = []
+        if "cracked" in self.states:
+            marks.append(Line2D([], [], ls="", marker="o", ms=4, mfc="white", mec=style.EDGE, label="liner cracked"))
+        if "broken" in self.states:
+            marks.append(Line2D([], [], ls="", marker="x", ms=5, mec=style.OUTLINE, label="liner broken"))
+        if self.moments and self.largest_moment > 0.0:
+            factor, unit = style.unit_prefix("N m/m", self.largest_moment)
+            marks.append(Patch(fc=(0.13, 0.45, 0.73, 0.35), ec="#1f5fae", lw=0.6,
+                               label=f"moment on the side in tension, largest {self.largest_moment * factor:.3g} {unit}"))
+        return marks

@@ -1,4 +1,4 @@
-"""Curves over time, with the stages marked: histories, energy, bolts; and the damping ratio over frequency."""
+"""Curves over time, with the stages marked: histories, energy, bolts, liners; and the damping ratio over frequency."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -126,9 +126,9 @@ def draw_profile(result, name, quantity, times=None):
 # column without unit: (label, sign, colour); what is stored or taken up adds to what the first row has
 ENERGIES = {
     "kinetic": ("kinetic", "#d9822b"), "strain": ("strain of blocks", "#7b5aa6"), "contact": ("contacts", "#1f6f9f"),
-    "gravity": ("gravity", "#8c6d31"), "support": ("bolts", "#d45087"),
+    "gravity": ("gravity", "#8c6d31"), "support": ("bolts and liners", "#d45087"),
     "friction_loss": ("lost in friction", "#b0332a"),
-    "damping_loss": ("lost in damping", "#e39a94"), "support_loss": ("lost in bolts", "#e8a8c4"),
+    "damping_loss": ("lost in damping", "#e39a94"), "support_loss": ("lost in bolts and liners", "#e8a8c4"),
     "taken": ("taken by stages", "#9ec7de"), "boundary_work": ("work from outside", "#3a9a4b"),
     "residual": ("residual", "#20242a"),
 }
@@ -191,6 +191,26 @@ def draw_bolts(result):
     mark_stages(axes, result)
     if len(bolts) <= 20:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=7, ncol=1 + (len(bolts) > 12))
+    return figure
+
+
+def draw_liners(result):
+    """Largest thrust, moment and share of the strength of every liner over time."""
+    table = result.liners
+    if not len(table):
+        raise ValueError(f"no history of liners in {result.path}")
+    figure, panels = curve_figure(3, 1.8)
+    columns = (("compression[N/m]", "thrust", "N/m"), ("moment[N]", "moment", "N m/m"),
+               ("strength_used[-]", "strength used", "-"))
+    for axes, (column, label, unit) in zip(panels, columns):
+        factor, shown = style.unit_prefix(unit, float(table[column].abs().max()))
+        for k, (name, rows) in enumerate(table.groupby("liner", sort=False)):
+            axes.plot(rows["time[s]"], rows[column] * factor, color=COLOURS[k % len(COLOURS)], lw=1.2, label=name)
+        axes.set_ylabel(f"{label} ({shown})")
+        axes.set_ylim(bottom=0.0)
+        axes.margins(x=0.0)
+        mark_stages(axes, result, labels=axes is panels[0])
+    legend_beside(panels[0])
     return figure
 
 

@@ -25,6 +25,7 @@ def _part(name, low, high):
 SEQUENTIAL = _part("YlGnBu", 0.0, 0.82)
 SIGNED = _part("RdBu_r", 0.1, 0.9)
 BOLTS = plt.get_cmap("YlOrRd")
+LINERS = plt.get_cmap("plasma_r")
 JOINTS = LinearSegmentedColormap.from_list("joints", ["#b9bec4", "#e39ac0", "#c2338f", "#4d0857"])
 USED = LinearSegmentedColormap.from_list("used", ["#b9c7d3", "#d9d08a", "#ee9a3a", "#d1362f", "#7a0c2e"])
 

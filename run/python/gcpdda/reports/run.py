@@ -38,6 +38,7 @@ def run_page(result, title, frames):
     _histories(page, result)
     _energy(page, result)
     _bolts(page, result)
+    _liners(page, result)
     _speed(page, result)
     add_provenance(page, result, result.path / "scene.toml", facts(result))
     return page
@@ -230,10 +231,10 @@ def residual_share(result):
 MEANINGS = {
     "kinetic": "energy of motion", "strain": "elastic energy in deformable blocks",
     "contact": "elastic energy in contacts, normal and shear",
-    "gravity": "potential energy: falls when blocks sink", "support": "elastic energy in bolts",
+    "gravity": "potential energy: falls when blocks sink", "support": "elastic energy in bolts and liners",
     "friction_loss": "work that slipping joints have taken",
     "damping_loss": "work that dashpots and numerical damping have taken",
-    "support_loss": "work that yielding bolts have taken",
+    "support_loss": "work that yielding bolts and liners, cracks and rupture have taken",
     "taken": "what stages took with the blocks that they removed and the motion that they stopped",
     "boundary_work": "work of loads, driven blocks and excavated ones on the model",
     "residual": "what is stored, lost and taken less the work from outside: zero if time steps were infinitely short"}
@@ -274,6 +275,21 @@ def _bolts(page, result):
                        "axial": "tension (N)", "largest_axial": "largest tension (N)", "shear": "shear (N)",
                        "largest_shear": "largest shear (N)",
                        "extension": "extension (m)", "joints": "joints", "yielded": "yielded", "broken": "broken"})
+
+
+def _liners(page, result):
+    liners = (result.summary or {}).get("liners", [])
+    if not liners:
+        return
+    page.section("Liners")
+    if len(result.liners):
+        page.pictures((picture(result.plot.liners()),
+                       "Largest thrust and moment of each liner, and the share of its strength that is used."))
+    page.table(liners, {"name": "liner", "support": "type", "installed": "installed (s)", "in_place": "in place",
+                        "elements": "elements", "compression": "thrust (N/m)",
+                        "largest_compression": "largest thrust (N/m)", "largest_moment": "largest moment (N)",
+                        "largest_shear": "largest shear (N/m)", "strength_used": "strength used", "cracked": "cracked",
+                        "yielded": "yielded", "broken": "broken"})
 
 
 def _speed(page, result):

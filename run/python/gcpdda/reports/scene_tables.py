@@ -9,11 +9,12 @@ import numpy as np
 
 GEOMETRY = ("region", "joint_set", "fault", "joint_map", "opening", "layer", "voronoi", "bricks", "wall", "pyramid",
             "blocks")
-LOADS = ("water", "in_situ", "earthquake", "support", "bolt", "bolt_pattern")
+LOADS = ("water", "in_situ", "earthquake", "support", "bolt", "bolt_pattern", "liner")
 NAMES = {"region": "Region", "joint_set": "Joint sets", "fault": "Faults", "joint_map": "Mapped traces",
          "opening": "Openings", "layer": "Layers", "voronoi": "Voronoi polygons", "bricks": "Masonry", "wall": "Walls",
          "pyramid": "Pyramids", "blocks": "Block file", "water": "Water", "in_situ": "In-situ stress",
-         "earthquake": "Earthquake", "support": "Types of bolts", "bolt": "Bolts", "bolt_pattern": "Patterns of bolts"}
+         "earthquake": "Earthquake", "support": "Types of support", "bolt": "Bolts", "bolt_pattern": "Patterns of bolts",
+         "liner": "Liners"}
 UNITS = {"density": "kg/m3", "youngs_modulus": "Pa", "normal_stiffness": "Pa/m", "friction_angle_deg": "°",
          "cohesion": "Pa", "tension": "Pa", "residual_friction_angle_deg": "°", "residual_cohesion": "Pa",
          "dilation_angle_deg": "°", "dilation_limit": "m", "jcs": "Pa", "dip_deg": "°", "spacing": "m",
