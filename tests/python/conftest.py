@@ -33,6 +33,26 @@ def leaning(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def lined(tmp_path_factory):
+    """A square that hangs in a lined roof: one liner holds it, another one cracks and peels off."""
+    scene = gcpdda.Scene()
+    scene.table("run", fidelity="rigid")
+    scene.table("material.rock", density=2600.0)
+    scene.table("joint.default", normal_stiffness=1e9, friction_angle_deg=0.0)
+    for name, low, high, fixed in (("left", -2.0, -0.5, True), ("loose", -0.5, 0.5, False), ("right", 0.5, 2.0, True)):
+        scene.add("block", name=name, material="rock", fixed=fixed,
+                  vertices=[[low, 0.0], [high, 0.0], [high, 1.0], [low, 1.0]])
+    scene.table("support.layer", kind="liner", thickness=0.1, youngs_modulus=24e9, compressive_strength=30e6)
+    scene.table("support.weak", kind="liner", thickness=0.02, youngs_modulus=24e9, tensile_strength=3e6,
+                residual_tensile_strength=2.9e6, adhesion=1e3)
+    scene.add("liner", name="strong", support="layer", points=[[-2.0, 0.0], [2.0, 0.0]])
+    scene.add("liner", support="weak", points=[[-2.0, 0.0], [2.0, 0.0]])
+    scene.table("output", interval=0.05)
+    scene.add("stage", name="weight", kind="settle", limit=3.0, solver="dynamic")
+    return gcpdda.run(scene, ranks=1, out=tmp_path_factory.mktemp("runs") / "lined")
+
+
+@pytest.fixture(scope="session")
 def search(tmp_path_factory):
     """A factor of safety."""
     return gcpdda.fos(SCENES / "deformable_slope.toml", ranks=1, out=tmp_path_factory.mktemp("runs") / "fos",

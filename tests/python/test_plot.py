@@ -55,6 +55,22 @@ def test_other_maps(leaning, opening):
     assert any("tension of a bolt" in text for text in check_map(leaning.plot.field()))
 
 
+def test_liners(lined, opening):
+    def legend_of(figure):
+        return [text.get_text() for legend in figure.legends for text in legend.texts]
+
+    figure = lined.plot.map()
+    assert "liner broken" in legend_of(figure)
+    assert any("thrust of liners" in text for text in check_map(figure))
+    for quantity in ("moment", "shear", "strength_used"):
+        figure = lined.plot.map(liners=quantity, moments=True)
+        assert any(text.startswith("moment on the side in tension") for text in legend_of(figure))
+        check_map(figure)
+    plt.close(lined.plot.liners())
+    with pytest.raises(ValueError, match="no history of liners"):
+        opening.plot.liners()
+
+
 def test_curves(opening, leaning):
     for quantity in HISTORIES:
         figure = opening.plot.history(quantity)
@@ -197,14 +213,16 @@ def test_command_line(opening, tmp_path):
     for words in (["--frame", "0,last", "--field", "stress", "--scale", "3", "--compare", "first"],
                   ["--joints", "state"], ["--field", "permanent", "--since", "fall"],
                   ["--crosses", "--arrows", "velocity", "--window=0,0,6,4"],
-                  ["--history", "speed", "--monitors", "w.4.6"], ["--energy"]):
+                  ["--history", "speed", "--monitors", "w.4.6"], ["--energy"],
+                  ["--liners", "moment", "--moments"]):
         done = plot(*words)
         assert done.returncode == 0, done.stderr
         assert (tmp_path / "picture.png").stat().st_size > 10_000
         (tmp_path / "picture.png").unlink()
     for words, reason in ((["--frame", "77"], "no frame 77"), (["--field", "permanent"], "belong together"),
                           (["--since", "x", "--field", "permanent"], "no stage x"), (["--window=1,2"], "four numbers"),
-                          (["--bolts"], "no history of bolts"), (["--joints", "colour"], "invalid choice")):
+                          (["--bolts"], "no history of bolts"),
+                          (["--liner-history"], "no history of liners"), (["--joints", "colour"], "invalid choice")):
         done = plot(*words)
         assert done.returncode != 0 and reason in done.stderr, done.stderr
         assert "Traceback" not in done.stderr

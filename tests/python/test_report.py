@@ -83,6 +83,11 @@ def test_of_a_run_with_bolts_and_water(leaning, tmp_path):
     assert "Bolts" in headings and "cable" in text and "Water pressure" in text
 
 
+def test_of_a_run_with_liners(lined, tmp_path):
+    headings, _, text = check(gcpdda.report(lined.path, tmp_path / "lined.html", frames=4))
+    assert "Liners" in headings and "strong" in text and "largest thrust (N/m)" in text
+
+
 def test_of_a_search(search, tmp_path):
     headings, _, text = check(gcpdda.report(search.path, tmp_path / "fos.html", frames=4))
     assert headings[:2] == ["Trials", "Mechanism"] and "Factor of safety" in text

@@ -120,6 +120,27 @@ def test_bolts(leaning):
     assert frame.bolts["axial_force"][0] == pytest.approx(leaning.bolts["axial[N]"].iloc[-1])
 
 
+def test_liners(lined, leaning):
+    frame = lined.frame("last")
+    table = frame.liners
+    assert list(table["liner"]) == ["strong", "strong", "liner1", "liner1"]
+    assert list(table["state"]) == ["elastic", "elastic", "broken", "broken"]
+    assert list(table["support"]) == ["layer", "layer", "weak", "weak"] and not table["cracked"][:2].any()
+    weight = 2600.0 * 9.81
+    assert table["shear_force"][:2].abs().sum() == pytest.approx(weight, rel=1e-3)
+    # The moment at the nodes is Q L/2 with L = 1.25 m.
+    assert table["moment_begin"][0] == pytest.approx(-table["moment_end"][0])
+    assert abs(table["moment_begin"][0]) == pytest.approx(0.5 * weight * 0.5 * 1.25, rel=0.01)
+    # The rock lies on the right of the way, whichever way the points were given.
+    assert (frame.liner_lines[:, 1, 0] < frame.liner_lines[:, 0, 0]).all()
+    last = lined.liners[lined.liners["time[s]"] == lined.liners["time[s]"].max()].set_index("liner")
+    assert last["shear[N/m]"]["strong"] == pytest.approx(0.5 * weight, rel=1e-3)
+    assert list(last["broken"]) == [0, 2]
+    assert [load["name"] for load in lined.summary["liners"]] == ["strong", "liner1"]
+    assert lined.histories == []
+    assert not len(leaning.liners) and not len(leaning.frame("last").liners)
+
+
 def test_results_are_read_while_a_run_goes_on(opening, tmp_path):
     """What a folder holds in the middle of a run: no summary, fewer frames, and a row that is being written."""
     folder = tmp_path / "running"

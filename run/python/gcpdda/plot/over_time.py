@@ -205,7 +205,8 @@ def draw_liners(result):
     for axes, (column, label, unit) in zip(panels, columns):
         factor, shown = style.unit_prefix(unit, float(table[column].abs().max()))
         for k, (name, rows) in enumerate(table.groupby("liner", sort=False)):
-            axes.plot(rows["time[s]"], rows[column] * factor, color=COLOURS[k % len(COLOURS)], lw=1.2, label=name)
+            axes.plot(rows["time[s]"], rows[column] * factor, color=COLOURS[k % len(COLOURS)], lw=1.2, marker=".", ms=3,
+                      label=name)
         axes.set_ylabel(f"{label} ({shown})")
         axes.set_ylim(bottom=0.0)
         axes.margins(x=0.0)
