@@ -16,8 +16,8 @@ void lay_statics(RunState &run) {
   std::vector<statics::Surroundings> around;
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     const StiffnessBound stiffness = stiffness_bound(run.scene.joints, run.blocks.properties[row].material);
-    around.push_back(
-        {stiffness.normal, stiffness.tangential, run.bolts.bolt_springs_at(run.blocks.properties[row].id.value)});
+    around.push_back({stiffness.normal, stiffness.tangential,
+                      run.bolts.bolt_springs_at(run.blocks.properties[row].id.value)});
   }
   const bool any_deformable = run.communicator.max(run.blocks.deformation.empty() ? 0.0 : 1.0) > 0.0;
   std::vector<statics::BorderRows> border;

@@ -131,6 +131,9 @@ def test_liners(lined, leaning):
     # The moment at the nodes is Q L/2 with L = 1.25 m.
     assert table["moment_begin"][0] == pytest.approx(-table["moment_end"][0])
     assert abs(table["moment_begin"][0]) == pytest.approx(0.5 * weight * 0.5 * 1.25, rel=0.01)
+    # The loose block sags into the void: tension is on the side of the rock over the fixed blocks.
+    assert table["moment_begin"][0] > 0.0 > table["moment_end"][0] and table["shear_force"][0] > 0.0
+    assert table["moment_begin"][1] < 0.0 < table["moment_end"][1] and table["shear_force"][1] < 0.0
     # The rock lies on the right of the way, whichever way the points were given.
     assert (frame.liner_lines[:, 1, 0] < frame.liner_lines[:, 0, 0]).all()
     last = lined.liners[lined.liners["time[s]"] == lined.liners["time[s]"].max()].set_index("liner")
