@@ -35,7 +35,7 @@ SHORTER = {  # settings that leave a scene of 10^5 blocks its kind
 }
 OWN_KIND = {"deformable_slope", "deformable_tunnel"}  # they deform as they ship
 SLOW = {"slope_large", "slope_jointed", "tunnel_large", "wet_slope", "seismic_slope", "slope_seeds", "masonry_wall", "rockfall",
-        "toppling", "goodman_bray", "bolted_tunnel"}
+        "toppling", "goodman_bray", "bolted_tunnel", "lined_tunnel"}
 
 
 def arguments(name, modulus):

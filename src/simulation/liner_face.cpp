@@ -167,12 +167,12 @@ LinerPath path_of(const Liner &liner, double thickness, bool has_rock_on_right) 
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
     const Vec2 edge = points[k + 1] - points[k];
     const double length = norm(edge);
-    const double count = std::ceil(length / wanted);
-    for (double i = 0.5; i < count; i += 1.0) { // symmetric on each edge
-      path.stations.push_back(
-          {way + i / count * length, points[k] + (i / count) * edge, -(1.0 / length) * perp(edge)});
+    const auto count = static_cast<std::int64_t>(std::ceil(length / wanted));
+    for (std::int64_t i = 0; i < count; ++i) { // symmetric on each edge
+      const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+      path.stations.push_back({way + share * length, points[k] + share * edge, -(1.0 / length) * perp(edge)});
     }
-    path.spacing = std::max(path.spacing, length / count);
+    path.spacing = std::max(path.spacing, length / static_cast<double>(count));
     way += length;
   }
   return path;
