@@ -426,11 +426,8 @@ private:
         "{} steps, {} contacts at the end, largest overlap {:.3g} m, energy residual {:.3g} J/m, "
         "{:.3g} s in the step loop",
         summary.steps, summary.contacts, summary.max_overlap, summary.energy.residual, summary.wall_s));
-    if (!summary.bolts.empty()) {
-      log_->line(words_on_loads(summary.bolts));
-    }
-    if (!summary.liners.empty()) {
-      log_->line(words_on_loads(summary.liners));
+    for (const std::string &words : words_on_support(summary, simulation_.scene())) {
+      log_->line(words);
     }
     log_->line((failed ? "error: " : "") + summary.verdict + ": " + summary.message + "; results in " +
                directory_.string());

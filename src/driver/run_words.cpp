@@ -140,6 +140,8 @@ std::string words_on_stage(const std::string &name, const StageResult &result) {
                                                      result.loose == 1 ? "" : "s"));
 }
 
+namespace {
+
 std::string words_on_loads(const std::vector<BoltLoad> &loads) {
   const auto most = [&](double BoltLoad::*force) {
     return *std::max_element(loads.begin(), loads.end(),
@@ -177,6 +179,39 @@ std::string words_on_loads(const std::vector<LinerLoad> &loads) {
       thrust.compression, thrust.last.name, moment.moment, moment.last.name, shear.shear, shear.last.name,
       sum(&LinerHistoryRow::elements), sum(&LinerHistoryRow::cracked), sum(&LinerHistoryRow::yielded),
       sum(&LinerHistoryRow::broken));
+}
+
+void warn_of_thrust(const LinerLoad &load, const Scene &scene, std::vector<std::string> &words) {
+  constexpr double strong_concrete = 60e6; // Pa
+  const auto support = std::find_if(scene.supports.begin(), scene.supports.end(),
+                                    [&](const SupportType &type) { return type.name == load.support; });
+  if (support == scene.supports.end() || support->compressive_strength < SupportType::unlimited ||
+      load.compression <= strong_concrete * support->thickness) {
+    return;
+  }
+  words.push_back(to_string(
+      Diagnostic{Severity::warning,
+                 {},
+                 fmt::format("liner '{}' has borne a thrust of {:.3g} MPa over its thickness", load.last.name,
+                             1e-6 * load.compression / support->thickness),
+                 "shotcrete and concrete bear 10 to 60 MPa",
+                 fmt::format("give support.{}.compressive_strength, or put it in later", load.support)}));
+}
+
+} // namespace
+
+std::vector<std::string> words_on_support(const RunSummary &summary, const Scene &scene) {
+  std::vector<std::string> words;
+  for (const LinerLoad &load : summary.liners) {
+    warn_of_thrust(load, scene, words);
+  }
+  if (!summary.bolts.empty()) {
+    words.push_back(words_on_loads(summary.bolts));
+  }
+  if (!summary.liners.empty()) {
+    words.push_back(words_on_loads(summary.liners));
+  }
+  return words;
 }
 
 std::string words_on_bolts(const Simulation &simulation) {

@@ -30,10 +30,9 @@ std::string words_on_progress(const Simulation &simulation, const EnergyRow &ene
 /// @param directory  of the run; empty where nobody can go on from it
 void tell_end(const Simulation &simulation, const std::filesystem::path &directory, RunSummary &summary);
 
-/// The most loaded bolts, and how many have yielded and broken.
-std::string words_on_loads(const std::vector<BoltLoad> &loads);
-/// The most loaded liners, and how many elements have cracked, yielded and broken.
-std::string words_on_loads(const std::vector<LinerLoad> &loads);
+/// The most loaded bolts and liners, how many have cracked, yielded and broken, and which liners without a
+/// compressive_strength have borne more than concrete can.
+std::vector<std::string> words_on_support(const RunSummary &summary, const Scene &scene);
 
 /// How many bolts there are, and what they do to the step.
 std::string words_on_bolts(const Simulation &simulation);

@@ -141,6 +141,7 @@ def test_liners(lined, leaning):
     assert list(last["broken"]) == [0, 2]
     assert [load["name"] for load in lined.summary["liners"]] == ["strong", "liner1"]
     assert lined.histories == []
+    assert lined.to_vtkhdf(lined.path / "elements.vtkhdf", kind="liners").stat().st_size > 1000
     assert not len(leaning.liners) and not len(leaning.frame("last").liners)
 
 
