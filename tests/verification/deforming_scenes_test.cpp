@@ -66,7 +66,8 @@ INSTANTIATE_TEST_SUITE_P(
     Shipped, DeformingScenes,
     ::testing::Values(
         Case{"bolted_tunnel", {}, 1}, Case{"goodman_bray", {"run.duration=3.0", "run.gravity_ramp=0.5"}},
-        Case{"incline"}, Case{"lined_tunnel", {}, 1}, Case{"jointed_bench", {"run.duration=0.05", "output.interval=0.05"}}, Case{"kinds"},
+        Case{"incline"}, Case{"lined_tunnel", {}, 1},
+        Case{"jointed_bench", {"run.duration=0.05", "output.interval=0.05"}}, Case{"kinds"},
         Case{"masonry_wall", {}, 3}, Case{"opening"}, Case{"overhang", {"run.duration=1.0"}},
         Case{"plane_failure"}, Case{"rock_mass", {"region.polygon=[[0, 0], [8, 0], [8, 6], [0, 6]]"}},
         Case{"rockfall", {"run.duration=2.0"}}, Case{"seismic_slope", {}, 1},
