@@ -58,6 +58,14 @@ origin = [2, 0]
 rows = 2
 columns = 2
 block_size = [0.5, 0.25]
+[support.layer]
+kind = "liner"
+thickness = 0.1
+youngs_modulus = 2e10
+[[liner]]
+name = "face"
+support = "layer"
+points = [[-1, 0], [2, 0]]
 [[monitor]]
 block = "slider"
 )";
@@ -70,7 +78,8 @@ TEST(UnfitChanges, AreNoneWhereAStateGoesOn) {
         "run.safety=0.1", "run.contact_damping=0.2", "run.local_damping=0.5", "run.potential=linear",
         "run.elasticity=explicit", "joint.default.friction_angle_deg=20", "joint.default.cohesion=1e3",
         "joint.default.normal_stiffness=2e9", "output.interval=0.2", "output.checkpoint_interval=0.2",
-        "output.contacts=false", "block.slider.load=[{point=[0.5, 1], force=[0, -1e4]}]"}) {
+        "output.contacts=false", "support.layer.compressive_strength=3e7",
+        "block.slider.load=[{point=[0.5, 1], force=[0, -1e4]}]"}) {
     EXPECT_TRUE(unfit_changes(before, scene_of(scene_text, {set})).empty()) << set;
   }
 }
@@ -92,6 +101,8 @@ TEST(UnfitChanges, AreNamedEachWithReasonAndHint) {
            {"block.slider.fixed=true", "block 'slider'"},
            {"block.slider.fixed_points=[[0.5, 0.5]]", "block 'slider'"},
            {"block.slider.fidelity=rigid", "block 'slider'"},
+           {"liner.face.points=[[0, 0], [2, 0]]", "liners that are there, or put in others at the start"},
+           {"liner.face.active=false", "liners that are there, or put in others at the start"},
            {"wall.w.gap=0.1", "'w'"},
            {"wall.w.rows=3", "'w'"},
            {"pyramid=[{material=\"rock\", origin=[9, 9], rows=1, block_size=[1, 1]}]",
