@@ -117,6 +117,17 @@ void Bolts::install(const Communicator &communicator, const Scene &scene, const 
   find_ends(communicator, system, first);
 }
 
+void Bolts::install_liners(const Communicator &communicator, const Scene &scene, const BlockSystem &system,
+                           std::span<const std::int64_t> which, Diagnostics &notes) {
+  if (which.empty()) {
+    return;
+  }
+  const std::size_t first = links_.size();
+  const std::vector<BoltLink> elements = lay_liners(communicator, scene, system, which, notes);
+  links_.insert(links_.end(), elements.begin(), elements.end());
+  find_ends(communicator, system, first);
+}
+
 // The owner of a block knows its axes; fixed ones are the same everywhere.
 void Bolts::find_ends(const Communicator &communicator, const BlockSystem &system, std::size_t first) {
   std::vector<EndRecord> mine;
@@ -350,6 +361,34 @@ std::vector<LinkLine> Bolts::lines(const Communicator &communicator, const Block
     all.insert(all.end(), theirs.begin(), theirs.end());
   }
   std::sort(all.begin(), all.end(), [](const LinkLine &a, const LinkLine &b) { return a.link < b.link; });
+  return all;
+}
+
+std::vector<statics::ContactSpring> Bolts::liner_springs(const BlockSystem &system) const {
+  std::vector<statics::ContactSpring> springs;
+  for (const Here &here : here_) {
+    const BoltLink &link = links_[here.link];
+    if (link.liner >= 0 && !link.memory.broken) {
+      springs.push_back(spring_of(system, link, here.rows, laws_[here.link]));
+    }
+  }
+  return springs;
+}
+
+std::vector<LinerLine> Bolts::liner_lines(const Communicator &communicator, const BlockSystem &system) const {
+  std::vector<LinerLine> mine;
+  for (const Here &here : here_) {
+    const BoltLink &link = links_[here.link];
+    if (here.counts && link.liner >= 0) {
+      mine.push_back(line_of(system, link, here.rows, laws_[here.link]));
+      mine.back().link = here.link;
+    }
+  }
+  std::vector<LinerLine> all;
+  for (const auto &theirs : communicator.all_gather(mine)) {
+    all.insert(all.end(), theirs.begin(), theirs.end());
+  }
+  std::sort(all.begin(), all.end(), [](const LinerLine &a, const LinerLine &b) { return a.link < b.link; });
   return all;
 }
 

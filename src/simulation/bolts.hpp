@@ -14,7 +14,7 @@
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "parallel/ghosts.hpp"
-#include "statics/springs.hpp"
+#include "simulation/liners.hpp"
 
 #include <array>
 #include <cstdint>
@@ -47,16 +47,6 @@ struct BoltReport {
   std::int64_t links = 0;
   std::int64_t yielded = 0; ///< links that have yielded, broken ones included
   std::int64_t broken = 0;
-};
-
-/// An element of a liner as a line from node to node; rock lies on the right.
-struct LinerLine {
-  std::uint32_t link = 0;     ///< index into Bolts::links()
-  std::array<Vec2, 2> points; ///< m
-  LinkMemory memory;
-  /// At both nodes, positive where the side of the rock is in tension, N.
-  std::array<double, 2> moments{};
-  double strength_used = 0.0; ///< largest share; 1 where it is broken
 };
 
 /// What a link does to an owned row at the last evaluation.

@@ -1,6 +1,5 @@
-// Liners among the links of a run: how they are put in, and what they bear.
+#include "simulation/liners.hpp"
 
-#include "simulation/bolts.hpp"
 #include "simulation/liner_face.hpp"
 
 #include <algorithm>
@@ -104,17 +103,15 @@ void note_liner(const Lining &lining, std::size_t side, const LinerElements &ele
 
 } // namespace
 
-void Bolts::install_liners(const Communicator &communicator, const Scene &scene, const BlockSystem &system,
-                           std::span<const std::int64_t> which, Diagnostics &notes) {
-  if (which.empty()) {
-    return;
-  }
+std::vector<BoltLink> lay_liners(const Communicator &communicator, const Scene &scene,
+                                 const BlockSystem &system, std::span<const std::int64_t> which,
+                                 Diagnostics &notes) {
+  std::vector<BoltLink> links;
   std::vector<Lining> linings;
   for (const std::int64_t index : which) {
     linings.push_back(lining_of(scene, index));
   }
   find_faces(communicator, system, linings);
-  const std::size_t first = links_.size();
   for (std::size_t k = 0; k < linings.size(); ++k) {
     const Lining &lining = linings[k];
     const std::array<std::int64_t, 2> faces{lining.count(0, true), lining.count(1, true)};
@@ -129,65 +126,44 @@ void Bolts::install_liners(const Communicator &communicator, const Scene &scene,
     const LinerElements elements =
         elements_of(which[k], lining.path[side], support.thickness, lining.hits[side]);
     note_liner(lining, side, elements, notes);
-    links_.insert(links_.end(), elements.links.begin(), elements.links.end());
+    links.insert(links.end(), elements.links.begin(), elements.links.end());
   }
-  find_ends(communicator, system, first);
+  return links;
 }
 
 // The normal of the spring is across the element: its `bending` is then the angle between the two convected
 // directions of the element, also of blocks that shear.
-std::vector<statics::ContactSpring> Bolts::liner_springs(const BlockSystem &system) const {
-  std::vector<statics::ContactSpring> springs;
-  for (const Here &here : here_) {
-    const BoltLink &link = links_[here.link];
-    if (link.liner < 0 || link.memory.broken) {
-      continue;
-    }
-    const LinkLaw &law = laws_[here.link];
-    const LinkPose pose = pose_of(system, link, here.rows);
-    const Vec2 middle = 0.5 * (trial_position(system, here.rows[0], link.end[0].point) +
-                               trial_position(system, here.rows[1], link.end[1].point));
-    statics::ContactSpring &spring = springs.emplace_back();
-    spring.lower = static_cast<std::uint32_t>(here.rows[0]);
-    spring.higher = static_cast<std::uint32_t>(here.rows[1]);
-    spring.normal = pose.tangent;
-    spring.lower_arm = middle - system.motion[here.rows[0]].centroid;
-    spring.higher_arm = middle - system.motion[here.rows[1]].centroid;
-    spring.normal_stiffness = law.shear_stiffness;
-    spring.tangential = law.axial_stiffness;
-    spring.bending = law.bending_stiffness;
-  }
-  return springs;
+statics::ContactSpring spring_of(const BlockSystem &system, const BoltLink &link,
+                                 const std::array<std::size_t, 2> &rows, const LinkLaw &law) {
+  const Vec2 middle = 0.5 * (trial_position(system, rows[0], link.end[0].point) +
+                             trial_position(system, rows[1], link.end[1].point));
+  statics::ContactSpring spring;
+  spring.lower = static_cast<std::uint32_t>(rows[0]);
+  spring.higher = static_cast<std::uint32_t>(rows[1]);
+  spring.normal = pose_of(system, link, rows).tangent;
+  spring.lower_arm = middle - system.motion[rows[0]].centroid;
+  spring.higher_arm = middle - system.motion[rows[1]].centroid;
+  spring.normal_stiffness = law.shear_stiffness;
+  spring.tangential = law.axial_stiffness;
+  spring.bending = law.bending_stiffness;
+  return spring;
 }
 
-std::vector<LinerLine> Bolts::liner_lines(const Communicator &communicator, const BlockSystem &system) const {
-  std::vector<LinerLine> mine;
-  for (const Here &here : here_) {
-    const BoltLink &link = links_[here.link];
-    if (!here.counts || link.liner < 0) {
-      continue;
-    }
-    const std::size_t head = link.head_first ? 0 : 1;
-    const LinkMemory &memory = link.memory;
-    const LinkLaw &law = laws_[here.link];
-    LinerLine &line = mine.emplace_back();
-    line.link = here.link;
-    line.memory = memory;
-    line.points = {trial_position(system, here.rows[head], link.end[head].point),
-                   trial_position(system, here.rows[1 - head], link.end[1 - head].point)};
-    const double constant = link.head_first ? memory.moment : -memory.moment;
-    const double linear = 0.5 * law.length * memory.shear;
-    line.moments = {constant + linear, constant - linear};
-    line.strength_used = memory.broken ? 1.0
-                                       : strength_used(law.section, memory.cracked, law.length,
-                                                       {memory.axial, memory.shear, memory.moment});
-  }
-  std::vector<LinerLine> all;
-  for (const auto &theirs : communicator.all_gather(mine)) {
-    all.insert(all.end(), theirs.begin(), theirs.end());
-  }
-  std::sort(all.begin(), all.end(), [](const LinerLine &a, const LinerLine &b) { return a.link < b.link; });
-  return all;
+LinerLine line_of(const BlockSystem &system, const BoltLink &link, const std::array<std::size_t, 2> &rows,
+                  const LinkLaw &law) {
+  const std::size_t head = link.head_first ? 0 : 1;
+  const LinkMemory &memory = link.memory;
+  LinerLine line;
+  line.memory = memory;
+  line.points = {trial_position(system, rows[head], link.end[head].point),
+                 trial_position(system, rows[1 - head], link.end[1 - head].point)};
+  const double constant = link.head_first ? memory.moment : -memory.moment;
+  const double linear = 0.5 * law.length * memory.shear;
+  line.moments = {constant + linear, constant - linear};
+  line.strength_used = memory.broken ? 1.0
+                                     : strength_used(law.section, memory.cracked, law.length,
+                                                     {memory.axial, memory.shear, memory.moment});
+  return line;
 }
 
 } // namespace gcpdda

@@ -229,7 +229,7 @@ class Frame:
 
     @functools.cached_property
     def liner_lines(self):
-        """Both nodes of each element of a liner, (n, 2, 2), in m; the rock lies on the right of the way between them."""
+        """Both nodes of each element of a liner, (n, 2, 2), in m; the rock is on the right of the way between them."""
         return self._liner_data[0]
 
     @functools.cached_property

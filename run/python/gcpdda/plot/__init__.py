@@ -13,7 +13,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import over_time, style
-from .layers import FIELDS, LINERS, Arrows, Blocks, Bolts, Chains, Crosses, JointLines, JointStates, Layer, Liners, Shown
+from .layers import (FIELDS, LINERS, Arrows, Blocks, Bolts, Chains, Crosses, JointLines, JointStates, Layer, Liners,
+                     Shown)
 from .water import Pressure, Water
 
 __all__ = ["Plots", "FIELDS", "JOINTS", "ARROWS", "HISTORIES", "Layer"]
@@ -85,7 +86,8 @@ class Plots:
         """Times and PNG images of at most so many frames, all of one size and with one scale: what a player shows."""
         every = -(-len(self.result.frames) // most)
         frames = self.result.frames[::-every][::-1]
-        shown, layers, limits = self._prepared(frames, [Blocks(field), Water(), Liners(frames), Bolts(frames)], 1.0, window)
+        layers = [Blocks(field), Water(), Liners(frames), Bolts(frames)]
+        shown, layers, limits = self._prepared(frames, layers, 1.0, window)
         figure, (axes,) = style.map_figure(1, limits, layers)
         for one in shown:
             _clear(axes)

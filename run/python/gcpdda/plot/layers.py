@@ -527,7 +527,8 @@ class Liners(Layer):
         across = np.stack([-way[:, 1], way[:, 0]], axis=1)  # into the void
         across /= np.maximum(np.hypot(*across.T), 1e-300)[:, None]
         width = np.maximum(table["thickness"].to_numpy(), self.least_width * self.size)[:, None]
-        corners = np.stack([lines[:, 0], lines[:, 1], lines[:, 1] + width * across, lines[:, 0] + width * across], axis=1)
+        begin, end = lines[:, 0], lines[:, 1]
+        corners = np.stack([begin, end, end + width * across, begin + width * across], axis=1)
         whole = (table["state"] != "broken").to_numpy()
         colours = self.scale.to_rgba(self.values_of(table).to_numpy() * self.factor)
         axes.add_collection(PolyCollection(corners[whole], facecolors=colours[whole], edgecolors=style.EDGE,
@@ -562,6 +563,6 @@ class Liners(Layer):
             marks.append(Line2D([], [], ls="", marker="x", ms=5, mec=style.OUTLINE, label="liner broken"))
         if self.moments and self.largest_moment > 0.0:
             factor, unit = style.unit_prefix("N m/m", self.largest_moment)
-            marks.append(Patch(fc=(0.13, 0.45, 0.73, 0.35), ec="#1f5fae", lw=0.6,
-                               label=f"moment on the side in tension, largest {self.largest_moment * factor:.3g} {unit}"))
+            label = f"moment on the side in tension, largest {self.largest_moment * factor:.3g} {unit}"
+            marks.append(Patch(fc=(0.13, 0.45, 0.73, 0.35), ec="#1f5fae", lw=0.6, label=label))
         return marks

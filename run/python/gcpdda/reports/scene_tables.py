@@ -13,8 +13,8 @@ LOADS = ("water", "in_situ", "earthquake", "support", "bolt", "bolt_pattern", "l
 NAMES = {"region": "Region", "joint_set": "Joint sets", "fault": "Faults", "joint_map": "Mapped traces",
          "opening": "Openings", "layer": "Layers", "voronoi": "Voronoi polygons", "bricks": "Masonry", "wall": "Walls",
          "pyramid": "Pyramids", "blocks": "Block file", "water": "Water", "in_situ": "In-situ stress",
-         "earthquake": "Earthquake", "support": "Types of support", "bolt": "Bolts", "bolt_pattern": "Patterns of bolts",
-         "liner": "Liners"}
+         "earthquake": "Earthquake", "support": "Types of support", "bolt": "Bolts",
+         "bolt_pattern": "Patterns of bolts", "liner": "Liners"}
 UNITS = {"density": "kg/m3", "youngs_modulus": "Pa", "normal_stiffness": "Pa/m", "friction_angle_deg": "°",
          "cohesion": "Pa", "tension": "Pa", "residual_friction_angle_deg": "°", "residual_cohesion": "Pa",
          "dilation_angle_deg": "°", "dilation_limit": "m", "jcs": "Pa", "dip_deg": "°", "spacing": "m",
