@@ -19,8 +19,8 @@ PLOT = """Pictures and animations of a run: blocks coloured by a field, joints, 
 
 Fixed blocks are grey and hatched, phreatic lines blue and dashed. Bolts are coloured by their tension, joint by joint,
 with a dot where they have yielded and dashed where they are broken. Liners are drawn in their thickness, coloured by
-their thrust (--liners), with a dot where they have cracked and a cross where they are broken. Panels and pictures of one
-call share axes and scales, which fit the window that is shown.
+their thrust (--liners), with a dot where they have cracked and a cross where they are broken. Panels and pictures of
+one call share axes and scales, which fit the window that is shown.
 """
 
 
