@@ -61,7 +61,7 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.blocks = read_blocks(source, materials, names, fidelity, scene.joints);
   scene.generators = read_generators(source, materials, names, fidelity, scene.blocks);
   scene.block_file = read_block_file_table(source, materials, fidelity, file);
-  scene.region = read_region(source, materials, scene.joints, file);
+  scene.region = read_region(source, materials, fidelity, scene.joints, file);
   scene.supports = read_supports(source);
   scene.bolts = read_bolts(source, scene);
   scene.liners = read_liners(source, scene);

@@ -25,9 +25,9 @@ constexpr std::array<const char *, 7> lists{"joint_set", "fault",   "joint_map",
 
 class RegionReader {
 public:
-  RegionReader(const SceneSource &source, Materials &materials, const JointLaws &joints,
+  RegionReader(const SceneSource &source, Materials &materials, Fidelity of_run, const JointLaws &joints,
                const std::string &scene_file)
-      : source_(source), materials_(&materials), joints_(&joints), scene_file_(scene_file) {}
+      : source_(source), materials_(&materials), of_run_(of_run), joints_(&joints), scene_file_(scene_file) {}
 
   RockRegion read() {
     if (source_.root.get("region") == nullptr) {
@@ -36,7 +36,7 @@ public:
     }
     const Section section = scene_text::section(source_.root, "region", source_.faulty);
     region_.where = position(section);
-    region_.material = std::max(0, materials_->find(section));
+    region_.material = material_of(section);
     read_outline(section);
     region_.joint_sets = read_joint_sets(source_, section, *joints_);
     section.read("azimuth", region_.azimuth);
@@ -219,11 +219,19 @@ private:
     return !needed || section.sound(key) != nullptr;
   }
 
+  std::int32_t material_of(const Section &section) {
+    const std::int32_t material = materials_->find(section);
+    if (of_run_ == Fidelity::deformable && section.given("material") != nullptr) {
+      materials_->expect_elastic(material, section.label(), *section.given("material"));
+    }
+    return std::max(0, material);
+  }
+
   void read_layers() {
     for (const Section &section : all("layer")) {
       Layer layer;
       layer.joint = joint_of(section);
-      layer.material = std::max(0, materials_->find(section));
+      layer.material = material_of(section);
       layer.where = position(section);
       if (read_polygon(source_, section, "polygon", layer.outline)) {
         region_.layers.push_back(std::move(layer));
@@ -325,6 +333,7 @@ private:
 
   SceneSource source_;
   Materials *materials_;
+  Fidelity of_run_;
   const JointLaws *joints_;
   std::string scene_file_;
   RockRegion region_;
@@ -332,9 +341,9 @@ private:
 
 } // namespace
 
-RockRegion read_region(const SceneSource &source, Materials &materials, const JointLaws &joints,
-                       const std::string &scene_file) {
-  return RegionReader(source, materials, joints, scene_file).read();
+RockRegion read_region(const SceneSource &source, Materials &materials, Fidelity of_run,
+                       const JointLaws &joints, const std::string &scene_file) {
+  return RegionReader(source, materials, of_run, joints, scene_file).read();
 }
 
 } // namespace gcpdda::scene_text

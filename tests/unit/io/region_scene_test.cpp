@@ -308,6 +308,20 @@ TEST(RegionScene, SizeIsJudgedByExtentAndSpacing) {
                "vertex with a wrong coordinate"}));
 }
 
+TEST(RegionScene, DeformsOnlyWithAnElasticMaterial) {
+  const std::string layer = "[[layer]]\nmaterial = \"clay\"\npolygon = [[0, 0], [0, 1], [20, 1], [20, 0]]\n";
+  EXPECT_EQ(
+      faults(head + region + layer, {"run.fidelity=deformable"}),
+      (Strings{
+          "13:12: error: [region] is deformable but its material 'rock' has neither youngs_modulus "
+          "nor poissons_ratio, a deformable block has its stiffness from both, for example "
+          "youngs_modulus = 40e9 and poissons_ratio = 0.25 in [material.rock]",
+          "15:12: error: layer 'layer0' is deformable but its material 'clay' has neither youngs_modulus "
+          "nor poissons_ratio, a deformable block has its stiffness from both, for example "
+          "youngs_modulus = 40e9 and poissons_ratio = 0.25 in [material.clay]"}));
+  EXPECT_EQ(faults(head + region + layer, {"run.fidelity=rigid"}), Strings{});
+}
+
 TEST(RegionScene, FaultsAreNamedWithTheirPlaces) {
   EXPECT_EQ(
       faults(head + "[region]\npolygon = [[0, 0], [1, 1], [1, 0], [0, 1]]\nmaterial = \"rock\"\n"),
