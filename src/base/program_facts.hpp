@@ -7,7 +7,7 @@
 
 namespace gcpdda {
 
-/// The project's version, with the description that git gave when the build was configured: "0.1.0+4f63e1a".
+/// The project's version, with the description that git gave when the build was configured: "1.0.0+4f63e1a".
 /// Only the project's version where the sources are not in a git repository.
 std::string program_version();
 

@@ -83,7 +83,7 @@ TEST_F(ResultFiles, HistoryOnAFullDiskIsAFileError) {
 
 TEST_F(ResultFiles, SummaryIsJson) {
   RunSummary summary;
-  summary.version = "0.1.0+4f63e1a";
+  summary.version = "1.0.0+4f63e1a";
   summary.command = "gcpdda run 'a \\ b.toml'";
   summary.ranks = 3;
   summary.time_step = 1e-5;
@@ -96,7 +96,7 @@ TEST_F(ResultFiles, SummaryIsJson) {
   write_summary(folder_, summary);
   const std::string text = read_text(folder_ / "summary.json");
   for (const char *part :
-       {R"({"version": "0.1.0+4f63e1a",)", R"("command": "gcpdda run 'a \\ b.toml'",)", "\"ranks\": 3,",
+       {R"({"version": "1.0.0+4f63e1a",)", R"("command": "gcpdda run 'a \\ b.toml'",)", "\"ranks\": 3,",
         "\"time_step\": 1e-05,", "\"max_overlap\": null,", "\"evaluations_per_rank\": [10, 20, 30],",
         "\"energy\": {\"kinetic\": 0", "\"max_speed\": 0}",
         "\"phases\": {\"forces\": {\"min\": 1, \"mean\": 2, \"max\": 4.5}}",
