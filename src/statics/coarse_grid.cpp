@@ -84,6 +84,7 @@ bool CoarseGrid::lay_cells(const BlockSystem &system) {
   }
   origin_ = {-minus_left, -minus_low};
   side_ = blocks_a_side * std::sqrt(area.value() / static_cast<double>(count));
+  per_side_ = 1.0 / side_;
   columns_ = static_cast<std::int64_t>((right + minus_left) / side_) + 1;
   return true;
 }
@@ -97,6 +98,7 @@ void CoarseGrid::lay(const BlockSystem &system) {
   keys_.clear();
   cell_of_.assign(system.num_rows(), -1);
   arms_.assign(system.num_rows(), {});
+  on_cells_.resize(system.num_owned);
   if (!lay_cells(system)) {
     return;
   }
@@ -122,7 +124,7 @@ void CoarseGrid::lay(const BlockSystem &system) {
 CoarseGrid::Three CoarseGrid::to_cell(const BlockSystem &system, std::size_t row,
                                       const double *forces) const {
   const double moment = system.is_deformable(row) ? forces[4] - forces[3] : forces[2];
-  return {forces[0], forces[1], moment / side_ + cross(arms_[row], Vec2{forces[0], forces[1]})};
+  return {forces[0], forces[1], moment * per_side_ + cross(arms_[row], Vec2{forces[0], forces[1]})};
 }
 
 std::array<CoarseGrid::Three, 3> CoarseGrid::forces_on_cell(std::size_t row, Vec2 arm, Vec2 normal) const {
@@ -297,7 +299,8 @@ void CoarseGrid::restrict_to_cells(const BlockSystem &system, const Field &r) {
   double largest = 0.0;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (has_cell(row)) {
-      for (const double value : to_cell(system, row, r.of(row))) {
+      on_cells_[row] = to_cell(system, row, r.of(row));
+      for (const double value : on_cells_[row]) {
         largest = std::max(largest, std::abs(value));
       }
     }
@@ -309,7 +312,7 @@ void CoarseGrid::restrict_to_cells(const BlockSystem &system, const Field &r) {
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (has_cell(row)) {
       std::int64_t *to = sums_.data() + first_unknown(row);
-      for (const double value : to_cell(system, row, r.of(row))) {
+      for (const double value : on_cells_[row]) {
         *to++ += std::llrint(value * per_one);
       }
     }
@@ -332,7 +335,7 @@ void CoarseGrid::add_correction(const BlockSystem &system, const Field &r, Field
       double *const to = z.of(row);
       to[0] += motion[0] - motion[2] * arms_[row].y;
       to[1] += motion[1] + motion[2] * arms_[row].x;
-      const double turn = motion[2] / side_;
+      const double turn = motion[2] * per_side_;
       if (system.is_deformable(row)) {
         to[3] -= turn;
         to[4] += turn;

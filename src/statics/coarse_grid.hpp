@@ -80,10 +80,12 @@ private:
   Communicator communicator_;
   Vec2 origin_;
   double side_ = 1.0;
+  double per_side_ = 1.0;
   std::int64_t columns_ = 1;
   std::vector<std::int64_t> keys_;    ///< of the cells that hold a mobile block of any rank, ascending
   std::vector<std::int32_t> cell_of_; ///< by row; -1: the row does not move
   std::vector<Vec2> arms_;            ///< by row: of the centroid from the middle of the cell, over the side
+  std::vector<Three> on_cells_;       ///< by owned row: its part of P^T r
   std::vector<std::int64_t> pattern_; ///< key_of() of the blocks of K_c, ascending
   std::vector<std::int64_t> sums_;    ///< of a block of K_c, or of P^T r, in units
   std::unique_ptr<Factors> factors_;

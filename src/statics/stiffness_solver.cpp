@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 namespace gcpdda::statics {
 
 namespace {
 
-template <std::size_t width> ExactSum products(std::span<const RowRun> rows, const Field &a, const Field &b) {
-  ExactSum sum;
+template <std::size_t width, class Visit>
+void for_row_products(std::span<const RowRun> rows, const Field &a, const Field &b, Visit &&visit) {
   const double *const x = a.values().data();
   const double *const y = b.values().data();
   for_rows(rows, [&](std::size_t row) {
@@ -19,7 +20,16 @@ template <std::size_t width> ExactSum products(std::span<const RowRun> rows, con
     for (std::size_t i = 1; i < width; ++i) {
       product += x[row * width + i] * y[row * width + i];
     }
-    sum.add(product);
+    visit(product);
+  });
+}
+
+template <std::size_t width>
+std::uint64_t sum_in_units(std::span<const RowRun> rows, const Field &a, const Field &b, double per_unit) {
+  constexpr double most = 0x1p62;
+  std::uint64_t sum = 0; // that parts of a sum run over does not matter, the whole is small
+  for_row_products<width>(rows, a, b, [&](double product) {
+    sum += static_cast<std::uint64_t>(std::llrint(std::clamp(product * per_unit, -most, most)));
   });
   return sum;
 }
@@ -28,9 +38,22 @@ template <std::size_t width> ExactSum products(std::span<const RowRun> rows, con
 
 double exact_product(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
                      const Field &b) {
-  ExactSum sum = a.width() == 3 ? products<3>(rows, a, b) : products<6>(rows, a, b);
+  ExactSum sum;
+  const auto add = [&](double product) { sum.add(product); };
+  a.width() == 3 ? for_row_products<3>(rows, a, b, add) : for_row_products<6>(rows, a, b, add);
   communicator.sum(sum.limbs());
   return sum.value();
+}
+
+double product_near(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
+                    const Field &b, double size) {
+  const int exponent = std::ilogb(size) - 44;
+  const double per_unit = std::ldexp(1.0, -exponent);
+  const std::uint64_t mine =
+      a.width() == 3 ? sum_in_units<3>(rows, a, b, per_unit) : sum_in_units<6>(rows, a, b, per_unit);
+  auto sum = static_cast<std::int64_t>(mine);
+  communicator.sum(std::span(&sum, 1));
+  return std::ldexp(static_cast<double>(sum), exponent);
 }
 
 void StiffnessSolver::lay(const BlockSystem &system, std::vector<RowRun> moving, BlockMatrices mass,
@@ -116,7 +139,7 @@ std::int64_t StiffnessSolver::solve(const BlockSystem &system, const ContactSpri
   while (size > enough && products < most_products) {
     multiply(system, springs, p_, q_);
     ++products;
-    const double curvature = exact_product(communicator_, moving_, p_, q_);
+    const double curvature = product_near(communicator_, moving_, p_, q_, size);
     if (!(curvature > 0.0)) {
       break;
     }
@@ -126,7 +149,7 @@ std::int64_t StiffnessSolver::solve(const BlockSystem &system, const ContactSpri
       r[i] -= step * q[i];
     });
     precondition(system, r_, z_);
-    const double before = std::exchange(size, exact_product(communicator_, moving_, r_, z_));
+    const double before = std::exchange(size, product_near(communicator_, moving_, r_, z_, size));
     const double share = size / before;
     for_places(moving_, width, [&](std::size_t i) { p[i] = z[i] + share * p[i]; });
   }

@@ -12,7 +12,8 @@
 //
 // Same bits on any number of ranks: a block sums its springs in the order of its partners' ids, border
 // springs are on both ranks, search directions of ghosts are copies of their owners', and the two inner
-// products of an iteration are exact sums of one number a block.
+// products of an iteration are sums of one number a block, as integers in units of 2^-44 of the product
+// before: one word a reduction, and a rounding far below what the iteration leaves.
 
 #include "statics/block_stiffness.hpp"
 #include "statics/border_rows.hpp"
@@ -66,8 +67,12 @@ private:
   Field q_;
 };
 
-/// Sum over rows of products of two fields. Collective.
+/// Sum over rows of products of two fields, to the last bit. Collective.
 double exact_product(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
                      const Field &b);
+/// The same in units of 2^-44 of a number of its size, which is positive and the same on all ranks; what a
+/// row adds is at most 2^18 times that. Collective.
+double product_near(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
+                    const Field &b, double size);
 
 } // namespace gcpdda::statics

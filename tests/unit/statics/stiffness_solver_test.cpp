@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 #include <utility>
 #include <vector>
@@ -106,6 +107,33 @@ TEST(StiffnessSolver, AgreesWithADenseFactorisationOfDeformableBlocks) {
 
 // The coarse level carries what spans the pile: without its cells the number of products grows with the
 // height of a column, and with them hardly.
+// Each row is rounded to 2^-45 of the size at most. Sums of parts are the sum of all, as on several ranks.
+TEST(StiffnessSolver, ProductsInUnitsAreThoseToTheLastBitButForTheirRounding) {
+  constexpr std::size_t num_rows = 1000;
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> numbers(-1.0, 1.0);
+  const Communicator self = Communicator::self();
+  for (const std::size_t width : {std::size_t{3}, std::size_t{6}}) {
+    statics::Field a(num_rows, width);
+    statics::Field b(num_rows, width);
+    for (std::size_t i = 0; i < a.values().size(); ++i) {
+      a.values()[i] = 1e6 * numbers(engine);
+      b.values()[i] = a.values()[i] + 1e3 * numbers(engine);
+    }
+    const std::vector<statics::RowRun> all{{0, num_rows}};
+    const double exact = statics::exact_product(self, all, a, b);
+    for (const double size : {exact, 0.3 * exact, 1e3 * exact}) {
+      const double rounded = statics::product_near(self, all, a, b, size);
+      EXPECT_NEAR(rounded, exact, num_rows * std::ldexp(size, -45)) << size;
+      const std::vector<statics::RowRun> first{{0, 137}};
+      const std::vector<statics::RowRun> others{{137, num_rows}};
+      EXPECT_EQ(statics::product_near(self, first, a, b, size) +
+                    statics::product_near(self, others, a, b, size),
+                rounded);
+    }
+  }
+}
+
 TEST(StiffnessSolver, ProductsHardlyGrowWithTheHeight) {
   const auto products_of = [](int height) {
     Problem problem(wall(height, 4, [](std::size_t) { return false; }), 1e-3);
