@@ -61,7 +61,9 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time,
     const StageResult &stage = outcome.summary.stages.back().result;
     facts.verdict =
         static_cast<std::int64_t>(outcome.exit_code == exit_code::done ? stage.verdict : Verdict::undecided);
-    facts.first_block = watches && outcome.exit_code == exit_code::done
+    const bool are_two =
+        watches && stage.means != VerdictMeans::static_solver; // that sees all blocks at rest
+    facts.first_block = are_two && outcome.exit_code == exit_code::done
                             ? static_cast<std::int64_t>(stage.first_block)
                             : facts.verdict;
     facts.moved = stage.moved;
