@@ -95,6 +95,7 @@ double PseudoTime::power(const BlockSystem &system) const {
 
 void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                              const ContactForces &contacts, double overlap, IterationState &state) {
+  rules_.springs.slides_fade = load_share(state.evaluations) >= 1.0;
   springs_.update(system, candidates, history, contacts, rules_.springs);
   find_standing(system);
   gather(system, load_share(state.evaluations));

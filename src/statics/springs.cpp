@@ -43,7 +43,8 @@ SpringMemory moved_on(SpringMemory memory, const RegionState &state, double cap,
     if (memory.side != 0 && memory.side != side) {
       memory.turned = rules.turn_memory;
     }
-    memory.slid_for = static_cast<std::uint8_t>(memory.turned == 0 ? std::min(memory.slid_for + 1, 255) : 0);
+    memory.slid_for = static_cast<std::uint8_t>(
+        memory.turned == 0 && rules.slides_fade ? std::min(memory.slid_for + 1, 255) : 0);
     memory.side = side;
   } else {
     memory.slid_for = 0;

@@ -19,7 +19,8 @@
 //   none its blocks would run as far as their mass lets them. A mechanism near its limit slides on with a
 //   force that hardly changes, held back by these springs alone. Where a region has slipped to one side for
 //   `slide_memory` evaluations its share therefore fades, by `slide_fade` at each further one, to
-//   `slide_floor` of it. (With a tenth, walls that rock near their limit stall.)
+//   `slide_floor` of it. (With a tenth, walls that rock near their limit stall.) While loads come in, nothing
+//   fades: friction takes the path of slow loading.
 // - Where slip has turned from one cap to the other the region sticks on the way with all of k_t, many
 //   times what the first rule gives it, and would swing between its caps for ever. It keeps all of k_t for
 //   the next `turn_memory` evaluations.
@@ -80,6 +81,7 @@ struct SpringRules {
   std::uint8_t slide_memory = 10;
   double slide_fade = 0.9;
   double slide_floor = 0.3;
+  bool slides_fade = true;
   std::uint8_t turn_memory = 20;
   double fade = 0.8;
   std::uint8_t open_memory = 40;
