@@ -15,9 +15,9 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// The power of two of which the largest contribution is about 2^40.
-double unit_of(double largest) {
-  return largest > 0.0 ? std::exp2(static_cast<double>(std::ilogb(largest) - 40)) : 1.0;
+/// The power of two of which the largest contribution is about 2^bits.
+double unit_of(double largest, int bits) {
+  return largest > 0.0 ? std::ldexp(1.0, std::ilogb(largest) - bits) : 1.0;
 }
 
 bool moves(const BlockSystem &system, std::size_t row) {
@@ -49,7 +49,6 @@ struct CoarseGrid::Factors {
   Sparse matrix;
   Eigen::SimplicialLDLT<Sparse, Eigen::Lower> ldlt;
   std::vector<std::int64_t> pattern; ///< for which the order of elimination has been found
-  Eigen::VectorXd vector;
   std::vector<Eigen::Triplet<double>> entries;
 };
 
@@ -98,7 +97,8 @@ void CoarseGrid::lay(const BlockSystem &system) {
   keys_.clear();
   cell_of_.assign(system.num_rows(), -1);
   arms_.assign(system.num_rows(), {});
-  on_cells_.resize(system.num_owned);
+  forces_.clear();
+  motions_.clear();
   if (!lay_cells(system)) {
     return;
   }
@@ -110,6 +110,8 @@ void CoarseGrid::lay(const BlockSystem &system) {
     }
   }
   keys_ = united(communicator_, std::move(mine));
+  forces_.assign(3 * keys_.size(), 0);
+  motions_.assign(3 * keys_.size(), 0.0);
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (moves(system, row)) {
       const auto [column, line] = place_of(system, row);
@@ -119,12 +121,6 @@ void CoarseGrid::lay(const BlockSystem &system) {
       arms_[row] = (1.0 / side_) * (system.properties[row].centroid - origin_) - middle;
     }
   }
-}
-
-CoarseGrid::Three CoarseGrid::to_cell(const BlockSystem &system, std::size_t row,
-                                      const double *forces) const {
-  const double moment = system.is_deformable(row) ? forces[4] - forces[3] : forces[2];
-  return {forces[0], forces[1], moment * per_side_ + cross(arms_[row], Vec2{forces[0], forces[1]})};
 }
 
 std::array<CoarseGrid::Three, 3> CoarseGrid::forces_on_cell(std::size_t row, Vec2 arm, Vec2 normal) const {
@@ -155,7 +151,7 @@ CoarseGrid::Square CoarseGrid::on_cell(const BlockSystem &system, std::size_t ro
     std::array<double, 6> forces{};
     add_block_product(matrices.of(row), num_freedoms(system, row), matrices.width(), motions[j].data(),
                       forces.data());
-    const Three column = to_cell(system, row, forces.data());
+    const Three column = to_cell(row, is_deformable, forces.data());
     for (std::size_t i = 0; i < 3; ++i) {
       square[i][j] = column[i];
     }
@@ -249,7 +245,7 @@ void CoarseGrid::factorise(const BlockSystem &system, std::span<const ContactSpr
     }
   });
   communicator_.max(std::span(&largest, 1));
-  const double unit = unit_of(largest);
+  const double unit = unit_of(largest, 40);
   const double per_one = 1.0 / unit;
   sums_.assign(9 * pattern_.size(), 0);
   for_parts(system, springs, matrices, [&](std::int64_t higher, std::int64_t lower, const Square &square) {
@@ -286,7 +282,6 @@ void CoarseGrid::fill_matrix(double unit) {
   }
   f.matrix.resize(3 * num_cells, 3 * num_cells);
   f.matrix.setFromTriplets(f.entries.begin(), f.entries.end());
-  f.vector.resize(3 * num_cells);
   if (f.pattern != pattern_) {
     f.ldlt.analyzePattern(f.matrix);
     f.pattern = pattern_;
@@ -294,56 +289,29 @@ void CoarseGrid::fill_matrix(double unit) {
   f.ldlt.factorize(f.matrix);
 }
 
-// P^T r, into the right side.
-void CoarseGrid::restrict_to_cells(const BlockSystem &system, const Field &r) {
+void CoarseGrid::set_unit(const BlockSystem &system, std::span<const RowRun> rows, const Field &r) {
   double largest = 0.0;
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (has_cell(row)) {
-      on_cells_[row] = to_cell(system, row, r.of(row));
-      for (const double value : on_cells_[row]) {
-        largest = std::max(largest, std::abs(value));
-      }
+  for_rows(rows, [&](std::size_t row) {
+    for (const double value : to_cell(row, system.is_deformable(row), r.of(row))) {
+      largest = std::max(largest, std::abs(value));
     }
-  }
+  });
   communicator_.max(std::span(&largest, 1));
-  const double unit = unit_of(largest);
-  const double per_one = 1.0 / unit;
-  sums_.assign(3 * keys_.size(), 0);
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (has_cell(row)) {
-      std::int64_t *to = sums_.data() + first_unknown(row);
-      for (const double value : on_cells_[row]) {
-        *to++ += std::llrint(value * per_one);
-      }
-    }
-  }
-  if (communicator_.size() > 1) {
-    communicator_.sum(sums_);
-  }
-  for (std::size_t i = 0; i < sums_.size(); ++i) {
-    factors_->vector[static_cast<Eigen::Index>(i)] = unit * static_cast<double>(sums_[i]);
-  }
+  unit_ = unit_of(largest, 36);
+  per_unit_ = 1.0 / unit_;
 }
 
-void CoarseGrid::add_correction(const BlockSystem &system, const Field &r, Field &z) {
-  restrict_to_cells(system, r);
-  Eigen::VectorXd &vector = factors_->vector;
-  vector = factors_->ldlt.solve(vector).eval();
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (has_cell(row)) {
-      const double *const motion = vector.data() + first_unknown(row);
-      double *const to = z.of(row);
-      to[0] += motion[0] - motion[2] * arms_[row].y;
-      to[1] += motion[1] + motion[2] * arms_[row].x;
-      const double turn = motion[2] * per_side_;
-      if (system.is_deformable(row)) {
-        to[3] -= turn;
-        to[4] += turn;
-      } else {
-        to[2] += turn;
-      }
-    }
+void CoarseGrid::solve() {
+  if (motions_.empty()) {
+    return; // no block of any rank moves
   }
+  if (communicator_.size() > 1) {
+    communicator_.sum(forces_);
+  }
+  std::transform(forces_.begin(), forces_.end(), motions_.begin(),
+                 [&](std::int64_t sum) { return unit_ * static_cast<double>(sum); });
+  Eigen::Map<Eigen::VectorXd> motions(motions_.data(), std::ssize(motions_));
+  motions = factors_->ldlt.solve(motions).eval();
 }
 
 } // namespace gcpdda::statics

@@ -13,13 +13,16 @@
 // Every rank factorises and solves the whole of K_c, by the same code and in the same order of unknowns. For
 // that it needs the same bits. Entries are therefore summed as integers in units of a power of two, 2^-40 of
 // the largest contribution of all ranks: the sum of integers does not depend on their order. A preconditioner
-// forgives the rounding of its entries. The pattern of K_c follows from the springs of all ranks, because the
-// order of elimination follows from the pattern.
+// forgives the rounding of its entries. Forces on cells have one unit for all iterations of an inner solve,
+// 2^-36 of the largest at its beginning, and are cut where they have grown to 2^12 times that. The pattern of
+// K_c follows from the springs of all ranks, because the order of elimination follows from the pattern.
 
 #include "gcpdda/parallel/communicator.hpp"
 #include "statics/block_stiffness.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -40,13 +43,39 @@ public:
   /// @param matrices  M of owned rows
   void factorise(const BlockSystem &system, std::span<const ContactSpring> springs,
                  const BlockMatrices &matrices);
-  /// z += P K_c^-1 P^T r for owned rows. Collective.
-  void add_correction(const BlockSystem &system, const Field &r, Field &z);
+
+  // z += P K_c^-1 P^T r is found in three parts, so that the solver may take r and z as it passes their rows.
+  /// For forces that begin with these. Collective.
+  void set_unit(const BlockSystem &system, std::span<const RowRun> rows, const Field &r);
+  void clear_forces() { std::fill(forces_.begin(), forces_.end(), 0); }
+  /// To P^T r, the part of a row that moves.
+  void add_forces(std::size_t row, bool is_deformable, const double *r) {
+    std::int64_t *to = forces_.data() + first_unknown(row);
+    for (const double value : to_cell(row, is_deformable, r)) {
+      *to++ += std::llrint(std::clamp(value * per_unit_, -most_units, most_units));
+    }
+  }
+  /// K_c^-1 of the forces of all ranks. Collective.
+  void solve();
+  /// To z, the part of a row that moves.
+  void add_motion(std::size_t row, bool is_deformable, double *z) const {
+    const double *const motion = motions_.data() + first_unknown(row);
+    const double turn = motion[2] * per_side_;
+    z[0] += motion[0] - motion[2] * arms_[row].y;
+    z[1] += motion[1] + motion[2] * arms_[row].x;
+    if (is_deformable) {
+      z[3] -= turn;
+      z[4] += turn;
+    } else {
+      z[2] += turn;
+    }
+  }
 
   [[nodiscard]] std::size_t num_cells() const { return keys_.size(); }
 
 private:
   static constexpr double blocks_a_side = 8.0;
+  static constexpr double most_units = 0x1p48; ///< of the forces of a row
   using Three = std::array<double, 3>;
   using Square = std::array<Three, 3>;
   struct Factors;
@@ -59,14 +88,16 @@ private:
   bool lay_cells(const BlockSystem &system);
   /// Column and line of the cell of a row.
   [[nodiscard]] std::array<std::int64_t, 2> place_of(const BlockSystem &system, std::size_t row) const;
-  [[nodiscard]] Three to_cell(const BlockSystem &system, std::size_t row, const double *forces) const;
+  [[nodiscard]] Three to_cell(std::size_t row, bool is_deformable, const double *forces) const {
+    const double moment = is_deformable ? forces[4] - forces[3] : forces[2];
+    return {forces[0], forces[1], moment * per_side_ + cross(arms_[row], Vec2{forces[0], forces[1]})};
+  }
   /// The unit force of one of a spring's three springs on the freedoms of the cell of a row.
   [[nodiscard]] std::array<Three, 3> forces_on_cell(std::size_t row, Vec2 arm, Vec2 normal) const;
   [[nodiscard]] Square on_cell(const BlockSystem &system, std::size_t row,
                                const BlockMatrices &matrices) const;
   static Square product(const ContactSpring &spring, const std::array<Three, 3> &a,
                         const std::array<Three, 3> &b, double sign);
-  void restrict_to_cells(const BlockSystem &system, const Field &r);
   /// visit(higher cell, lower cell, its part of K_c) for what this rank counts.
   template <class Visit>
   void for_parts(const BlockSystem &system, std::span<const ContactSpring> springs,
@@ -86,9 +117,12 @@ private:
   std::vector<std::int64_t> keys_;    ///< of the cells that hold a mobile block of any rank, ascending
   std::vector<std::int32_t> cell_of_; ///< by row; -1: the row does not move
   std::vector<Vec2> arms_;            ///< by row: of the centroid from the middle of the cell, over the side
-  std::vector<Three> on_cells_;       ///< by owned row: its part of P^T r
   std::vector<std::int64_t> pattern_; ///< key_of() of the blocks of K_c, ascending
-  std::vector<std::int64_t> sums_;    ///< of a block of K_c, or of P^T r, in units
+  std::vector<std::int64_t> sums_;    ///< entries of K_c, in units
+  double unit_ = 1.0;                 ///< of forces
+  double per_unit_ = 1.0;
+  std::vector<std::int64_t> forces_; ///< P^T r, in units
+  std::vector<double> motions_;      ///< of cells
   std::unique_ptr<Factors> factors_;
 };
 

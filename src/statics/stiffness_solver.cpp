@@ -11,50 +11,28 @@ namespace gcpdda::statics {
 
 namespace {
 
-template <std::size_t width, class Visit>
-void for_row_products(std::span<const RowRun> rows, const Field &a, const Field &b, Visit &&visit) {
-  const double *const x = a.values().data();
-  const double *const y = b.values().data();
-  for_rows(rows, [&](std::size_t row) {
-    double product = x[row * width] * y[row * width];
-    for (std::size_t i = 1; i < width; ++i) {
-      product += x[row * width + i] * y[row * width + i];
-    }
-    visit(product);
-  });
+/// Fields whose rows are three wide are those of rigid blocks.
+template <std::size_t width> bool deforms(const BlockSystem &system, std::size_t row) {
+  if constexpr (width == 3) {
+    return false;
+  } else {
+    return system.is_deformable(row);
+  }
 }
 
-template <std::size_t width>
-std::uint64_t sum_in_units(std::span<const RowRun> rows, const Field &a, const Field &b, double per_unit) {
-  constexpr double most = 0x1p62;
-  std::uint64_t sum = 0; // that parts of a sum run over does not matter, the whole is small
-  for_row_products<width>(rows, a, b, [&](double product) {
-    sum += static_cast<std::uint64_t>(std::llrint(std::clamp(product * per_unit, -most, most)));
-  });
-  return sum;
+template <std::size_t width> double row_product(const double *a, const double *b) {
+  double product = a[0] * b[0];
+  for (std::size_t i = 1; i < width; ++i) {
+    product += a[i] * b[i];
+  }
+  return product;
 }
+
+struct NoSum {
+  void add(double) {}
+};
 
 } // namespace
-
-double exact_product(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
-                     const Field &b) {
-  ExactSum sum;
-  const auto add = [&](double product) { sum.add(product); };
-  a.width() == 3 ? for_row_products<3>(rows, a, b, add) : for_row_products<6>(rows, a, b, add);
-  communicator.sum(sum.limbs());
-  return sum.value();
-}
-
-double product_near(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
-                    const Field &b, double size) {
-  const int exponent = std::ilogb(size) - 44;
-  const double per_unit = std::ldexp(1.0, -exponent);
-  const std::uint64_t mine =
-      a.width() == 3 ? sum_in_units<3>(rows, a, b, per_unit) : sum_in_units<6>(rows, a, b, per_unit);
-  auto sum = static_cast<std::int64_t>(mine);
-  communicator.sum(std::span(&sum, 1));
-  return std::ldexp(static_cast<double>(sum), exponent);
-}
 
 void StiffnessSolver::lay(const BlockSystem &system, std::vector<RowRun> moving, BlockMatrices mass,
                           BlockMatrices bolts, std::vector<BorderRows> border) {
@@ -99,61 +77,99 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
   for_rows(moving_, [&](std::size_t row) { invert(inverse_.of(row), num_freedoms(system, row), width); });
 }
 
-void StiffnessSolver::precondition(const BlockSystem &system, const Field &r, Field &z) {
-  const std::size_t width = mass_.width();
-  for_rows(moving_, [&](std::size_t row) {
-    double *const to = z.of(row);
-    std::fill_n(to, width, 0.0);
-    add_block_product(inverse_.of(row), num_freedoms(system, row), width, r.of(row), to);
-  });
-  coarse_.add_correction(system, r, z);
-}
-
-void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y) {
+template <std::size_t width, class Sum>
+void StiffnessSolver::multiply_by(const BlockSystem &system, const ContactSprings &springs, Field &p,
+                                  Field &y, Sum &sum) {
   border_.copy(p);
-  const std::size_t width = mass_.width();
   for_places(moving_, width, [&](std::size_t i) { y.values()[i] = 0.0; });
   springs.add_product(system, p, y);
   for_rows(moving_, [&](std::size_t row) {
-    add_block_product(own_.of(row), num_freedoms(system, row), width, p.of(row), y.of(row));
+    const std::size_t freedoms = deforms<width>(system, row) ? 6 : 3;
+    add_block_product(own_.of(row), freedoms, width, p.of(row), y.of(row));
+    sum.add(row_product<width>(p.of(row), y.of(row)));
   });
 }
 
-std::int64_t StiffnessSolver::solve(const BlockSystem &system, const ContactSprings &springs,
-                                    const Field &force, Field &solution) {
-  const std::size_t width = mass_.width();
+void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y) {
+  NoSum none;
+  mass_.width() == 3 ? multiply_by<3>(system, springs, p, y, none)
+                     : multiply_by<6>(system, springs, p, y, none);
+}
+
+template <std::size_t width>
+void StiffnessSolver::begin_preconditioning(const BlockSystem &system, std::size_t row) {
+  const bool is_deformable = deforms<width>(system, row);
+  const double *const r = r_.values().data() + width * row;
+  double *const z = z_.values().data() + width * row;
+  std::fill_n(z, width, 0.0);
+  add_block_product(inverse_.of(row), is_deformable ? 6 : 3, width, r, z);
+  coarse_.add_forces(row, is_deformable, r);
+}
+
+template <std::size_t width, class Sum>
+void StiffnessSolver::precondition(const BlockSystem &system, Sum &sum) {
+  coarse_.solve();
+  for_rows(moving_, [&](std::size_t row) {
+    double *const z = z_.values().data() + width * row;
+    coarse_.add_motion(row, deforms<width>(system, row), z);
+    sum.add(row_product<width>(r_.values().data() + width * row, z));
+  });
+}
+
+template <std::size_t width>
+std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const ContactSprings &springs,
+                                       const Field &force, Field &solution) {
   double *const x = solution.values().data();
   double *const r = r_.values().data();
   double *const p = p_.values().data();
   const double *const q = q_.values().data();
   const double *const z = z_.values().data();
-  for_places(moving_, width, [&](std::size_t i) {
-    x[i] = 0.0;
-    r[i] = force.values()[i];
+  coarse_.set_unit(system, moving_, force);
+  coarse_.clear_forces();
+  for_rows(moving_, [&](std::size_t row) {
+    for (std::size_t i = width * row; i < width * (row + 1); ++i) {
+      x[i] = 0.0;
+      r[i] = force.values()[i];
+    }
+    begin_preconditioning<width>(system, row);
   });
-  precondition(system, r_, z_);
+  ExactSum first;
+  precondition<width>(system, first);
+  communicator_.sum(first.limbs());
+  double size = first.value();
   for_places(moving_, width, [&](std::size_t i) { p[i] = z[i]; });
-  double size = exact_product(communicator_, moving_, r_, z_);
   const double enough = accuracy * accuracy * size;
   std::int64_t products = 0;
   while (size > enough && products < most_products) {
-    multiply(system, springs, p_, q_);
+    SumInUnits along_p(size);
+    multiply_by<width>(system, springs, p_, q_, along_p);
     ++products;
-    const double curvature = product_near(communicator_, moving_, p_, q_, size);
+    const double curvature = along_p.over(communicator_);
     if (!(curvature > 0.0)) {
       break;
     }
     const double step = size / curvature;
-    for_places(moving_, width, [&](std::size_t i) {
-      x[i] += step * p[i];
-      r[i] -= step * q[i];
+    coarse_.clear_forces();
+    for_rows(moving_, [&](std::size_t row) {
+      for (std::size_t i = width * row; i < width * (row + 1); ++i) {
+        x[i] += step * p[i];
+        r[i] -= step * q[i];
+      }
+      begin_preconditioning<width>(system, row);
     });
-    precondition(system, r_, z_);
-    const double before = std::exchange(size, product_near(communicator_, moving_, r_, z_, size));
+    SumInUnits along_z(size);
+    precondition<width>(system, along_z);
+    const double before = std::exchange(size, along_z.over(communicator_));
     const double share = size / before;
     for_places(moving_, width, [&](std::size_t i) { p[i] = z[i] + share * p[i]; });
   }
   return products;
+}
+
+std::int64_t StiffnessSolver::solve(const BlockSystem &system, const ContactSprings &springs,
+                                    const Field &force, Field &solution) {
+  return mass_.width() == 3 ? solve_by<3>(system, springs, force, solution)
+                            : solve_by<6>(system, springs, force, solution);
 }
 
 } // namespace gcpdda::statics

@@ -13,13 +13,19 @@
 // Same bits on any number of ranks: a block sums its springs in the order of its partners' ids, border
 // springs are on both ranks, search directions of ghosts are copies of their owners', and the two inner
 // products of an iteration are sums of one number a block, as integers in units of 2^-44 of the product
-// before: one word a reduction, and a rounding far below what the iteration leaves.
+// before (`SumInUnits`): one word a reduction, and a rounding far below what the iteration leaves.
+//
+// Large models read their fields from main memory. An iteration passes over them three times: K p and p^T K
+// p; the new x and r, with B^-1 r and P^T r; and z with r^T z.
 
 #include "statics/block_stiffness.hpp"
 #include "statics/border_rows.hpp"
 #include "statics/coarse_grid.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace gcpdda::statics {
 
@@ -51,7 +57,16 @@ public:
   std::int64_t most_products = 200;
 
 private:
-  void precondition(const BlockSystem &system, const Field &r, Field &z);
+  template <std::size_t width>
+  std::int64_t solve_by(const BlockSystem &system, const ContactSprings &springs, const Field &force,
+                        Field &solution);
+  /// y = (K + rho D) p. sum.add(p.y) of every row.
+  template <std::size_t width, class Sum>
+  void multiply_by(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y, Sum &sum);
+  /// B^-1 r to z, and P^T r to the coarse grid.
+  template <std::size_t width> void begin_preconditioning(const BlockSystem &system, std::size_t row);
+  /// The rest of z. sum.add(r.z) of every row. Collective.
+  template <std::size_t width, class Sum> void precondition(const BlockSystem &system, Sum &sum);
 
   Communicator communicator_;
   CoarseGrid coarse_;
@@ -67,12 +82,27 @@ private:
   Field q_;
 };
 
-/// Sum over rows of products of two fields, to the last bit. Collective.
-double exact_product(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
-                     const Field &b);
-/// The same in units of 2^-44 of a number of its size, which is positive and the same on all ranks; what a
-/// row adds is at most 2^18 times that. Collective.
-double product_near(const Communicator &communicator, std::span<const RowRun> rows, const Field &a,
-                    const Field &b, double size);
+/// A sum over the rows of all ranks in units of 2^-44 of a number of its size, which is positive and the same
+/// on all ranks. What a row adds is at most 2^18 times that.
+class SumInUnits {
+public:
+  explicit SumInUnits(double size)
+      : exponent_(std::ilogb(size) - 44), per_unit_(std::ldexp(1.0, -exponent_)) {}
+  void add(double value) {
+    constexpr double most = 0x1p62;
+    sum_ += static_cast<std::uint64_t>(std::llrint(std::clamp(value * per_unit_, -most, most)));
+  }
+  /// Collective.
+  [[nodiscard]] double over(const Communicator &communicator) const {
+    auto sum = static_cast<std::int64_t>(sum_);
+    communicator.sum(std::span(&sum, 1));
+    return std::ldexp(static_cast<double>(sum), exponent_);
+  }
+
+private:
+  int exponent_;
+  double per_unit_;
+  std::uint64_t sum_ = 0; ///< that parts of it run over does not matter, the whole is small
+};
 
 } // namespace gcpdda::statics

@@ -1,5 +1,6 @@
 // The preconditioned solver against a dense factorisation of the same matrix.
 
+#include "base/exact_sum.hpp"
 #include "statics/stiffness_solver.hpp"
 #include "support/blocks.hpp"
 
@@ -105,35 +106,34 @@ TEST(StiffnessSolver, AgreesWithADenseFactorisationOfDeformableBlocks) {
   expect_solution_of_dense(problem);
 }
 
-// The coarse level carries what spans the pile: without its cells the number of products grows with the
-// height of a column, and with them hardly.
-// Each row is rounded to 2^-45 of the size at most. Sums of parts are the sum of all, as on several ranks.
-TEST(StiffnessSolver, ProductsInUnitsAreThoseToTheLastBitButForTheirRounding) {
+// Each number is rounded to 2^-45 of the size at most. Sums of parts are the sum of all, as on several ranks.
+TEST(SumInUnits, IsTheSumToTheLastBitButForItsRounding) {
   constexpr std::size_t num_rows = 1000;
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> numbers(-1.0, 1.0);
   const Communicator self = Communicator::self();
-  for (const std::size_t width : {std::size_t{3}, std::size_t{6}}) {
-    statics::Field a(num_rows, width);
-    statics::Field b(num_rows, width);
-    for (std::size_t i = 0; i < a.values().size(); ++i) {
-      a.values()[i] = 1e6 * numbers(engine);
-      b.values()[i] = a.values()[i] + 1e3 * numbers(engine);
+  std::vector<double> products(num_rows);
+  ExactSum exactly;
+  for (double &product : products) {
+    product = 1e12 * numbers(engine) * numbers(engine) + 1e6;
+    exactly.add(product);
+  }
+  const double exact = exactly.value();
+  for (const double size : {std::abs(exact), 0.3 * std::abs(exact), 1e3 * std::abs(exact)}) {
+    statics::SumInUnits all(size);
+    statics::SumInUnits first(size);
+    statics::SumInUnits others(size);
+    for (std::size_t k = 0; k < num_rows; ++k) {
+      all.add(products[k]);
+      (k < 137 ? first : others).add(products[k]);
     }
-    const std::vector<statics::RowRun> all{{0, num_rows}};
-    const double exact = statics::exact_product(self, all, a, b);
-    for (const double size : {exact, 0.3 * exact, 1e3 * exact}) {
-      const double rounded = statics::product_near(self, all, a, b, size);
-      EXPECT_NEAR(rounded, exact, num_rows * std::ldexp(size, -45)) << size;
-      const std::vector<statics::RowRun> first{{0, 137}};
-      const std::vector<statics::RowRun> others{{137, num_rows}};
-      EXPECT_EQ(statics::product_near(self, first, a, b, size) +
-                    statics::product_near(self, others, a, b, size),
-                rounded);
-    }
+    EXPECT_NEAR(all.over(self), exact, num_rows * std::ldexp(size, -45)) << size;
+    EXPECT_EQ(first.over(self) + others.over(self), all.over(self));
   }
 }
 
+// The coarse level carries what spans the pile: without its cells the number of products grows with the
+// height of a column, and with them hardly.
 TEST(StiffnessSolver, ProductsHardlyGrowWithTheHeight) {
   const auto products_of = [](int height) {
     Problem problem(wall(height, 4, [](std::size_t) { return false; }), 1e-3);
