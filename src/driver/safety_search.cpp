@@ -274,6 +274,7 @@ Scene with_confirming_stage(Scene weakened) {
   confirm.name = confirming_stage;
   confirm.solver = Solver::dynamic;
   confirm.after = nullptr;
+  confirm.begins_at_rest = true;
   confirm.tolerance *= 10.0; // swings of the step about a state of rest are no motion away from it
   weakened.stages.push_back(std::move(confirm));
   return weakened;

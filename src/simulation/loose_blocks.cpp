@@ -56,6 +56,9 @@ void look_for_loose_blocks(RunState &run, StageLook &look) {
   look.resting_kinetic = kinetic.value();
 }
 
+namespace {
+
+/// Ids of the loose blocks of the last look, ascending, of all ranks. Collective.
 std::vector<std::int64_t> loose_blocks(const RunState &run) {
   std::vector<std::int64_t> mine;
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
@@ -72,7 +75,11 @@ std::vector<std::int64_t> loose_blocks(const RunState &run) {
   return ids;
 }
 
-void note_loose_blocks(RunState &run, const std::vector<std::int64_t> &ids) {
+} // namespace
+
+void note_loose_blocks(RunState &run) {
+  const std::vector<std::int64_t> ids = loose_blocks(run);
+  run.clock.state.memory.num_loose = std::ssize(ids);
   constexpr std::size_t most_named = 8;
   std::string names;
   for (std::size_t k = 0; k < std::min(ids.size(), most_named); ++k) {

@@ -15,22 +15,16 @@
 
 #include "simulation/run_state.hpp"
 
-#include <cstdint>
-#include <vector>
-
 namespace gcpdda {
 
 /// Its net force or its motion is beyond what is allowed to a block at rest.
 /// @param look  at all blocks
 [[nodiscard]] bool is_loose(const BlockLook &block, const Stage &stage, const StageLook &look);
 
-/// Fills in what a look at a settle stage says of loose blocks, from RunState::looks. Collective.
+/// Fills in what a look at a stage says of loose blocks, from RunState::looks. Collective.
 void look_for_loose_blocks(RunState &run, StageLook &look);
 
-/// Ids of the loose blocks of the last look, ascending, of all ranks. Collective.
-[[nodiscard]] std::vector<std::int64_t> loose_blocks(const RunState &run);
-
-/// Say that the stage at hand has settled but for these.
-void note_loose_blocks(RunState &run, const std::vector<std::int64_t> &ids);
+/// Remember and say that the stage at hand has settled but for the loose blocks of the last look. Collective.
+void note_loose_blocks(RunState &run);
 
 } // namespace gcpdda

@@ -159,7 +159,7 @@ bool is_loading(const RunState &run) {
 void look_at_stage(RunState &run) {
   StageLook look = look_at_blocks(run);
   const Stage &stage = run.clock.stage();
-  if (stage.until_verdict && !stage.is_trial()) {
+  if (stage.until_verdict && (!stage.is_trial() || is_static(run))) {
     look_for_loose_blocks(run, look);
   }
   run.clock.state.verdict = judge(stage, look, looks_at_loose_blocks(is_static(run)), run.clock.state.memory);
@@ -174,9 +174,7 @@ void look_at_stage(RunState &run) {
   }
   if (run.clock.state.verdict == Verdict::settled && !stage.is_trial() &&
       run.clock.state.memory.settled_looks < 2) {
-    const std::vector<std::int64_t> loose = loose_blocks(run);
-    run.clock.state.memory.num_loose = std::ssize(loose);
-    note_loose_blocks(run, loose);
+    note_loose_blocks(run);
   }
   run.clock.state.end_time = run.clock.time();
   run.clock.state.ended = stage.until_verdict && run.clock.state.verdict != Verdict::undecided;

@@ -19,8 +19,10 @@ Verdict judge(const Stage &stage, const StageLook &look, std::int64_t looks_at_l
   memory.most_kinetic = std::max(memory.most_kinetic, look.kinetic);
   memory.last = look;
 
+  const bool hardly_moves =
+      look.motion <= motion_at_rest * look.overlap || (stage.begins_at_rest && look.motion <= last.motion);
   const bool is_settled =
-      look.unbalanced_ratio <= stage.tolerance && look.motion <= motion_at_rest * look.overlap &&
+      look.unbalanced_ratio <= stage.tolerance && hardly_moves &&
       (look.kinetic <= last.kinetic || look.kinetic <= energy_at_rest * look.force * look.overlap);
   memory.settled_looks = is_settled ? memory.settled_looks + 1 : 0;
   const bool others_rest = look.loose_share <= most_loose && look.loose_load <= most_loose_load &&

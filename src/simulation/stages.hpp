@@ -14,7 +14,11 @@
 // because its friction misses the slope by less than the tolerance still gains speed: that it is told from
 // rest is what T is for. Below 1e-12 of f d, the energy in the largest contact, motion is rounding.)
 // A settle stage does not wait for a few loose blocks (loose_blocks.hpp), and has not failed where only they
-// move.
+// move. Nor does a trial by the static solver whose motion would not go far if it went on as it does; where
+// one of the blocks goes on nevertheless, the dynamic step that confirms the trial sees it.
+// A trial that begins where the static solver has found rest (Stage::begins_at_rest) starts a swing of the
+// whole pile by the little that was left unbalanced, and needs not wait for its end: D does not grow there
+// either, in place of being small. A block that goes on under a force moves farther from look to look.
 // failed: M has reached failure_motion, D is at least half of what it was, and T at least a quarter of the
 // most it was: the blocks are not about to come to rest.
 //

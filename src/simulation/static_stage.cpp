@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "dynamics/half_works.hpp"
 #include "simulation/evaluation.hpp"
+#include "simulation/loose_blocks.hpp"
 #include "simulation/stage_runner.hpp"
 #include "simulation/static_evaluation.hpp"
 #include "simulation/step_report.hpp"
@@ -131,7 +132,9 @@ void open_statics(RunState &run) {
   book_static_work(run);
 }
 
-// The dynamic solver has the last word on a trial that fails, so that statics never says so alone.
+// The dynamic solver has the last word on a trial that fails, so that statics never says so alone. Loose
+// blocks do not hold up a trial that would not move by a tenth of what fails if it went on so for all windows
+// ahead.
 void judge_static_trial(RunState &run) {
   constexpr double window = 50.0; // evaluations
   constexpr double motion_of_failure = 0.02;
@@ -141,7 +144,13 @@ void judge_static_trial(RunState &run) {
   const std::int64_t evaluations = run.clock.state.iteration.evaluations;
   const StageLook &look = run.clock.state.memory.last;
   MotionWindows &windows = run.clock.state.memory.windows;
-  if (run.clock.state.verdict == Verdict::settled) {
+  const bool all_rest = run.clock.state.memory.settled_looks >= 2;
+  const bool stays_near = windows.closed >= 2 && windows.last_rate * window * windows_ahead <=
+                                                     0.1 * run.clock.stage().failure_motion;
+  if (run.clock.state.verdict == Verdict::settled && (all_rest || stays_near)) {
+    if (!all_rest) {
+      note_loose_blocks(run);
+    }
     return;
   }
   const bool has_moved_far = run.clock.state.verdict == Verdict::failed;
@@ -158,6 +167,7 @@ void judge_static_trial(RunState &run) {
   const bool fails = look.moved >= far || (closed && goes_on && goes_far);
   if (fails || evaluations >= most_evaluations) {
     windows = {};
+    run.local_damping = 0.0; // as drag it would hold back what is moving already
     leave_statics(run, fails ? "its motion has gone far or goes on at an undiminished rate"
                              : fmt::format("it has no verdict after {} evaluations", most_evaluations));
   }

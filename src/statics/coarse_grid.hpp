@@ -3,10 +3,10 @@
 // The coarse level of the preconditioner: rigid motions of cells of blocks.
 //
 // Cells are squares of `blocks_a_side` mean block sizes, laid from the least centroid of the scene, and a
-// block belongs to the cell of its centroid at t = 0: cells depend on the scene and not on the ranks. (Squares
-// of 4 mean sizes save no products with K, and take twice the CPU time of an iteration of 10^5 blocks.) P moves
-// the blocks of a cell as one rigid body about the middle of the cell, and turns it by 1/(side of the cell),
-// so that all three unknowns of a cell have the same size. The coarse matrix is
+// block belongs to the cell of its centroid at t = 0: cells depend on the scene and not on the ranks.
+// (Squares of 4 mean sizes save no products with K, and take twice the CPU time of an iteration of 10^5
+// blocks.) P moves the blocks of a cell as one rigid body about the middle of the cell, and turns it by
+// 1/(side of the cell), so that all three unknowns of a cell have the same size. The coarse matrix is
 //     K_c = P^T (K + M) P
 // with a matrix M of each block that keeps a cell from being singular where no contact holds it.
 //

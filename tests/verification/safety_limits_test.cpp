@@ -33,6 +33,28 @@ TEST(SafetyLimits, InclinesAtFiveAngles) {
   }
 }
 
+// One of more than a thousand blocks is few enough for a settle stage not to wait for it (0.1 %), and its net
+// force beyond the limit is below the tolerance of the pile: a trial must see that it goes on.
+TEST(SafetyLimits, ASlidingBlockAmongAThousandAtRest) {
+  const double dip = 30.0 * degree;
+  const Vec2 down{std::cos(dip), -std::sin(dip)};
+  const Vec2 up{std::sin(dip), std::cos(dip)};
+  const auto on_plane = [&](double along, double above) { return along * down + above * up; };
+  const std::string toml =
+      head({.friction_deg = 37.0}) +
+      "[[wall]]\nname = \"wall\"\nmaterial = \"rock\"\norigin = [100.0, 0.0]\n"
+      "rows = 24\ncolumns = 48\nblock_size = [1.0, 0.5]\n" +
+      block_toml("floor", rectangle({98.0, -1.0}, {152.0, 0.0}), "fixed = true") +
+      block_toml("plane",
+                 {on_plane(-2.0, -1.0), on_plane(40.0, -1.0), on_plane(40.0, 0.0), on_plane(-2.0, 0.0)},
+                 "fixed = true") +
+      block_toml("block", {on_plane(0.0, 0.0), on_plane(2.0, 0.0), on_plane(2.0, 1.0), on_plane(0.0, 1.0)});
+  KnownLimit limit{"block on an incline beside a wall of a thousand",
+                   std::tan(37.0 * degree) / std::tan(dip)};
+  limit.bound_tolerance = 0.0; // a linear programme of some thousand forces says nothing new
+  expect_factor(limit, toml);
+}
+
 // Two blocks on each other slide on the lower joint, which carries more and has the same friction, or where
 // the upper one has less, on that: F = tan(phi)/tan(th) of the weaker joint.
 TEST(SafetyLimits, WeakerOfTwoJoints) {

@@ -85,6 +85,40 @@ TEST(Stages, WindowsTellWhatGoesOnFromWhatFades) {
   EXPECT_EQ(verdict_by_windows([](double) { return 0.0; }, 0.0), Verdict::undecided) << "does not move";
 }
 
+/// Looks at a trial until it is called settled, at most 40; motion between two looks as it is given.
+template <class Motion> int looks_until_settled(const Stage &stage, Motion &&motion) {
+  LookMemory memory;
+  for (int k = 1; k <= 40; ++k) {
+    StageLook look;
+    look.unbalanced_ratio = 0.1 * stage.tolerance;
+    look.overlap = 1e-3;
+    look.force = 1e6;
+    look.motion = motion(k);
+    look.kinetic = 1e10 * look.motion * look.motion;
+    if (judge(stage, look, looks_at_loose_blocks(false), memory) == Verdict::settled) {
+      return k;
+    }
+  }
+  return 0;
+}
+
+// Motion of a thousandth of the overlap is rest. From rest on, a swing of more that fades is no way out of
+// it.
+TEST(Stages, ATrialFromRestNeedsNotWaitForTheEndOfASwing) {
+  Stage trial;
+  trial.drag_limit = 1.0;
+  Stage from_rest = trial;
+  from_rest.begins_at_rest = true;
+  const auto swing = [](int k) { return 1e-5 * std::exp(-0.1 * k); };
+  const auto slide = [](int k) { return 1e-7 * (2.0 * k - 1.0); };
+  const auto far_slide = [](int k) { return 2e-6 * (2.0 * k - 1.0); };
+  EXPECT_EQ(looks_until_settled(from_rest, swing), 3);
+  EXPECT_EQ(looks_until_settled(trial, swing), 25)
+      << "the first of two looks at less than 1e-6 m is the 24th";
+  EXPECT_EQ(looks_until_settled(from_rest, slide), 0) << "it gains speed";
+  EXPECT_EQ(looks_until_settled(from_rest, far_slide), 0);
+}
+
 const std::string stack_head = R"([run]
 fidelity = "rigid"
 [material.rock]
