@@ -38,8 +38,8 @@
 // that slide on while what drives them fades.
 //
 // The same rule decides when the static solver leaves a trial to the dynamic one, with windows of equal
-// length: in pseudo-time motion is damped, and a constant force gives a constant speed. Two windows in a row
-// are needed, or a block that has moved by failure_motion, and a series
+// length: in pseudo-time motion is damped, and a constant force gives a constant speed. A block must have moved
+// by failure_motion and beyond the sag, and gone on as above or for two windows in a row, and a series
 //     M + g (q + q^2 + ...)     with q, g over that of the window before, but at most 1
 // that reaches five times failure_motion within 60 windows, twice those of a trial. Near the limit blocks
 // creep to rest for a thousand evaluations, in each window a little less.

@@ -137,7 +137,6 @@ void open_statics(RunState &run) {
 // ahead.
 void judge_static_trial(RunState &run) {
   constexpr double window = 50.0; // evaluations
-  constexpr double motion_of_failure = 0.02;
   constexpr std::int64_t most_evaluations = 1500;
   constexpr double windows_ahead = 60.0;
   constexpr double times_as_far = 5.0;
@@ -161,9 +160,10 @@ void judge_static_trial(RunState &run) {
   const double ratio = std::min(closed.value_or(0.0), 1.0);
   const double series =
       ratio < 1.0 ? ratio * (1.0 - std::pow(ratio, windows_ahead)) / (1.0 - ratio) : windows_ahead;
-  const double far = times_as_far * run.clock.stage().failure_motion;
+  const double failure = run.clock.stage().failure_motion;
+  const double far = times_as_far * failure;
   const bool goes_far = look.moved + series * window * windows.last_rate >= far;
-  const bool goes_on = has_moved_far || (windows.undiminished >= 2 && look.moved > motion_of_failure);
+  const bool goes_on = has_moved_far || (windows.undiminished >= 2 && look.moved_beyond_sag >= failure);
   const bool fails = look.moved >= far || (closed && goes_on && goes_far);
   if (fails || evaluations >= most_evaluations) {
     windows = {};
