@@ -29,7 +29,7 @@ def marked(value, column):
 def cost_table(rows):
     lines = []
     for scene in dict.fromkeys(row["scene"] for row in rows):
-        for way in WAYS:
+        for way in dict.fromkeys(row["way"] for row in of(rows, scene=scene)):
             own = of(rows, scene=scene, way=way)
             at = {row["ratio"]: row for row in own}
             lines.append([scene, way] + [count(at[r]["evaluations"]) if at[r]["evaluations"] else "not reached"

@@ -38,8 +38,8 @@
 // that slide on while what drives them fades.
 //
 // The same rule decides when the static solver leaves a trial to the dynamic one, with windows of equal
-// length: in pseudo-time motion is damped, and a constant force gives a constant speed. A block must have moved
-// by failure_motion and beyond the sag, and gone on as above or for two windows in a row, and a series
+// length: in pseudo-time motion is damped, and a constant force gives a constant speed. A block must have
+// moved by failure_motion and beyond the sag, and gone on as above or for two windows in a row, and a series
 //     M + g (q + q^2 + ...)     with q, g over that of the window before, but at most 1
 // that reaches five times failure_motion within 60 windows, twice those of a trial. Near the limit blocks
 // creep to rest for a thousand evaluations, in each window a little less.
@@ -84,6 +84,7 @@ struct MotionWindows {
   double last_rate = 0.0;        ///< g of the one before ...
   double last_log = 0.0;         ///< ... and m
   std::int64_t undiminished = 0; ///< windows in a row that motion has gone on in at an undiminished rate
+  double farthest = 1e300;       ///< by which M of a single block has grown in the one before, in pseudo-time
 };
 /// Take a look at a trial into its window.
 /// @param growth  of the length from one window to the next

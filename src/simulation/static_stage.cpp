@@ -132,9 +132,23 @@ void open_statics(RunState &run) {
   book_static_work(run);
 }
 
+/// By which the motion of a single block has grown in the window of a trial that ends here, in its sizes.
+/// Collective.
+double farthest_in_window(RunState &run) {
+  const std::span<PseudoMotion> motions = pseudo_rows(run.blocks);
+  double farthest = 0.0;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    if (!run.blocks.properties[row].keeps_its_velocity()) {
+      farthest = std::max(farthest, run.looks[row].moved - motions[row].moved);
+      motions[row].moved = run.looks[row].moved;
+    }
+  }
+  return run.communicator.max(farthest);
+}
+
 // The dynamic solver has the last word on a trial that fails, so that statics never says so alone. Loose
-// blocks do not hold up a trial that would not move by a tenth of what fails if it went on so for all windows
-// ahead.
+// blocks do not hold up a trial where each of them would move by less than a tenth of what fails if it went
+// on as in the last window for all windows ahead.
 void judge_static_trial(RunState &run) {
   constexpr double window = 50.0; // evaluations
   constexpr std::int64_t most_evaluations = 1500;
@@ -144,8 +158,7 @@ void judge_static_trial(RunState &run) {
   const StageLook &look = run.clock.state.memory.last;
   MotionWindows &windows = run.clock.state.memory.windows;
   const bool all_rest = run.clock.state.memory.settled_looks >= 2;
-  const bool stays_near = windows.closed >= 2 && windows.last_rate * window * windows_ahead <=
-                                                     0.1 * run.clock.stage().failure_motion;
+  const bool stays_near = windows.farthest * windows_ahead <= 0.1 * run.clock.stage().failure_motion;
   if (run.clock.state.verdict == Verdict::settled && (all_rest || stays_near)) {
     if (!all_rest) {
       note_loose_blocks(run);
@@ -157,6 +170,9 @@ void judge_static_trial(RunState &run) {
   run.clock.state.verdict = Verdict::undecided;
   const std::optional<double> closed =
       note_motion(look, static_cast<double>(evaluations), window, 1.0, windows);
+  if (closed) {
+    windows.farthest = farthest_in_window(run);
+  }
   const double ratio = std::min(closed.value_or(0.0), 1.0);
   const double series =
       ratio < 1.0 ? ratio * (1.0 - std::pow(ratio, windows_ahead)) / (1.0 - ratio) : windows_ahead;

@@ -249,7 +249,7 @@ static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
 static_assert(sizeof(Deformation) == std::size_t{7} * 64);
-static_assert(sizeof(PseudoMotion) == 19 * sizeof(double)); // simulation/static_state.cpp
+static_assert(sizeof(PseudoMotion) == 20 * sizeof(double)); // simulation/static_state.cpp, all but `moved`
 
 inline constexpr std::array<const char *, 10> groups{"/clock",       "/run",   "/stage",  "/bolt",
                                                      "/statics",     "/scene", "/result", "/block",
