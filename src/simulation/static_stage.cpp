@@ -182,8 +182,10 @@ void judge_static_trial(RunState &run) {
   const bool goes_on = has_moved_far || (windows.undiminished >= 2 && look.moved_beyond_sag >= failure);
   const bool fails = look.moved >= far || (closed && goes_on && goes_far);
   if (fails || evaluations >= most_evaluations) {
+    if (fails || windows.undiminished > 0) {
+      run.local_damping = 0.0; // as drag it would hold back what goes on moving
+    }
     windows = {};
-    run.local_damping = 0.0; // as drag it would hold back what is moving already
     leave_statics(run, fails ? "its motion has gone far or goes on at an undiminished rate"
                              : fmt::format("it has no verdict after {} evaluations", most_evaluations));
   }
