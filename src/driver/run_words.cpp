@@ -59,9 +59,15 @@ std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_er
 
 namespace {
 
+/// Pseudo-time has no limit in seconds, and each of its steps is looked at.
+bool is_in_pseudo_time(const Simulation &simulation, const Stage &stage) {
+  return stage.solver == Solver::statics && simulation.stage().iteration.is_left == 0;
+}
+
 /// How near to rest a stage is that waits for its verdict. Large models are looked at seldom.
 std::string words_on_look(const Simulation &simulation, const Stage &stage) {
-  if (simulation.stage_step() < steps_between_verdicts(simulation.num_blocks())) {
+  if (!is_in_pseudo_time(simulation, stage) &&
+      simulation.stage_step() < steps_between_verdicts(simulation.num_blocks())) {
     return "not looked at yet";
   }
   const StageLook &last = simulation.stage().memory.last;
@@ -78,10 +84,12 @@ std::string words_on_progress(const Simulation &simulation, const EnergyRow &ene
   constexpr std::size_t bar_length = 20;
   const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_length));
   const double remaining = per_step * (1.0 - share) * num_steps;
-  const std::string outlook =
-      stage.until_verdict ? fmt::format("limit in {:.0f} s  {}", remaining, words_on_look(simulation, stage))
-                          : fmt::format("remaining {:.0f} s  unbalanced {:.1e}  max speed {:.3g} m/s",
-                                        remaining, energy.unbalanced_ratio, energy.max_speed);
+  const std::string limit =
+      is_in_pseudo_time(simulation, stage) ? "" : fmt::format("limit in {:.0f} s  ", remaining);
+  const std::string outlook = stage.until_verdict
+                                  ? limit + words_on_look(simulation, stage)
+                                  : fmt::format("remaining {:.0f} s  unbalanced {:.1e}  max speed {:.3g} m/s",
+                                                remaining, energy.unbalanced_ratio, energy.max_speed);
   return fmt::format("[{:.<{}}] {:5.1f} %  t = {:.6g} s  step {}  {:.3g} block-steps/s  {}",
                      std::string(filled, '='), bar_length, 100.0 * share, simulation.time(),
                      simulation.step_count(), static_cast<double>(simulation.num_blocks()) / per_step,
