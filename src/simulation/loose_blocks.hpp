@@ -11,7 +11,8 @@
 //     they are at most 0.1 % of the mobile blocks,
 //     their net forces together are at most 1 % of the weights and applied loads of all,
 //     and the kinetic energy of the others does not grow.
-// They are named, and go on moving in the next stage.
+// They are named, and go on moving in the next stage. A trial of gcpdda fos by the static solver does not
+// wait for them either where they stay near (static_stage.cpp).
 
 #include "simulation/run_state.hpp"
 

@@ -64,7 +64,7 @@ struct StageLook {
   double kinetic = 0.0;          ///< T, J/m
   double moved = 0.0;            ///< M of all blocks
   double moved_beyond_sag = 0.0; ///< M of those that have moved farther than a pile sags
-  // Of a settle stage (loose_blocks.hpp); 1 where nobody has looked.
+  // Of a settle stage or a static trial (loose_blocks.hpp); 1 where nobody has looked.
   double loose_share = 1.0;     ///< of the mobile blocks, those that are loose
   double loose_load = 1.0;      ///< their net forces together over the load
   double resting_kinetic = 0.0; ///< T of the others, J/m

@@ -33,8 +33,8 @@ TEST(SafetyLimits, InclinesAtFiveAngles) {
   }
 }
 
-// One of more than a thousand blocks is few enough for a settle stage not to wait for it (0.1 %), and its net
-// force beyond the limit is below the tolerance of the pile: a trial must see that it goes on.
+// One of more than a thousand blocks is few enough for a static trial not to wait for it (0.1 %) if it stays
+// near. Here it slides on: the motion of single blocks or else the step that confirms the trial sees it.
 TEST(SafetyLimits, ASlidingBlockAmongAThousandAtRest) {
   const double dip = 30.0 * degree;
   const Vec2 down{std::cos(dip), -std::sin(dip)};
