@@ -46,7 +46,14 @@ bool counts_here(const BlockSystem &system, BlockIndex lower) {
   return lower.value < system.num_owned || system.is_fixed(lower.value);
 }
 
-void BlockSums::start(BlockSystem &system, const Candidates &candidates) {
+void BlockSums::start(BlockSystem &system, const Candidates &candidates, bool keeps) {
+  constexpr std::size_t in_group = PlainPair::pairs_in_group;
+  const std::size_t num_slots =
+      keeps ? (candidates.pairs.size() + in_group - 1) / in_group * in_group : in_group;
+  if (keeps != keeps_ || num_slots != seen_.size()) {
+    seen_.assign(num_slots, 0);
+  }
+  keeps_ = keeps;
   has_dyads_ = !system.deformation.empty();
   is_again_ = false;
   is_added_ = candidates.is_added;
@@ -54,9 +61,14 @@ void BlockSums::start(BlockSystem &system, const Candidates &candidates) {
   deformations_ = system.deformation;
   count_ = {};
   largest_squared_ = 0.0;
-  group_.resize(PlainPair::pairs_in_group);
-  group_dyads_.resize(has_dyads_ ? PlainPair::pairs_in_group : 0);
+  group_.resize(num_slots);
+  group_dyads_.resize(has_dyads_ ? num_slots : 0);
   waiting_ = candidates.waiting;
+  if (keeps) {
+    std::swap(kept_range_, range_before_);
+    std::swap(kept_, before_);
+    std::swap(kept_dyads_, dyads_before_);
+  }
   kept_range_.assign(waiting_.size(), {});
   last_asked_ = 0;
   kept_.clear();
@@ -104,10 +116,12 @@ void BlockSums::close_group(const BlockSystem &system, const Candidates &candida
                             const PlainBatch &batch) {
   static_assert(touches == GroupToAdd::touches);
   const std::uint32_t first = number * PlainPair::pairs_in_group;
+  const std::size_t slots = slot_of(first);
   GroupToAdd group{candidates.pairs.data() + first,
-                   seen_,
-                   group_.data(),
-                   has_dyads_ ? group_dyads_.data() : nullptr,
+                   std::span<const std::uint8_t, PlainPair::pairs_in_group>(seen_.data() + slots,
+                                                                            PlainPair::pairs_in_group),
+                   group_.data() + slots,
+                   has_dyads_ ? group_dyads_.data() + slots : nullptr,
                    sums_,
                    deformations_,
                    system.deformation_begin,
@@ -118,10 +132,12 @@ void BlockSums::close_group(const BlockSystem &system, const Candidates &candida
   largest_squared_ = group.largest_squared;
   count_.touching += group.num_touching; // without ghosts, they count here and do not cross
   for (std::size_t k = 0; k < group.num_waiting; ++k) {
-    const std::uint32_t slot = group.waiting[k];
-    keep_plain(first + slot, group_[slot], (seen_[slot] & is_born) != 0);
+    const std::uint32_t pair = first + group.waiting[k];
+    keep_plain(pair, group_[slot_of(pair)], (seen_[slot_of(pair)] & is_born) != 0);
   }
-  seen_.fill(0);
+  if (!keeps_) {
+    drop_all();
+  }
 }
 
 void BlockSums::begin_border(std::size_t num_plain) {
@@ -129,15 +145,15 @@ void BlockSums::begin_border(std::size_t num_plain) {
   kept_dyads_.reserve(has_dyads_ ? kept_dyads_.size() + num_plain : 0);
 }
 
-RegionRange &BlockSums::range_of(std::uint32_t pair) {
+std::size_t BlockSums::place_of(std::uint32_t pair) {
   const bool is_behind = waiting_[last_asked_] <= pair;
   const auto from = waiting_.begin() + static_cast<std::ptrdiff_t>(is_behind ? last_asked_ : 0);
   last_asked_ = static_cast<std::size_t>(std::lower_bound(from, waiting_.end(), pair) - waiting_.begin());
-  return kept_range_[last_asked_];
+  return last_asked_;
 }
 
 void BlockSums::keep_plain(std::uint32_t pair, const RegionSums &region, bool born) {
-  const RegionDyads *dyads = has_dyads_ ? &group_dyads_[pair % PlainPair::pairs_in_group] : nullptr;
+  const RegionDyads *dyads = has_dyads_ ? &group_dyads_[slot_of(pair)] : nullptr;
   if (is_again_) {
     kept(pair, 0) = region;
     if (dyads != nullptr) {
@@ -161,6 +177,17 @@ void BlockSums::keep(std::uint32_t pair, std::span<const RegionForce> regions,
   if (has_dyads_) {
     kept_dyads_.insert(kept_dyads_.end(), dyads.begin(), dyads.end());
     kept_dyads_.resize(kept_.size());
+  }
+}
+
+void BlockSums::keep_waiting_again(std::size_t place) {
+  const RegionRange before = range_before_[place];
+  kept_range_[place] = {static_cast<std::uint32_t>(kept_.size()), before.count};
+  for (std::size_t k = before.begin; k < before.begin + before.count; ++k) {
+    kept_.push_back({before_[k], false});
+    if (has_dyads_) {
+      kept_dyads_.push_back(dyads_before_[k]);
+    }
   }
 }
 

@@ -9,10 +9,14 @@
 // have to wait for it (Candidates::is_added); regions on them are kept, and finish() adds them. These are
 // few: blocks at the border of a domain, and those of odd shape. All plain pairs with a ghost wait, so they
 // need no groups: so few would leave many lanes empty.
+//
+// Where pairs of rows at rest are left out (resting_rows.hpp), regions of all groups stay, and are added once
+// more at each evaluation.
 
 #include "contact/candidates.hpp"
 #include "contact/region_sums.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -38,18 +42,24 @@ class BlockSums {
 public:
   /// Onto BlockSystem::contact and Deformation::contact of owned rows, which are cleared before their first
   /// contact.
-  void start(BlockSystem &system, const Candidates &candidates);
+  /// @param keeps  regions stay, so that keep_again() finds them at the next evaluation
+  void start(BlockSystem &system, const Candidates &candidates, bool keeps);
   static void clear(BlockSystem &system, std::size_t first, std::size_t last);
   /// The same regions are added once more, because they have changed: kept ones stay where they are.
   void start_again();
 
   /// Place for what the only region of a plain pair of the group at hand does.
   RegionSums &open(std::uint32_t pair, bool born) {
-    const std::uint32_t slot = pair % PlainPair::pairs_in_group;
+    const std::size_t slot = slot_of(pair);
     seen_[slot] = static_cast<std::uint8_t>(born ? touches | is_born : touches);
     return group_[slot];
   }
-  RegionDyads &dyads(std::uint32_t pair) { return group_dyads_[pair % PlainPair::pairs_in_group]; }
+  RegionDyads &dyads(std::uint32_t pair) { return group_dyads_[slot_of(pair)]; }
+  /// A plain pair of the group at hand is evaluated anew, where regions stay.
+  void drop(std::uint32_t pair) { seen_[slot_of(pair)] = 0; }
+  void drop_all() { std::fill(seen_.begin(), seen_.end(), std::uint8_t{0}); }
+  /// Or it does what it did.
+  void keep_again(std::uint32_t pair) { seen_[slot_of(pair)] &= touches; }
   /// All pairs of a group have been evaluated.
   void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t number,
                    const PlainBatch &batch);
@@ -65,11 +75,14 @@ public:
     kept_.push_back({RegionSums{}, born});
     return kept_.back();
   }
+  /// So does the pair at this place of Candidates::waiting.
+  void keep_waiting_again(std::size_t place);
   /// Of the last one opened.
   RegionDyads &border_dyads() { return kept_dyads_.back(); }
   /// All regions of some other pair.
   /// @param dyads  theirs, or none
   void keep(std::uint32_t pair, std::span<const RegionForce> regions, std::span<const RegionDyads> dyads);
+  void keep_again_other(std::uint32_t pair) { keep_waiting_again(place_of(pair)); }
   /// What waits.
   ContactCount finish(const BlockSystem &system, const Candidates &candidates);
 
@@ -103,27 +116,37 @@ private:
   /// To the lower (k = 0) or the higher block of a pair, if it deforms.
   void add_dyads(const BlockSystem &system, const CandidatePair &pair, std::size_t k,
                  const RegionDyads &dyads, const RegionSums &region);
-  /// Of a pair that waits: mostly one that follows the last one asked for.
-  RegionRange &range_of(std::uint32_t pair);
+  /// In Candidates::waiting, of a pair that waits: mostly one that follows the last one asked for.
+  std::size_t place_of(std::uint32_t pair);
+  RegionRange &range_of(std::uint32_t pair) { return kept_range_[place_of(pair)]; }
+  /// Of a plain pair in the group at hand, or among all pairs.
+  [[nodiscard]] std::size_t slot_of(std::uint32_t pair) const {
+    return keeps_ ? pair : pair % PlainPair::pairs_in_group;
+  }
 
   bool has_dyads_ = false;
   bool is_again_ = false;
+  bool keeps_ = false;
   std::span<const std::uint8_t> is_added_; ///< Candidates::is_added
   std::span<BlockContactSum> sums_;        ///< BlockSystem::contact
   std::span<Deformation> deformations_;    ///< BlockSystem::deformation
   ContactCount count_;                     ///< of pairs that are not kept
   double largest_squared_ = 0.0;           ///< of them
   double largest_waiting_squared_ = 0.0;   ///< of the others
-  // Of the group at hand, by pair.
+  // Of the group at hand, or of all groups, by pair.
   std::vector<RegionSums> group_;
   std::vector<RegionDyads> group_dyads_; ///< if some block deforms
-  std::array<std::uint8_t, PlainPair::pairs_in_group> seen_{};
+  std::vector<std::uint8_t> seen_;
   // Regions on blocks that wait.
   std::span<const std::uint32_t> waiting_; ///< Candidates::waiting
   std::vector<RegionRange> kept_range_;    ///< of each of them
   std::size_t last_asked_ = 0;
   std::vector<KeptRegion> kept_;
   std::vector<RegionDyads> kept_dyads_;
+  // Those of the evaluation before, where they stay.
+  std::vector<RegionRange> range_before_;
+  std::vector<KeptRegion> before_;
+  std::vector<RegionDyads> dyads_before_;
 };
 
 } // namespace gcpdda

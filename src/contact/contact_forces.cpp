@@ -30,6 +30,7 @@ ContactForces::ContactForces(ContactParameters parameters, Instructions instruct
 
 void ContactForces::begin_rows(BlockSystem &system, std::size_t first, std::size_t last) {
   PlainBatch &batch = plain_.batch();
+  resting_.begin_rows(system, first, last);
   velocity_gradients_.resize(system.deformation.size());
   sums_.clear(system, first, std::min(last, system.num_owned));
   const std::size_t width = batch.width();
@@ -64,7 +65,7 @@ void ContactForces::begin_rows(BlockSystem &system, std::size_t first, std::size
 void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candidates &candidates,
                                          ContactHistory &history, std::size_t first, std::size_t last) {
   const PlainWork work{plain_.scene_of(system, candidates, history, velocity_gradients_, false), sums_,
-                       history.plain, history.grips};
+                       resting_, history.plain, history.grips};
   for (const std::uint32_t entry : plain_.evaluate(work, first, last)) {
     evaluate_birth(work, entry);
   }
@@ -99,11 +100,25 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
                                            ContactHistory &history, std::span<const std::uint32_t> pairs) {
   for (const std::uint32_t k : pairs) {
     const CandidatePair &pair = candidates.pairs[k];
-    if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) ||
-        history.has_bonds(k) || history.is_opened(k)) {
+    if (resting_.has(pair.lower.value) && resting_.has(pair.higher.value) && !history.is_opened(k)) {
+      keep_general_pair(system, candidates, k, history.of_other(k));
+    } else if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) ||
+               history.has_bonds(k) || history.is_opened(k)) {
       ++evaluations_;
       evaluate_general_pair(system, candidates, k, history.of_other(k));
     }
+  }
+}
+
+void ContactForces::keep_general_pair(const BlockSystem &system, const Candidates &candidates,
+                                      std::uint32_t number, std::span<const RegionMemory> old) {
+  const RegionRange before = ranges_before_[number];
+  if (before.count > 0) {
+    ranges_[number] = {static_cast<std::uint32_t>(pairs_.memory().size()), before.count};
+    next_[number] = ranges_[number];
+    pairs_.keep_again(system, candidates.pairs[number], before, old);
+    ranges_[number].begin = static_cast<std::uint32_t>(pairs_.first_of_pair());
+    sums_.keep_again_other(number);
   }
 }
 
@@ -120,14 +135,17 @@ ForceReport ContactForces::evaluate(BlockSystem &system, const Candidates &candi
 void ContactForces::begin(BlockSystem &system, const Candidates &candidates) {
   begin_rows(system, system.first_fixed(), system.num_rows());
   plain_.begin(candidates);
-  pairs_.begin();
+  pairs_.begin(resting_.is_used());
   evaluations_ = 0;
   next_.assign(candidates.general.empty() ? 0 : candidates.pairs.size(), {});
+  if (resting_.is_used()) {
+    ranges_before_ = ranges_;
+  }
   ranges_.resize(next_.size());
   for (const std::uint32_t pair : candidates.general) {
     ranges_[pair] = {};
   }
-  sums_.start(system, candidates);
+  sums_.start(system, candidates, resting_.is_used());
 }
 
 void ContactForces::evaluate_group(const BlockSystem &system, const Candidates &candidates,
@@ -164,9 +182,13 @@ ForceReport ContactForces::evaluate_border(BlockSystem &system, const Candidates
 
 void ContactForces::find_details(const BlockSystem &system, const Candidates &candidates,
                                  const ContactHistory &history, std::uint32_t first, std::uint32_t last) {
-  plain_.find_details(
-      {plain_.scene_of(system, candidates, history, velocity_gradients_, true), sums_, {}, {}, is_changing_},
-      first, last);
+  plain_.find_details({plain_.scene_of(system, candidates, history, velocity_gradients_, true),
+                       sums_,
+                       resting_,
+                       {},
+                       {},
+                       is_changing_},
+                      first, last);
 }
 
 std::span<RegionForce> ContactForces::at_hand(const Candidates &candidates, std::uint32_t pair) {

@@ -11,6 +11,7 @@
 #include "contact/pair_forces.hpp"
 #include "contact/plain_pairs.hpp"
 #include "contact/region_sums.hpp"
+#include "contact/resting_rows.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -80,6 +81,17 @@ public:
   /// evaluation.
   void keep_details(bool keeps) { plain_.keep_details(keeps); }
   [[nodiscard]] bool keeps_details() const { return plain_.keeps_details(); }
+  /// Evaluations from here on leave out pairs of two rows at rest (resting_rows.hpp), to the same bits.
+  /// Details are kept as long.
+  void leave_out_resting(bool leaves_out) {
+    resting_.set_used(leaves_out);
+    keep_details(leaves_out || keeps_details());
+  }
+  /// Candidates or rows are others from here on.
+  void forget_resting() {
+    resting_.forget();
+    sums_.drop_all();
+  }
   /// visit(pair, number of its region, details) for all regions of the last evaluation, by ascending pair.
   template <class Visit>
   void for_kept_details(const Candidates &candidates, const ContactHistory &history, Visit &&visit) const {
@@ -160,6 +172,9 @@ private:
   std::span<RegionForce> at_hand(const Candidates &candidates, std::uint32_t pair);
   RegionDyads *dyads_at_hand(const BlockSystem &system, const Candidates &candidates, std::uint32_t pair,
                              std::size_t number);
+  /// A pair that is not plain and is left out.
+  void keep_general_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t number,
+                         std::span<const RegionMemory> old);
   void put_sums(const Candidates &candidates, std::uint32_t pair, std::size_t number,
                 const RegionForce &force);
 
@@ -167,11 +182,13 @@ private:
   PlainPairs plain_;
   PairForces pairs_; ///< those that are not plain
   BlockSums sums_;
-  std::vector<RegionRange> ranges_;      ///< of the regions of pairs_, by pair that is not plain
-  std::vector<RegionRange> next_;        ///< what ContactHistory::ranges becomes; afterwards what it was
-  std::int64_t evaluations_ = 0;         ///< of pairs that are not plain, so far
-  bool is_changing_ = false;             ///< change_shear() is at work
-  std::vector<Mat2> velocity_gradients_; ///< 1/s, by entry of BlockSystem::deformation
+  RestingRows resting_;
+  std::vector<RegionRange> ranges_;        ///< of the regions of pairs_, by pair that is not plain
+  std::vector<RegionRange> ranges_before_; ///< the same at the evaluation before, where regions stay
+  std::vector<RegionRange> next_;          ///< what ContactHistory::ranges becomes; afterwards what it was
+  std::int64_t evaluations_ = 0;           ///< of pairs that are not plain, so far
+  bool is_changing_ = false;               ///< change_shear() is at work
+  std::vector<Mat2> velocity_gradients_;   ///< 1/s, by entry of BlockSystem::deformation
 };
 
 /// The trial configuration that comes next, seen from the last one.

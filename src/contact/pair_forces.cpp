@@ -77,7 +77,10 @@ PairForces::~PairForces() = default;
 PairForces::PairForces(PairForces &&) noexcept = default;
 PairForces &PairForces::operator=(PairForces &&) noexcept = default;
 
-void PairForces::begin() {
+void PairForces::begin(bool keeps) {
+  if (keeps) {
+    std::swap(forces_, before_);
+  }
   num_forces_ = 0;
   memory_.clear();
   opening_works_.clear();
@@ -90,6 +93,18 @@ std::size_t PairForces::evaluate(const BlockSystem &system, const CandidatePair 
   dyads_.clear();
   find_regions(system, pair, number, old);
   return num_forces_ - first_of_pair_;
+}
+
+void PairForces::keep_again(const BlockSystem &system, const CandidatePair &pair, RegionRange before,
+                            std::span<const RegionMemory> memory) {
+  first_of_pair_ = num_forces_;
+  dyads_.clear();
+  for (const RegionForce &force : std::span(before_).subspan(before.begin, before.count)) {
+    RegionForce &again = append_force(force);
+    again.born = false;
+    note(system, pair, again);
+  }
+  memory_.insert(memory_.end(), memory.begin(), memory.end());
 }
 
 void PairForces::drop_last() {

@@ -59,13 +59,18 @@ public:
   PairForces &operator=(PairForces &&) noexcept;
 
   /// No pair has been evaluated.
-  void begin();
+  /// @param keeps  regions stay, so that keep_again() finds them at the next evaluation
+  void begin(bool keeps);
   /// Find the regions of a pair at the posed trial configuration. They stand behind those of pairs evaluated
   /// before, and so does their memory.
   /// @param old  the memory of the pair's regions
   /// @return how many there are
   std::size_t evaluate(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
                        std::span<RegionMemory> old);
+  /// The pair has the regions that it had at the evaluation before, and their memory.
+  /// @param before  theirs, at that evaluation
+  void keep_again(const BlockSystem &system, const CandidatePair &pair, RegionRange before,
+                  std::span<const RegionMemory> memory);
   /// The regions of the pair evaluated last begin here.
   [[nodiscard]] std::size_t first_of_pair() const { return first_of_pair_; }
   /// What these do to F; none where no block of the pair deforms.
@@ -154,6 +159,7 @@ private:
   // making new ones.
   std::vector<RegionForce> forces_;
   std::size_t num_forces_ = 0;
+  std::vector<RegionForce> before_; ///< of the evaluation before, where they stay
   std::vector<RegionMemory> memory_;
   ForceReport report_;
   /// Of laws that open a region against its pressure, J/m.

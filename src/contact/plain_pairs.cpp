@@ -34,6 +34,7 @@ void PlainPairs::begin(const Candidates &candidates) {
   overlaps_.assign(candidates.pairs.size(), PlainOverlap::none);
   details_.resize(keeps_details_ ? candidates.pairs.size() : 0);
   report_ = {};
+  kept_ = {};
 }
 
 void PlainPairs::keep_details(bool keeps) {
@@ -221,8 +222,10 @@ void PlainPairs::evaluate_without_region(const PlainWork &work) {
 }
 
 // Those that did not touch before hardly ever do: on their own they are seen to be apart with little work.
-void PlainPairs::find_meeting(const PlainScene &scene, std::size_t first, std::size_t last) {
+void PlainPairs::find_meeting(const PlainWork &work, std::size_t first, std::size_t last) {
+  const PlainScene &scene = work.scene;
   const Candidates &candidates = scene.candidates;
+  const bool some_rest = work.resting.is_used();
   const std::array<std::vector<std::uint32_t> *, 3> lists{&without_region_, &corners_, &polygons_};
   std::array<std::uint32_t *, lists.size()> ends{};
   for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -231,6 +234,9 @@ void PlainPairs::find_meeting(const PlainScene &scene, std::size_t first, std::s
   }
   const BlockMotion *motions = scene.system.motion.data();
   for (std::size_t k = first; k < last; ++k) {
+    if (some_rest && keeps(work, k)) {
+      continue;
+    }
     const PlainPair &plain = candidates.plain[k];
     const PlainOverlap overlap = scene.history.overlaps[plain.pair];
     std::uint32_t *&end = ends[static_cast<std::size_t>(overlap)];
@@ -248,10 +254,33 @@ void PlainPairs::find_meeting(const PlainScene &scene, std::size_t first, std::s
   }
 }
 
+bool PlainPairs::keeps(const PlainWork &work, std::size_t entry) {
+  const Candidates &candidates = work.scene.candidates;
+  const std::uint32_t number = candidates.plain[entry].pair;
+  const CandidatePair &pair = candidates.pairs[number];
+  if (!work.resting.has(pair.lower.value) || !work.resting.has(pair.higher.value)) {
+    work.sums.drop(number);
+    return false;
+  }
+  const PlainOverlap overlap = work.scene.history.overlaps[number];
+  overlaps_[number] = overlap;
+  if (overlap != PlainOverlap::none) {
+    if (entry < candidates.num_interior_plain) {
+      work.sums.keep_again(number);
+    } else {
+      work.sums.keep_waiting_again(candidates.border_place(entry));
+    }
+    details_[number].born = false;
+    kept_.normals_undefined += details_[number].normal_undefined ? 1 : 0;
+    kept_.max_overlap = std::max(kept_.max_overlap, details_[number].overlap);
+  }
+  return true;
+}
+
 std::span<const std::uint32_t> PlainPairs::evaluate(const PlainWork &work, std::size_t first,
                                                     std::size_t last) {
   births_.clear();
-  find_meeting(work.scene, first, last);
+  find_meeting(work, first, last);
   evaluate_known(work);
   evaluate_without_region(work);
   return births_;
@@ -280,8 +309,8 @@ void PlainPairs::store_birth(const PlainWork &work, std::uint32_t entry, const R
 ForceReport PlainPairs::finish(std::vector<PlainOverlap> &overlaps) {
   std::swap(overlaps, overlaps_);
   const PlainBatch::Extremes seen = batch_->take_extremes();
-  report_.normals_undefined = seen.normals_undefined;
-  report_.max_overlap = seen.max_overlap;
+  report_.normals_undefined = kept_.normals_undefined + seen.normals_undefined;
+  report_.max_overlap = std::max(kept_.max_overlap, seen.max_overlap);
   report_.max_overlap_share = seen.max_overlap_share;
   return report_;
 }

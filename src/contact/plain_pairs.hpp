@@ -14,6 +14,7 @@
 #include "contact/force_report.hpp"
 #include "contact/lanes/plain_batch.hpp"
 #include "contact/region_sums.hpp"
+#include "contact/resting_rows.hpp"
 #include "model/contact_history.hpp"
 
 #include <array>
@@ -29,6 +30,7 @@ namespace gcpdda {
 struct PlainWork {
   PlainScene scene;
   BlockSums &sums;
+  const RestingRows &resting;
   std::span<RegionState> memory; ///< by pair
   std::span<Vec2> grips;         ///< by pair, where a block deforms
   bool has_dyads = false;        ///< details are wanted with the dyads of deformable blocks
@@ -83,8 +85,10 @@ private:
   /// Evaluate corners_ and polygons_.
   void evaluate_known(const PlainWork &work);
   void evaluate_without_region(const PlainWork &work);
-  /// Entries [first, last) whose boxes meet.
-  void find_meeting(const PlainScene &scene, std::size_t first, std::size_t last);
+  /// Entries [first, last) whose boxes meet, and what those at rest keep.
+  void find_meeting(const PlainWork &work, std::size_t first, std::size_t last);
+  /// Does an entry keep what the evaluation before has found? Then it is there.
+  bool keeps(const PlainWork &work, std::size_t entry);
 
   std::shared_ptr<const ContactParameters> parameters_;
   std::unique_ptr<PlainBatch> batch_;
@@ -97,6 +101,7 @@ private:
   std::array<CandidatePair, most_lanes> own_; ///< constants of mixed pairs at hand, by lane
   std::vector<PlainOverlap> overlaps_;        ///< what those of the history become; afterwards what they were
   ForceReport report_;                        ///< of what has been evaluated so far
+  PlainBatch::Extremes kept_;                 ///< of pairs that are left out
   std::vector<RegionForce> again_;            ///< details of the group at hand
   std::vector<std::uint32_t> places_;         ///< in again_, by pair of the group at hand
   bool keeps_details_ = false;

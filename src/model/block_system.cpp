@@ -274,6 +274,24 @@ void set_trial(BlockSystem &system, std::size_t row, const TrialConfiguration &t
   }
 }
 
+void set_to_rest(BlockSystem &system, std::size_t row) {
+  system.velocity[row] = {};
+  system.acceleration[row] = {};
+  if (system.is_deformable(row)) {
+    system.deformation_of(row).rate = {};
+    system.deformation_of(row).acceleration = {};
+  }
+}
+
+bool is_still(const BlockSystem &system, std::size_t row) {
+  const BlockMotion &motion = system.motion[row];
+  if (motion.increment() != RigidDof{} || system.velocity[row] != RigidDof{}) {
+    return false;
+  }
+  return !system.is_deformable(row) ||
+         (motion.turn == std::array<Vec2, 2>{} && system.deformation_of(row).rate == Mat2{});
+}
+
 void forget_increments(BlockSystem &system) {
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     system.motion[row].set_increment({});

@@ -413,6 +413,10 @@ void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, st
 
 /// Marks of owned rows, all of which get one.
 std::span<BlockMark> mark_rows(BlockSystem &system);
+/// A row loses its velocity and acceleration.
+void set_to_rest(BlockSystem &system, std::size_t row);
+/// Has a row neither an increment nor a velocity?
+bool is_still(const BlockSystem &system, std::size_t row);
 /// Motions in pseudo-time of owned rows, all of which get one.
 std::span<PseudoMotion> pseudo_rows(BlockSystem &system);
 /// No row has a motion in pseudo-time any more.

@@ -28,6 +28,7 @@ void refresh(RunState &run, ContactMemory memory) {
   const auto scope = run.phases.measure(Phase::refresh);
   run.bolts.share(run.communicator);
   run.digest.reset();
+  run.contacts.forget_resting();
   const std::int64_t left = run.neighbours.refresh(run.blocks, run.contacts.parameters(), run.bolts,
                                                    std::move(memory), run.clock.plan.time_step);
   if (run.clock.step_count > 0) {
