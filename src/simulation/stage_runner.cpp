@@ -183,19 +183,11 @@ void look_at_stage(RunState &run) {
 // Stick springs keep their stretch: they go on from the last trial configuration.
 void set_to_rest(RunState &run) {
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
-    if (run.blocks.properties[row].keeps_its_velocity()) {
-      continue;
-    }
-    run.blocks.velocity[row] = {};
-    run.blocks.acceleration[row] = {};
-    if (run.blocks.is_deformable(row)) {
-      run.blocks.deformation_of(row).rate = {};
-      run.blocks.deformation_of(row).acceleration = {};
+    if (!run.blocks.properties[row].keeps_its_velocity()) {
+      set_to_rest(run.blocks, row);
     }
   }
 }
-
-namespace {
 
 // What stopping takes from the energies of the ledger, which are those of the leapfrog of x*. It would have
 // gone on to x*' = x + c1 dt v + c2 dt^2 a with the kinetic energy of (x*' - x*)/dt; it goes on from x
@@ -211,33 +203,31 @@ namespace {
 // remembers two steps, and the energy is a state's own again only at rest, where it is x (k + K) x/2: no
 // stop, after whatever number of steps from rest, raises it. tests/unit/dynamics/kinetic_stop_test.cpp tries
 // that for k and K at random up to 0.9 of the limit, which settle stages keep.
-void book_stop(RunState &run) {
+void stop(RunState &run, std::size_t row) {
   const double dt = run.clock.plan.time_step;
   const double by_velocity = run.scheme.trial_velocity * dt;
   const double by_acceleration = run.scheme.trial_acceleration * dt * dt;
-  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
-    if (run.blocks.properties[row].keeps_its_velocity()) {
-      continue;
-    }
-    const RigidDof ahead =
-        by_velocity * run.blocks.velocity[row] + by_acceleration * run.blocks.acceleration[row];
-    const RigidDof behind = run.blocks.displacement[row] - run.blocks.trial[row];
-    RigidDof force = run.blocks.contact[row].force + run.blocks.anchor_force(row);
-    Mat2 stretch;
-    double work_on_gradient = 0.0;
-    if (run.blocks.is_deformable(row)) {
-      const Deformation &d = run.blocks.deformation_of(row);
-      const Mat2 gradient_ahead = by_velocity * d.rate + by_acceleration * d.acceleration;
-      const Mat2 gradient_behind = d.gradient - d.trial;
-      force.r = 0.0;
-      stretch = (1.0 / dt) * (gradient_behind + gradient_ahead);
-      work_on_gradient = contract(unbalanced_on_gradient(d), gradient_ahead - gradient_behind);
-    }
-    run.blocks.ledger[row].damping +=
-        0.5 * (work(force, ahead - behind) + work_on_gradient) -
-        kinetic_energy_of(run.blocks, row, (1.0 / dt) * (behind + ahead), stretch);
+  const RigidDof ahead =
+      by_velocity * run.blocks.velocity[row] + by_acceleration * run.blocks.acceleration[row];
+  const RigidDof behind = run.blocks.displacement[row] - run.blocks.trial[row];
+  RigidDof force = run.blocks.contact[row].force + run.blocks.anchor_force(row);
+  Mat2 stretch;
+  double work_on_gradient = 0.0;
+  if (run.blocks.is_deformable(row)) {
+    const Deformation &d = run.blocks.deformation_of(row);
+    const Mat2 gradient_ahead = by_velocity * d.rate + by_acceleration * d.acceleration;
+    const Mat2 gradient_behind = d.gradient - d.trial;
+    force.r = 0.0;
+    stretch = (1.0 / dt) * (gradient_behind + gradient_ahead);
+    work_on_gradient = contract(unbalanced_on_gradient(d), gradient_ahead - gradient_behind);
   }
+  run.blocks.ledger[row].damping +=
+      0.5 * (work(force, ahead - behind) + work_on_gradient) -
+      kinetic_energy_of(run.blocks, row, (1.0 / dt) * (behind + ahead), stretch);
+  set_to_rest(run.blocks, row);
 }
+
+namespace {
 
 // Where the energy of motion has just been greatest the pile passes through the balance of the slowest mode
 // that moves: from rest there it has less far to go. An exact sum, so that every number of ranks stops alike.
@@ -253,8 +243,11 @@ void stop_at_energy_peak(RunState &run) {
   const bool passed = now < run.clock.state.memory.kinetic_before;
   run.clock.state.memory.kinetic_before = passed ? 0.0 : now;
   if (passed) {
-    book_stop(run);
-    set_to_rest(run);
+    for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+      if (!run.blocks.properties[row].keeps_its_velocity()) {
+        stop(run, row);
+      }
+    }
   }
 }
 

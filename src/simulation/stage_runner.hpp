@@ -24,6 +24,8 @@ void judge_stage(RunState &run);
 void look_at_stage(RunState &run);
 /// Mobile blocks lose their velocities.
 void set_to_rest(RunState &run);
+/// So does one in the middle of its motion; its ledger takes what stopping takes.
+void stop(RunState &run, std::size_t row);
 
 /// Of the stages that are over, and of this one as far as it has come. Collective.
 [[nodiscard]] std::vector<StageResult> stage_results(const RunState &run);
