@@ -270,7 +270,9 @@ bool PlainPairs::keeps(const PlainWork &work, std::size_t entry) {
     } else {
       work.sums.keep_waiting_again(candidates.border_place(entry));
     }
-    details_[number].born = false;
+    if (details_[number].born) { // most are not, and to write them all would take long
+      details_[number].born = false;
+    }
     kept_.normals_undefined += details_[number].normal_undefined ? 1 : 0;
     kept_.max_overlap = std::max(kept_.max_overlap, details_[number].overlap);
   }

@@ -272,8 +272,8 @@ Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
 Scene with_confirming_stage(Scene weakened) {
   Stage confirm = weakened.stages.back();
   confirm.name = confirming_stage;
-  confirm.solver = Solver::dynamic;
   confirm.after = nullptr;
+  confirm.increments = 1; // nothing has changed
   confirm.begins_at_rest = true;
   confirm.tolerance *= 10.0; // swings of the step about a state of rest are no motion away from it
   weakened.stages.push_back(std::move(confirm));

@@ -6,6 +6,7 @@
 #include "dynamics/frequency_bound.hpp"
 #include "simulation/evaluation.hpp"
 #include "simulation/ground.hpp"
+#include "simulation/held_blocks.hpp"
 #include "simulation/loose_blocks.hpp"
 #include "simulation/mechanism.hpp"
 #include "simulation/stage_changes.hpp"
@@ -327,6 +328,7 @@ void judge_stage(RunState &run) {
   }
   if (run.clock.is_staged && run.clock.stage_step() % steps_between_verdicts(num_blocks(run.scene)) == 0) {
     look_at_stage(run);
+    hold_at_look(run);
     if (drag_has_ended(run)) {
       run.local_damping = 0.0;
     }

@@ -16,11 +16,12 @@
 // A settle stage does not wait for a few loose blocks (loose_blocks.hpp), and has not failed where only they
 // move. Nor does a trial by the static solver whose motion would not go far if it went on as it does; where
 // one of the blocks goes on nevertheless, the dynamic step that confirms the trial sees it.
-// A trial that begins where the static solver has found rest (Stage::begins_at_rest) starts a swing of the
-// whole pile by the little that was left unbalanced, and needs not wait for its end: D does not grow there
-// either, in place of being small. A block that goes on under a force moves farther from look to look.
-// failed: M has reached failure_motion, D is at least half of what it was, and T at least a quarter of the
-// most it was: the blocks are not about to come to rest.
+// The dynamic step that confirms a trial of the static solver (Stage::begins_at_rest) would start a swing of
+// the whole pile by the little that was left unbalanced. The static solver therefore goes on first, until all
+// but a few blocks are balanced so well that the dynamic step holds them (held_blocks.hpp). The swing of the
+// few needs not end: D does not grow there either, in place of being small. A block that goes on under a
+// force moves farther from look to look. failed: M has reached failure_motion, D is at least half of what it
+// was, and T at least a quarter of the most it was: the blocks are not about to come to rest.
 //
 // The strengths of a trial of gcpdda fos by the dynamic step fall in increments of 2 %, one at each look
 // (Stage::weakening); no trial has settled before they have fallen. Taken away at once, strength leaves

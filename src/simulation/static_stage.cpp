@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "dynamics/half_works.hpp"
 #include "simulation/evaluation.hpp"
+#include "simulation/held_blocks.hpp"
 #include "simulation/loose_blocks.hpp"
 #include "simulation/stage_runner.hpp"
 #include "simulation/static_evaluation.hpp"
@@ -51,9 +52,12 @@ std::string not_served(const RunState &run) {
   return std::isfinite(end_of_loads(run)) ? "" : "its loads go on changing";
 }
 
-void leave_statics(RunState &run, const std::string &reason) {
+void leave_statics(RunState &run) {
   run.clock.state.iteration.is_left = 1;
   close_statics(run);
+}
+void leave_statics(RunState &run, const std::string &reason) {
+  leave_statics(run);
   run.notes.push_back({Severity::info, run.clock.stage().where,
                        fmt::format("stage '{}' goes on with solver = \"dynamic\"", run.clock.stage().name),
                        reason, "solver = \"dynamic\" in the stage says so from the start"});
@@ -191,6 +195,29 @@ void judge_static_trial(RunState &run) {
   }
 }
 
+// The dynamic step takes over where no more than a few blocks would move in it at once, or soon.
+void judge_confirmation(RunState &run) {
+  constexpr double most_moving = 1e-3; // of the mobile blocks
+  constexpr std::int64_t most_evaluations = 300;
+  const double force = held_ratio(run.clock.stage()) * run.clock.state.memory.last.force;
+  std::array<std::int64_t, 2> counts{};
+  auto &[moving, mobile] = counts;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    if (!run.blocks.properties[row].keeps_its_velocity()) {
+      ++mobile;
+      moving += run.looks[row].unbalanced > force ? 1 : 0;
+    }
+  }
+  run.communicator.sum(counts);
+  run.clock.state.ended = false;
+  run.clock.state.verdict = Verdict::undecided;
+  if (static_cast<double>(moving) <= most_moving * static_cast<double>(mobile) ||
+      run.clock.state.iteration.evaluations >= most_evaluations) {
+    run.clock.state.memory.settled_looks = 0;
+    leave_statics(run);
+  }
+}
+
 void judge_statics(RunState &run) {
   statics::IterationState &iteration = run.clock.state.iteration;
   const std::int64_t window = run.statics->rules().stall_window;
@@ -200,6 +227,10 @@ void judge_statics(RunState &run) {
     run.clock.state.verdict = Verdict::undecided;
     run.clock.state.memory.settled_looks = 0;
     run.clock.state.memory.loose_looks = 0;
+    return;
+  }
+  if (run.clock.stage().begins_at_rest) {
+    judge_confirmation(run);
     return;
   }
   if (run.clock.stage().is_trial()) {
@@ -250,6 +281,7 @@ void report_statically(RunState &run) {
   }
   if (run.clock.state.iteration.is_left != 0 && !run.fault) {
     accelerate(run.blocks); // as at the beginning of a run
+    hold_after_statics(run);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "dynamics/local_damping.hpp"
 #include "simulation/evaluation.hpp"
 #include "simulation/ground.hpp"
+#include "simulation/held_blocks.hpp"
 #include "simulation/stage_changes.hpp"
 
 #include <algorithm>
@@ -41,6 +42,7 @@ void StepRows::begin() {
   advanced_ = 0;
   passed_ = 0;
   report_.clear();
+  held_force_ = held_force(run_);
   run_.contacts.begin(run_.blocks, run_.neighbours.candidates);
 }
 
@@ -141,12 +143,23 @@ void StepRows::advance_remaining() {
 
 // A chunk of rows at a time: what one pass reads is in the cache for the next.
 void StepRows::advance_rows(std::size_t first, std::size_t end) {
+  held_.clear();
+  for (std::size_t row = first; row < end && held_force_ > 0.0; ++row) {
+    if (is_at_rest(run_.blocks, row) && !run_.blocks.properties[row].keeps_its_velocity()) {
+      held_.push_back(row);
+    }
+  }
   for (first = advance_free(first, end); first < end;) {
     const std::size_t last = std::min(end, first + rows_at_once);
     gather_forces(first, last, body_);
     solve_and_update(run_.blocks, own_forces_, run_.scheme, run_.clock.plan.time_step,
                      run_.scene.run.elasticity, first, last, safe_motion(run_), report_);
     first = advance_free(last, end);
+  }
+  for (const std::size_t row : held_) {
+    if (net_force(run_.blocks, row) <= held_force_) {
+      hold(run_.blocks, row);
+    }
   }
 }
 

@@ -69,11 +69,13 @@ private:
   TrialOutline outline_; ///< of a block in water
   std::vector<PrescribedRow> prescribed_rows_;
   // How far the step has come with the owned rows.
-  BodyForces body_;           ///< of this step
-  std::size_t predicted_ = 0; ///< rows below have their trial configurations
-  std::size_t advanced_ = 0;  ///< rows below are at the end of the step, except waiting ones
-  std::size_t passed_ = 0;    ///< spans of Neighbourhood::waiting below advanced_
-  AdvanceReport report_;      ///< of the last step
+  BodyForces body_;               ///< of this step
+  std::size_t predicted_ = 0;     ///< rows below have their trial configurations
+  std::size_t advanced_ = 0;      ///< rows below are at the end of the step, except waiting ones
+  std::size_t passed_ = 0;        ///< spans of Neighbourhood::waiting below advanced_
+  AdvanceReport report_;          ///< of the last step
+  double held_force_ = 0.0;       ///< N/m, of this step
+  std::vector<std::size_t> held_; ///< rows that begin it at rest, of those at hand
 };
 
 /// Sums of the last evaluation with all loads at the present time, and accelerations by them.

@@ -355,6 +355,38 @@ TEST(Identity, OfAStaticStageThatIsLeft) {
   }
 }
 
+// Blocks are held while another one falls, wake when it hits them, and are held again; rigid ones, or
+// deformable ones on two ranks and on four.
+TEST(Identity, OfBlocksThatAreHeld) {
+  const std::string fidelity = Communicator::world().size() % 2 == 1 ? "rigid" : "deformable";
+  const Scene scene = testing::scene_of(
+      testing::falling_block_toml(fidelity, 32, 16, "interval = 0.5\ncheckpoint_interval = 0.5\n",
+                                  "local_damping = 0.7\n"),
+      {"joint.default.normal_stiffness=5e7"});
+  const TwoRuns runs(scene);
+  EXPECT_GE(runs.counted("refreshes"), 3);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+    EXPECT_GE(runs.counted("migrations"), 1);
+  }
+  const testing::SharedFolder folder(runs.world());
+  if (runs.world().is_root()) {
+    fs::copy(runs.alone(), folder.path("run"), fs::copy_options::recursive);
+    const std::vector<fs::path> checkpoints = checkpoint_files(folder.path("run"));
+    EXPECT_EQ(checkpoints.size(), 2U);
+    fs::remove(std::max(checkpoints.front(), checkpoints.back()));
+  }
+  runs.world().barrier();
+  const testing::CapturedLog log;
+  EXPECT_EQ(restart_scene(runs.world(), scene, scene, folder.path("run")), 0);
+  runs.world().barrier();
+  if (runs.world().is_root()) {
+    for (const std::string &difference : compare_runs(folder.path("run"), runs.alone())) {
+      ADD_FAILURE() << "restarted: " << difference;
+    }
+  }
+}
+
 // Sixteen columns: only a few contacts can lie between ranks. Friction is lowered so that they slide, and
 // leave their cells.
 TEST(Identity, OfAToppledSlope) {

@@ -126,6 +126,26 @@ std::string falling_pile_toml(int num_blocks, double duration) {
   return toml;
 }
 
+std::string falling_block_toml(const std::string &fidelity, int rows, int columns, const std::string &output,
+                               const std::string &stage) {
+  const double top = 0.5 * rows;
+  const double end = columns + 0.5; // of every second row
+  return fmt::format("[run]\nfidelity = \"{}\"\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 2e9\n"
+                     "poissons_ratio = 0.25\n[joint.default]\nnormal_stiffness = 1e9\n"
+                     "friction_angle_deg = 30.0\n[output]\n{}",
+                     fidelity, output) +
+         block_toml("floor", rectangle({-1.0, -1.0}, {end + 20.0, 0.0}), "fixed = true") +
+         block_toml("shelf", rectangle({end - 0.4, top + 0.1}, {end + 1.5, top + 0.3}), "fixed = true") +
+         block_toml("falls", rectangle({end - 1.0, top + 0.3}, {end + 1.0, top + 1.3})) +
+         fmt::format("[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = {}\ncolumns = {}\n"
+                     "block_size = [1.0, 0.5]\n",
+                     rows, columns) +
+         "[[stage]]\nkind = \"settle\"\nlimit = 40.0\nsolver = \"static\"\ntolerance = 1e-10\n"
+         "[[stage]]\nkind = \"excavate\"\nblocks = [\"shelf\"]\n"
+         "[[stage]]\nkind = \"settle\"\nlimit = 40.0\nsolver = \"dynamic\"\n" +
+         stage;
+}
+
 std::string mixed_wall_toml(int rows, int columns, double duration) {
   const double squeeze = 0.002;
   std::string toml = fmt::format("[run]\nduration = {}\n[material.rock]\ndensity = 2600.0\n"

@@ -37,6 +37,13 @@ std::vector<Vec2> random_polygon(unsigned seed, int num_vertices, double radius,
 /// touches, slides and crosses subdomain corners.
 std::string falling_pile_toml(int num_blocks, double duration);
 
+/// A wall of bricks at rest, and a block that loses the shelf it lies on in the second stage: it hits the
+/// corner of the wall and falls beside it. The third stage settles by the dynamic step.
+/// @param fidelity  of all blocks
+/// @param keys  lines of [output] and of the last stage
+std::string falling_block_toml(const std::string &fidelity, int rows, int columns, const std::string &output,
+                               const std::string &stage);
+
 /// A wall of cells of an L and a brick in its notch, each rigid or deformable by turns, on a floor that
 /// shakes it; two outputs, a monitored block and point.
 std::string mixed_wall_toml(int rows, int columns, double duration);

@@ -1,0 +1,37 @@
+#pragma once
+
+// Blocks that a settle stage of the dynamic step holds, so that its cost follows what moves.
+//
+// Where all but a few blocks are at rest, most of a step is spent on contacts that do not change. A block
+// whose velocity and acceleration are exactly zero therefore stays where it is for as long as the net force
+// on it is at most a tenth of what the tolerance of the stage allows to a block at rest (`held_force`). Pairs
+// of two such blocks are left out of the evaluation, to the same bits (contact/resting_rows.hpp). Forces on
+// held blocks are known at every step; one on which more than that acts moves on in the same step.
+//
+// Blocks are set to rest at looks at which no more than a tenth of all are beyond that force or have moved by
+// more than `held_motion` of the largest overlap since the look before, and at the beginning of a stage that
+// begins where the static solver has found rest. The state itself says who is held, so that a restart goes on
+// with the same bits.
+
+#include "simulation/run_state.hpp"
+
+namespace gcpdda {
+
+/// N/m; 0 where the stage at hand holds no block.
+[[nodiscard]] double held_force(const RunState &run);
+/// The same over the largest force anywhere. A trial that is confirmed has ten times the tolerance of others.
+[[nodiscard]] double held_ratio(const Stage &stage);
+
+/// Velocity and acceleration are exactly zero.
+[[nodiscard]] bool is_at_rest(const BlockSystem &blocks, std::size_t row);
+/// What nothing balances on a row, in a measure of forces, N/m.
+[[nodiscard]] double net_force(const BlockSystem &blocks, std::size_t row);
+/// A row that a step has moved is back where it was, at rest.
+void hold(BlockSystem &blocks, std::size_t row);
+
+/// At a look: blocks that hardly move are set to rest. Collective.
+void hold_at_look(RunState &run);
+/// Where the static solver has left all blocks without velocity: those on which hardly a force acts stay.
+void hold_after_statics(RunState &run);
+
+} // namespace gcpdda
