@@ -9,9 +9,12 @@
 // held blocks are known at every step; one on which more than that acts moves on in the same step.
 //
 // Blocks are set to rest at looks at which no more than a tenth of all are beyond that force or have moved by
-// more than `held_motion` of the largest overlap since the look before, and at the beginning of a stage that
-// begins where the static solver has found rest. The state itself says who is held, so that a restart goes on
-// with the same bits.
+// more than `held_motion` of the largest overlap since the look before, and where the static solver hands
+// over to the dynamic step. The state itself says who is held, so that a restart goes on with the same bits.
+//
+// The static solver holds none. Where four of 10,883 blocks creep, 10 to 50 % of all move by more than 1e-5
+// of the largest overlap in 50 evaluations: the few load all others anew, and forces would be off by more
+// than the 1e-6 of the largest that is allowed here.
 
 #include "simulation/run_state.hpp"
 
