@@ -122,6 +122,26 @@ private:
   testing::SharedFolder folder_;
 };
 
+/// A restart from the last checkpoint but one, of the middle of the last stage, comes to the same results.
+void expect_same_after_restart(const TwoRuns &runs, const Scene &scene) {
+  const testing::SharedFolder folder(runs.world());
+  if (runs.world().is_root()) {
+    fs::copy(runs.alone(), folder.path("run"), fs::copy_options::recursive);
+    const std::vector<fs::path> checkpoints = checkpoint_files(folder.path("run"));
+    EXPECT_EQ(checkpoints.size(), 2U);
+    fs::remove(std::max(checkpoints.front(), checkpoints.back()));
+  }
+  runs.world().barrier();
+  const testing::CapturedLog log;
+  EXPECT_EQ(restart_scene(runs.world(), scene, scene, folder.path("run")), 0);
+  runs.world().barrier();
+  if (runs.world().is_root()) {
+    for (const std::string &difference : compare_runs(folder.path("run"), runs.alone())) {
+      ADD_FAILURE() << "restarted: " << difference;
+    }
+  }
+}
+
 /// Ranks that own a block at the start.
 std::set<std::string> ranks_with_blocks(const fs::path &run) {
   std::set<std::string> ranks;
@@ -298,25 +318,11 @@ TEST(Identity, OfStagesWithTheStaticSolver) {
   if (runs.world().size() > 1) {
     EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
   }
-  // The last checkpoint but one is of the middle of the last stage.
-  const testing::SharedFolder folder(runs.world());
   if (runs.world().is_root()) {
     EXPECT_EQ(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
     EXPECT_EQ(summary_text(runs.together(), "stages"), summary_text(runs.alone(), "stages"));
-    fs::copy(runs.alone(), folder.path("run"), fs::copy_options::recursive);
-    const std::vector<fs::path> checkpoints = checkpoint_files(folder.path("run"));
-    EXPECT_EQ(checkpoints.size(), 2U);
-    fs::remove(std::max(checkpoints.front(), checkpoints.back()));
   }
-  runs.world().barrier();
-  const testing::CapturedLog log;
-  EXPECT_EQ(restart_scene(runs.world(), scene, scene, folder.path("run")), 0);
-  runs.world().barrier();
-  if (runs.world().is_root()) {
-    for (const std::string &difference : compare_runs(folder.path("run"), runs.alone())) {
-      ADD_FAILURE() << "restarted: " << difference;
-    }
-  }
+  expect_same_after_restart(runs, scene);
 }
 
 // Joints that dilate, and bonds of which some break: those that hang over the opening.
@@ -369,22 +375,7 @@ TEST(Identity, OfBlocksThatAreHeld) {
     EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
     EXPECT_GE(runs.counted("migrations"), 1);
   }
-  const testing::SharedFolder folder(runs.world());
-  if (runs.world().is_root()) {
-    fs::copy(runs.alone(), folder.path("run"), fs::copy_options::recursive);
-    const std::vector<fs::path> checkpoints = checkpoint_files(folder.path("run"));
-    EXPECT_EQ(checkpoints.size(), 2U);
-    fs::remove(std::max(checkpoints.front(), checkpoints.back()));
-  }
-  runs.world().barrier();
-  const testing::CapturedLog log;
-  EXPECT_EQ(restart_scene(runs.world(), scene, scene, folder.path("run")), 0);
-  runs.world().barrier();
-  if (runs.world().is_root()) {
-    for (const std::string &difference : compare_runs(folder.path("run"), runs.alone())) {
-      ADD_FAILURE() << "restarted: " << difference;
-    }
-  }
+  expect_same_after_restart(runs, scene);
 }
 
 // Sixteen columns: only a few contacts can lie between ranks. Friction is lowered so that they slide, and
