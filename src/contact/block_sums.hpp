@@ -55,11 +55,12 @@ public:
     return group_[slot];
   }
   RegionDyads &dyads(std::uint32_t pair) { return group_dyads_[slot_of(pair)]; }
-  /// A plain pair of the group at hand is evaluated anew, where regions stay.
+  /// Where regions stay, a plain pair of the group at hand is evaluated anew ...
   void drop(std::uint32_t pair) { seen_[slot_of(pair)] = 0; }
-  void drop_all() { std::fill(seen_.begin(), seen_.end(), std::uint8_t{0}); }
-  /// Or it does what it did.
+  /// ... or does what it did.
   void keep_again(std::uint32_t pair) { seen_[slot_of(pair)] &= touches; }
+  /// No plain pair does anything.
+  void drop_all() { std::fill(seen_.begin(), seen_.end(), std::uint8_t{0}); }
   /// All pairs of a group have been evaluated.
   void close_group(const BlockSystem &system, const Candidates &candidates, std::uint32_t number,
                    const PlainBatch &batch);
@@ -75,13 +76,14 @@ public:
     kept_.push_back({RegionSums{}, born});
     return kept_.back();
   }
-  /// So does the pair at this place of Candidates::waiting.
-  void keep_waiting_again(std::size_t place);
   /// Of the last one opened.
   RegionDyads &border_dyads() { return kept_dyads_.back(); }
+  /// The pair at this place of Candidates::waiting does what it did.
+  void keep_waiting_again(std::size_t place);
   /// All regions of some other pair.
   /// @param dyads  theirs, or none
   void keep(std::uint32_t pair, std::span<const RegionForce> regions, std::span<const RegionDyads> dyads);
+  /// All regions of some other pair do what they did.
   void keep_again_other(std::uint32_t pair) { keep_waiting_again(place_of(pair)); }
   /// What waits.
   ContactCount finish(const BlockSystem &system, const Candidates &candidates);

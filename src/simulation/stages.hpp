@@ -20,8 +20,9 @@
 // the whole pile by the little that was left unbalanced. The static solver therefore goes on first, until all
 // but a few blocks are balanced so well that the dynamic step holds them (held_blocks.hpp). The swing of the
 // few needs not end: D does not grow there either, in place of being small. A block that goes on under a
-// force moves farther from look to look. failed: M has reached failure_motion, D is at least half of what it
-// was, and T at least a quarter of the most it was: the blocks are not about to come to rest.
+// force moves farther from look to look.
+// failed: M has reached failure_motion, D is at least half of what it was, and T at least a quarter of the
+// most it was: the blocks are not about to come to rest.
 //
 // The strengths of a trial of gcpdda fos by the dynamic step fall in increments of 2 %, one at each look
 // (Stage::weakening); no trial has settled before they have fallen. Taken away at once, strength leaves

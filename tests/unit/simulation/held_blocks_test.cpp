@@ -34,10 +34,8 @@ std::int64_t num_held(const BlockSystem &blocks) {
 }
 
 /// The first steps of the last stage.
-Course course_of(const std::string &fidelity, const std::string &tolerance, int steps) {
-  const std::string stage = "local_damping = 0.1\ntolerance = " + tolerance + "\n";
-  Simulation simulation(Communicator::self(),
-                        scene_of(falling_block_toml(fidelity, 10, 12, "interval = 10\n", stage)));
+Course course_of(const std::string &toml, int steps) {
+  Simulation simulation(Communicator::self(), scene_of(toml));
   while (simulation.stage().index < 2) {
     simulation.end_stage();
     simulation.stage_is_over() ? simulation.begin_next_stage() : simulation.step();
@@ -57,6 +55,11 @@ Course course_of(const std::string &fidelity, const std::string &tolerance, int 
     course.forces.push_back(region.normal_force);
   }
   return course;
+}
+
+Course course_of(const std::string &fidelity, const std::string &tolerance, int steps) {
+  const std::string stage = "local_damping = 0.1\ntolerance = " + tolerance + "\n";
+  return course_of(falling_block_toml(fidelity, 10, 12, "interval = 10\n", stage), steps);
 }
 
 // Up to the impact forces may differ by a millionth of the largest and places by a millionth of a block, that
@@ -91,6 +94,14 @@ TEST(HeldBlocks, WakeWhereForcesReachThem) {
     const Course free = course_of(fidelity, "1e-30", 800);
     EXPECT_NEAR(held.energies.residual, free.energies.residual, 1e-3 * -free.energies.gravity) << fidelity;
   }
+}
+
+// A run stage is dynamics, whether it ends by a verdict or not.
+TEST(HeldBlocks, AreNotInARunStage) {
+  std::string toml = falling_block_toml("rigid", 10, 12, "interval = 10\n", "local_damping = 0.1\n");
+  const std::string settle = "kind = \"settle\"\nlimit = 40.0\nsolver = \"dynamic\"\n";
+  toml.replace(toml.find(settle), settle.size(), "kind = \"run\"\nlimit = 40.0\n");
+  EXPECT_EQ(course_of(toml, 400).most_held, 0);
 }
 
 } // namespace
