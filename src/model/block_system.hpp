@@ -217,6 +217,7 @@ struct PseudoMotion {
   std::array<double, 6> momentum{};
   std::array<double, 6> held{}; ///< force that was out of balance when the stage began
   double is_free = 0.0;         ///< 1: nothing touched it at the last evaluation
+  double rests = 0.0;           ///< 1: it stays where it is while those far from balance move
   /// In sizes of the block, from the beginning of a trial to that of its window at hand; not in checkpoints,
   /// because nothing goes on with a trial.
   double moved = 0.0;

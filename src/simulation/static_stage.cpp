@@ -8,6 +8,7 @@
 #include "simulation/stage_runner.hpp"
 #include "simulation/static_evaluation.hpp"
 #include "simulation/step_report.hpp"
+#include "statics/unbalanced_forces.hpp"
 
 #include <algorithm>
 #include <array>
@@ -79,12 +80,25 @@ void book_static_work(RunState &run) {
   }
 }
 
+/// What may be left on a block that is balanced, N/m.
+double balanced_force(const RunState &run) {
+  const Stage &stage = run.clock.stage();
+  return (stage.begins_at_rest ? held_ratio(stage) : stage.tolerance) * run.clock.state.memory.last.force;
+}
+
 void find_static_motion(RunState &run) {
   const auto scope = run.phases.measure(Phase::update);
   const double overlap = run.communicator.max(run.force_report.max_overlap);
   run.statics->springs().set_links(run.bolts.liner_springs(run.blocks));
+  const bool was_local = run.statics->is_local();
   run.statics->find_motion(run.blocks, run.neighbours.candidates, run.neighbours.history, run.contacts,
-                           overlap, run.clock.state.iteration);
+                           overlap, balanced_force(run), run.clock.state.iteration);
+  run.contacts.leave_out_resting(run.statics->is_local());
+  if (was_local && !run.statics->is_local()) { // blocks that were not let move have not shown that they rest
+    LookMemory &memory = run.clock.state.memory;
+    memory.settled_looks = 0;
+    memory.loose_looks = std::min(memory.loose_looks, looks_at_loose_blocks(true) - 2);
+  }
 }
 
 /// The iteration of a stage that begins, or goes on after a restart.
@@ -233,6 +247,10 @@ void judge_statics(RunState &run) {
     judge_confirmation(run);
     return;
   }
+  if (run.statics->is_local() && run.clock.state.verdict == Verdict::settled) {
+    run.clock.state.ended = false;
+    run.clock.state.verdict = Verdict::undecided;
+  }
   if (run.clock.stage().is_trial()) {
     judge_static_trial(run);
     return;
@@ -305,6 +323,7 @@ void prepare_statics(RunState &run) {
 
 void close_statics(RunState &run) {
   run.statics.reset();
+  run.contacts.leave_out_resting(false);
   run.contacts.keep_details(false);
   drop_pseudo_rows(run.blocks);
 }

@@ -12,7 +12,7 @@ namespace gcpdda {
 
 namespace {
 
-constexpr std::size_t reals_per_block = 19;
+constexpr std::size_t reals_per_block = 20;
 constexpr std::size_t counts_per_spring = 6;
 constexpr std::size_t reals_per_spring = 9;
 
@@ -39,6 +39,7 @@ template <class Motion, class Real> void visit_motion(Motion &motion, Real &&rea
     }
   }
   real(motion.is_free);
+  real(motion.rests);
 }
 
 } // namespace

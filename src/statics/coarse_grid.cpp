@@ -2,6 +2,7 @@
 
 #include "base/exact_sum.hpp"
 #include "contact/block_sums.hpp"
+#include "statics/cells.hpp"
 
 #include <Eigen/Sparse>
 
@@ -22,25 +23,6 @@ double unit_of(double largest, int bits) {
 
 bool moves(const BlockSystem &system, std::size_t row) {
   return row < system.first_fixed() && !system.properties[row].keeps_its_velocity();
-}
-
-void make_unique(std::vector<std::int64_t> &list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-/// The list of all ranks, ascending and each number once.
-std::vector<std::int64_t> united(const Communicator &communicator, std::vector<std::int64_t> mine) {
-  make_unique(mine);
-  if (communicator.size() == 1) {
-    return mine;
-  }
-  std::vector<std::int64_t> all;
-  for (const auto &theirs : communicator.all_gather(mine)) {
-    all.insert(all.end(), theirs.begin(), theirs.end());
-  }
-  make_unique(all);
-  return all;
 }
 
 } // namespace
@@ -94,17 +76,26 @@ std::array<std::int64_t, 2> CoarseGrid::place_of(const BlockSystem &system, std:
 }
 
 void CoarseGrid::lay(const BlockSystem &system) {
+  has_cells_ = lay_cells(system);
+  std::vector<std::uint8_t> all(system.num_rows());
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    all[row] = moves(system, row) ? 1 : 0;
+  }
+  choose(system, all);
+}
+
+void CoarseGrid::choose(const BlockSystem &system, std::span<const std::uint8_t> moves) {
   keys_.clear();
   cell_of_.assign(system.num_rows(), -1);
   arms_.assign(system.num_rows(), {});
   forces_.clear();
   motions_.clear();
-  if (!lay_cells(system)) {
+  if (!has_cells_) {
     return;
   }
   std::vector<std::int64_t> mine;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (moves(system, row)) {
+    if (moves[row] != 0) {
       const auto [column, line] = place_of(system, row);
       mine.push_back(line * columns_ + column);
     }
@@ -113,7 +104,7 @@ void CoarseGrid::lay(const BlockSystem &system) {
   forces_.assign(3 * keys_.size(), 0);
   motions_.assign(3 * keys_.size(), 0.0);
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
-    if (moves(system, row)) {
+    if (moves[row] != 0) {
       const auto [column, line] = place_of(system, row);
       const auto found = std::lower_bound(keys_.begin(), keys_.end(), line * columns_ + column);
       cell_of_[row] = static_cast<std::int32_t>(found - keys_.begin());

@@ -39,6 +39,9 @@ public:
 
   /// Cells of the rows of a neighbourhood. Collective.
   void lay(const BlockSystem &system);
+  /// Cells of some of them, which alone move from here on. Collective.
+  /// @param moves  by row
+  void choose(const BlockSystem &system, std::span<const std::uint8_t> moves);
   /// Make and factorise K_c. Collective.
   /// @param matrices  M of owned rows
   void factorise(const BlockSystem &system, std::span<const ContactSpring> springs,
@@ -110,6 +113,7 @@ private:
   }
 
   Communicator communicator_;
+  bool has_cells_ = false; ///< some block of some rank moves
   Vec2 origin_;
   double side_ = 1.0;
   double per_side_ = 1.0;

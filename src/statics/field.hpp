@@ -59,17 +59,21 @@ struct RowRun {
   std::size_t last = 0;
 };
 
+/// Rows come in ascending order.
+inline void append_row(std::vector<RowRun> &runs, std::size_t row) {
+  if (runs.empty() || runs.back().last < row) {
+    runs.push_back({row, row});
+  }
+  runs.back().last = row + 1;
+}
+
 /// Owned rows that forces move, in runs. Fields are zero on the others, and their places are left alone.
 inline std::vector<RowRun> moving_rows(const BlockSystem &system) {
   std::vector<RowRun> runs;
   for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (system.properties[row].keeps_its_velocity()) {
-      continue;
+    if (!system.properties[row].keeps_its_velocity()) {
+      append_row(runs, row);
     }
-    if (runs.empty() || runs.back().last < row) {
-      runs.push_back({row, row});
-    }
-    runs.back().last = row + 1;
   }
   return runs;
 }

@@ -2,33 +2,21 @@
 
 #include "base/exact_sum.hpp"
 #include "dynamics/deformable.hpp"
+#include "statics/unbalanced_forces.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gcpdda::statics {
 
-std::array<double, 6> unbalanced_forces(const BlockSystem &system, std::size_t row) {
-  std::array<double, 6> force{};
-  const RigidDof sum = system.contact[row].force + system.anchor_force(row);
-  force[0] = sum.u.x;
-  force[1] = sum.u.y;
-  if (system.is_deformable(row)) {
-    const Deformation &d = system.deformation_of(row);
-    const Mat2 dyad = unbalanced_on_gradient(d) * transposed(d.trial);
-    force[2] = dyad.xx, force[3] = dyad.xy, force[4] = dyad.yx, force[5] = dyad.yy;
-  } else {
-    force[2] = sum.r;
-  }
-  return force;
-}
-
-void PseudoTime::lay(const BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
+void PseudoTime::lay(BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
                      std::vector<BorderRows> border) {
   width_ = any_deformable ? 6 : 3;
   BlockMatrices mass(system.num_owned, width_);
   BlockMatrices bolts(system.num_owned, width_);
-  moving_ = moving_rows(system);
+  far_.lay(system, moving_rows(system));
+  moving_.assign(far_.mobile().begin(), far_.mobile().end());
   for_rows(moving_, [&](std::size_t row) {
     add_boundary(system, row, around[row], mass.of(row), width_);
     add_bolts(system, row, around[row].bolts, bolts.of(row), width_);
@@ -36,6 +24,57 @@ void PseudoTime::lay(const BlockSystem &system, std::span<const Surroundings> ar
   solver_.lay(system, moving_, std::move(mass), std::move(bolts), std::move(border));
   force_ = Field(system.num_rows(), width_);
   direction_ = Field(system.num_rows(), width_);
+  springs_.set_moving({});
+  double some_rest = 0.0;
+  const std::span<PseudoMotion> pseudo = pseudo_rows(system);
+  for_rows(moving_, [&](std::size_t row) { some_rest = std::max(some_rest, pseudo[row].rests); });
+  is_local_ = communicator_.max(some_rest) > 0.0;
+  if (is_local_) {
+    keep_resting(system);
+  }
+}
+
+void PseudoTime::keep_resting(BlockSystem &system) {
+  std::vector<std::uint8_t> moves(system.num_rows(), 0);
+  moving_.clear();
+  for_rows(far_.mobile(), [&](std::size_t row) {
+    PseudoMotion &motion = system.pseudo[row];
+    direction_.of(row)[0] = motion.rests == 0.0 ? 1.0 : 0.0;
+    if (motion.rests == 0.0) {
+      moves[row] = 1;
+      append_row(moving_, row);
+      return;
+    }
+    motion.velocity = {};
+    motion.momentum = {};
+    system.motion[row].set_increment({});
+    if (system.is_deformable(row)) {
+      system.motion[row].turn = {};
+    }
+  });
+  solver_.copy_to_ghosts(direction_);
+  for (std::size_t row = system.num_owned; row < system.first_fixed(); ++row) {
+    moves[row] = direction_.of(row)[0] != 0.0 ? 1 : 0;
+  }
+  std::fill(direction_.values().begin(), direction_.values().end(), 0.0);
+  solver_.choose(system, moving_, moves);
+  springs_.set_moving(is_local_ ? std::move(moves) : std::vector<std::uint8_t>());
+}
+
+void PseudoTime::choose_rows(BlockSystem &system, double balanced, const IterationState &state) {
+  if (!may_pause(state) || load_share(state.evaluations) < 1.0) {
+    return;
+  }
+  const bool all_move = state.evaluations % rules_.window < rules_.all_move;
+  const auto chosen = all_move ? std::nullopt : far_.find(system, balanced);
+  const bool was_local = std::exchange(is_local_, chosen.has_value());
+  if (!is_local_ && !was_local) {
+    return;
+  }
+  const std::span<PseudoMotion> pseudo = pseudo_rows(system);
+  for_rows(far_.mobile(),
+           [&](std::size_t row) { pseudo[row].rests = chosen && (*chosen)[row] == 0 ? 1.0 : 0.0; });
+  keep_resting(system);
 }
 
 void PseudoTime::hold(BlockSystem &system) {
@@ -94,7 +133,8 @@ double PseudoTime::power(const BlockSystem &system) const {
 }
 
 void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
-                             const ContactForces &contacts, double overlap, IterationState &state) {
+                             const ContactForces &contacts, double overlap, double balanced,
+                             IterationState &state) {
   rules_.springs.slides_fade = load_share(state.evaluations) >= 1.0;
   springs_.update(system, candidates, history, contacts, rules_.springs);
   find_standing(system);
@@ -102,6 +142,7 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   const double power_behind = power(system);
   const double square =
       state.momentum > 0.0 ? std::clamp((state.power_before - power_behind) / state.momentum, 0.0, 3.9) : 0.0;
+  choose_rows(system, balanced, state);
   const bool is_coarse_due = may_pause(state);
   ++state.evaluations;
   gather(system, load_share(state.evaluations));

@@ -41,7 +41,15 @@
 // The step of a block is at most `steps_of_overlap` of the largest overlap, the length by which contacts
 // carry what they carry, and at most `step_of_width` of its narrowest width: a block that has lost its
 // contacts neither flies through its neighbours nor hits them deeper than a joint may close.
+//
+// Once all of the load acts, all blocks move in `all_move` of `window` evaluations, and in the others those
+// far from balance with what surrounds them (far_rows.hpp). The others stay where they are, without velocity:
+// contacts and springs of two of them are as they were, to the same bits, and their rows are left out of the
+// solution with K. Forces on them are known at each evaluation, and which blocks move is asked anew each time
+// that the coarse matrix is made. All equations above are those of the blocks that move; the quotient of a
+// step is found from those that took it.
 
+#include "statics/far_rows.hpp"
 #include "statics/iteration_state.hpp"
 #include "statics/stiffness_solver.hpp"
 
@@ -58,6 +66,9 @@ struct IterationRules {
   double steps_of_overlap = 10.0;  ///< largest step of a block
   double step_of_width = 0.05;     ///< largest step of a block over its narrowest width
   std::int64_t stall_window = 300; ///< evaluations in which the least ratio has to fall by half
+  std::int64_t window = 30;        ///< evaluations from one time that all blocks move to the next
+  std::int64_t all_move = 10;      ///< of these
+  FarRules far;
   SpringRules springs;
 };
 
@@ -67,9 +78,10 @@ double mass_share(std::int64_t num_blocks);
 class PseudoTime {
 public:
   PseudoTime(const Communicator &communicator, const IterationRules &rules)
-      : rules_(rules), communicator_(communicator), solver_(communicator) {}
+      : rules_(rules), communicator_(communicator), far_(communicator, rules.far), solver_(communicator) {}
 
   [[nodiscard]] const IterationRules &rules() const { return rules_; }
+  [[nodiscard]] IterationRules &rules() { return rules_; }
   [[nodiscard]] ContactSprings &springs() { return springs_; }
   [[nodiscard]] const ContactSprings &springs() const { return springs_; }
   /// Share of the load that acts after so many evaluations.
@@ -85,14 +97,17 @@ public:
   /// Rows have been found anew. Collective.
   /// @param around  of each owned row
   /// @param any_deformable  on any rank
-  void lay(const BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
+  void lay(BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
            std::vector<BorderRows> border);
+  /// Some blocks stay where they are while others move.
+  [[nodiscard]] bool is_local() const { return is_local_; }
   /// What is out of balance is held from here on. The forces are those of the last evaluation.
   void hold(BlockSystem &system);
   /// From the forces of an evaluation to the motion of the next step, in PseudoMotion::velocity. Collective.
   /// @param overlap  largest one of all ranks, m
+  /// @param balanced  N/m: what may be left on a block that is balanced
   void find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
-                   const ContactForces &contacts, double overlap, IterationState &state);
+                   const ContactForces &contacts, double overlap, double balanced, IterationState &state);
   /// Owned rows move by it. Their trial configurations and states are the same afterwards, and at rest.
   void move(BlockSystem &system) const;
 
@@ -105,6 +120,10 @@ private:
   };
   /// From the springs that are closed. Rows that land are stopped.
   void find_standing(BlockSystem &system);
+  /// Which blocks move from here on, where that is asked. Collective.
+  void choose_rows(BlockSystem &system, double balanced, const IterationState &state);
+  /// Blocks that rest stay where they are, on all ranks. Collective.
+  void keep_resting(BlockSystem &system);
   /// Unbalanced forces when this share of the load acts.
   void gather(const BlockSystem &system, double share);
   /// v.f. Collective.
@@ -115,9 +134,11 @@ private:
 
   IterationRules rules_;
   Communicator communicator_;
+  FarRows far_;
   StiffnessSolver solver_;
   ContactSprings springs_;
   std::size_t width_ = 3;
+  bool is_local_ = false;
   std::vector<RowRun> moving_;
   std::vector<Standing> stands_; ///< by row
   Field force_;
@@ -126,8 +147,5 @@ private:
 
 /// Largest distance that a point of an owned row moves by the motion of its next step, m.
 double length_of_step(const BlockSystem &system, std::size_t row);
-
-/// Forces on the freedoms of an owned row that nothing balances (field.hpp).
-std::array<double, 6> unbalanced_forces(const BlockSystem &system, std::size_t row);
 
 } // namespace gcpdda::statics

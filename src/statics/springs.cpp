@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 namespace gcpdda::statics {
@@ -73,8 +74,17 @@ void ContactSprings::clear() {
   num_closed_ = 0;
 }
 
+void ContactSprings::keep_as_it_is(std::size_t number) {
+  next_springs_.push_back(springs_[number]);
+  next_memories_.push_back(memories_[number]);
+}
+
 void ContactSprings::keep_open(const BlockSystem &system, std::size_t number, const SpringRules &rules) {
   SpringMemory memory = memories_[number];
+  if (both_rest(springs_[number].lower, springs_[number].higher)) {
+    keep_as_it_is(number);
+    return;
+  }
   if (memory.open_for >= rules.open_memory || !are_near(system, springs_[number], rules.reach)) {
     return;
   }
@@ -104,6 +114,11 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
       keep_open(system, old, rules);
     }
     const bool is_known = old < memories_.size() && !is_before(key, memories_[old]);
+    if (is_known && both_rest(pair.lower.value, pair.higher.value)) {
+      num_closed_ += memories_[old].open_for == 0 ? 1 : 0;
+      keep_as_it_is(old++);
+      return;
+    }
     const SpringMemory before = is_known ? memories_[old] : key;
     const ContactSpring last = is_known ? springs_[old] : ContactSpring{};
     old += is_known ? 1 : 0;
@@ -132,6 +147,20 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
   }
   std::swap(springs_, next_springs_);
   std::swap(memories_, next_memories_);
+  find_those_at_work();
+}
+
+void ContactSprings::set_moving(std::vector<std::uint8_t> moves) {
+  moves_ = std::move(moves);
+  find_those_at_work();
+}
+
+void ContactSprings::find_those_at_work() {
+  at_work_.clear();
+  if (!moves_.empty()) {
+    std::copy_if(springs_.begin(), springs_.end(), std::back_inserter(at_work_),
+                 [&](const ContactSpring &s) { return !both_rest(s.lower, s.higher); });
+  }
 }
 
 namespace {

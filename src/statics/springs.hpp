@@ -34,6 +34,8 @@
 // Elements of liners are springs of the same kind, with the middle of the element in the place of the region
 // (`links`): what they hold is as stiff as a joint, and between two blocks of which none is at rest.
 //
+// Springs of two blocks that rest while others move (`set_moving`) stay as they are.
+//
 // The list ascends by pair as Candidates::pairs do, so that a block adds its springs in the order of its
 // partners' ids and gets the same bits on any number of ranks.
 
@@ -99,11 +101,14 @@ public:
   [[nodiscard]] std::span<const SpringMemory> memories() const { return memories_; }
   /// Springs of links, from here on, in an order that every rank knows.
   void set_links(std::vector<ContactSpring> links) { links_ = std::move(links); }
-  /// Call f with each list of springs, those of contacts first.
+  /// Call f with each list of springs: of contacts those at a row that moves, then all links.
   template <class F> void for_lists(F &&f) const {
-    f(std::span<const ContactSpring>(springs_));
+    f(std::span<const ContactSpring>(moves_.empty() ? springs_ : at_work_));
     f(std::span<const ContactSpring>(links_));
   }
+  /// Which rows move from here on.
+  /// @param moves  by row; empty: all do
+  void set_moving(std::vector<std::uint8_t> moves);
   [[nodiscard]] std::size_t num_closed() const { return num_closed_; }
 
   /// y += K p. Rows of y that are not owned get sums that mean nothing.
@@ -116,11 +121,18 @@ public:
   void clear();
 
 private:
+  void find_those_at_work();
+  [[nodiscard]] bool both_rest(std::size_t lower, std::size_t higher) const {
+    return !moves_.empty() && moves_[lower] == 0 && moves_[higher] == 0;
+  }
+  void keep_as_it_is(std::size_t number);
   void keep_open(const BlockSystem &system, std::size_t number, const SpringRules &rules);
 
   std::vector<ContactSpring> springs_;
   std::vector<SpringMemory> memories_;
   std::vector<ContactSpring> links_;
+  std::vector<std::uint8_t> moves_;    ///< by row; empty: all do
+  std::vector<ContactSpring> at_work_; ///< of springs_, those at a row that moves
   std::vector<ContactSpring> next_springs_;
   std::vector<SpringMemory> next_memories_;
   std::size_t num_closed_ = 0;

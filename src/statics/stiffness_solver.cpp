@@ -48,6 +48,13 @@ void StiffnessSolver::lay(const BlockSystem &system, std::vector<RowRun> moving,
   }
 }
 
+void StiffnessSolver::choose(const BlockSystem &system, std::vector<RowRun> moving,
+                             std::span<const std::uint8_t> moves) {
+  moving_ = std::move(moving);
+  coarse_.choose(system, moves);
+  std::fill(p_.values().begin(), p_.values().end(), 0.0);
+}
+
 void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &springs, double rho,
                           bool with_coarse) {
   const std::size_t width = mass_.width();

@@ -40,6 +40,12 @@ public:
   /// @param bolts  of owned rows
   void lay(const BlockSystem &system, std::vector<RowRun> moving, BlockMatrices mass, BlockMatrices bolts,
            std::vector<BorderRows> border);
+  /// Solve for some of its rows from here on; the others stay where they are. Collective.
+  /// @param moving  of the owned rows
+  /// @param moves  the same by row, ghosts included
+  void choose(const BlockSystem &system, std::vector<RowRun> moving, std::span<const std::uint8_t> moves);
+  /// Copy rows to their ghosts. Collective.
+  void copy_to_ghosts(Field &field) { border_.copy(field); }
   /// K of these springs, from here on. Collective.
   /// @param rho  of each owned row
   /// @param with_coarse  make the coarse matrix anew

@@ -146,6 +146,25 @@ std::string falling_block_toml(const std::string &fidelity, int rows, int column
          stage;
 }
 
+std::string fall_from_shelf_toml(const std::string &fidelity, int rows, int columns,
+                                 const std::string &output) {
+  const double x = columns + 16.0;
+  return fmt::format("[run]\nfidelity = \"{}\"\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 2e9\n"
+                     "poissons_ratio = 0.25\n[joint.default]\nnormal_stiffness = 1e9\n"
+                     "friction_angle_deg = 30.0\n[output]\n{}",
+                     fidelity, output) +
+         block_toml("floor", rectangle({-1.0, -1.0}, {x + 5.0, 0.0}), "fixed = true") +
+         block_toml("falls", rectangle({x, 0.5}, {x + 1.0, 1.5})) +
+         block_toml("shelf", rectangle({x - 1.0, 0.4}, {x + 2.0, 0.5}), "fixed = true") +
+         fmt::format("[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [0, 0]\nrows = {}\ncolumns = {}\n"
+                     "block_size = [1.0, 0.5]\n",
+                     rows, columns) +
+         "[[stage]]\nkind = \"settle\"\nlimit = 40.0\nsolver = \"static\"\ntolerance = 1e-10\n"
+         "[[stage]]\nkind = \"excavate\"\nblocks = [\"shelf\"]\n"
+         "[[stage]]\nkind = \"settle\"\nlimit = 40.0\nsolver = \"static\"\ntolerance = 1e-8\n"
+         "failure_motion = 10.0\n";
+}
+
 std::string mixed_wall_toml(int rows, int columns, double duration) {
   const double squeeze = 0.002;
   std::string toml = fmt::format("[run]\nduration = {}\n[material.rock]\ndensity = 2600.0\n"

@@ -43,6 +43,10 @@ std::string falling_pile_toml(int num_blocks, double duration);
 /// @param keys  lines of [output] and of the last stage
 std::string falling_block_toml(const std::string &fidelity, int rows, int columns, const std::string &output,
                                const std::string &stage);
+/// A wall of bricks at rest to 1e-10, and a block that falls 0.4 m from a shelf beside it when that is taken
+/// away, all with the static solver.
+std::string fall_from_shelf_toml(const std::string &fidelity, int rows, int columns,
+                                 const std::string &output);
 
 /// A wall of cells of an L and a brick in its notch, each rigid or deformable by turns, on a floor that
 /// shakes it; two outputs, a monitored block and point.

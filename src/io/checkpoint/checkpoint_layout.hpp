@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 /// Of the lists below and of the seal: it rises with every change of them.
-inline constexpr std::int64_t version = 12;
+inline constexpr std::int64_t version = 13;
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -249,7 +249,7 @@ static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
 static_assert(sizeof(Deformation) == std::size_t{7} * 64);
-static_assert(sizeof(PseudoMotion) == 20 * sizeof(double)); // simulation/static_state.cpp, all but `moved`
+static_assert(sizeof(PseudoMotion) == 21 * sizeof(double)); // simulation/static_state.cpp, all but `moved`
 
 inline constexpr std::array<const char *, 10> groups{"/clock",       "/run",   "/stage",  "/bolt",
                                                      "/statics",     "/scene", "/result", "/block",
