@@ -41,22 +41,27 @@ def cost_table(rows):
                   "CPU time over static"], lines, source("statics", "statics_cost.csv"))
 
 
+def pairs_a_block(row):
+    return float(row["pair_evaluations"]) / float(row["blocks"])
+
+
 def growth_table(rows):
     lines = [[row["model"], count(row["blocks"]), row["start"], row["way"], count(row["evaluations"]),
-              number(row["cpu_s"]), row["verdict"], row["loose"]] for row in rows]
-    return table(["model", "blocks", "start", "way", "evaluations", "CPU s", "verdict", "loose blocks"], lines,
+              count(pairs_a_block(row)), number(row["cpu_s"]), row["verdict"], row["loose"]] for row in rows]
+    return table(["model", "blocks", "start", "way", "evaluations", "pair evaluations a block", "CPU s", "verdict",
+                  "loose blocks"], lines,
                  source("statics", "statics_growth.csv"))
 
 
 def exponents(rows):
-    """Of N in the evaluations from the smallest to the largest slope, by way and start."""
+    """Of N in the pair evaluations a block from the smallest to the largest slope, by way and start."""
     found = []
     for model, start in (("slope", "joints open"), ("slope", "in situ"), ("wall", "joints open")):
         for way in WAYS[:3]:
             own = [row for row in of(rows, model=model, start=start, way=way) if row["verdict"].startswith("settled")]
             if len(own) > 1:
                 first, last = own[0], own[-1]
-                power = (math.log(float(last["evaluations"]) / float(first["evaluations"])) /
+                power = (math.log(pairs_a_block(last) / pairs_a_block(first)) /
                          math.log(float(last["blocks"]) / float(first["blocks"])))
                 found.append([model, start, way, f"{count(first['blocks'])} to {count(last['blocks'])}",
                               number(power, 2)])

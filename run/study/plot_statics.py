@@ -53,13 +53,13 @@ def draw_growth(axes, rows):
             own = [row for row in rows if (row["model"], row["start"], row["way"]) == (model, start, way) and
                    row["verdict"] == "settled"]
             if own:
-                axes.plot([int(row["blocks"]) for row in own], [int(row["evaluations"]) for row in own], marker + line,
-                          color=colour)
+                pairs = [int(row["pair_evaluations"]) / int(row["blocks"]) for row in own]
+                axes.plot([int(row["blocks"]) for row in own], pairs, marker + line, color=colour)
         axes.plot([], [], line, color="k", label=f"{model}, {start}")
     for way, (colour, marker) in list(LOOKS.items())[:3]:
         axes.plot([], [], marker, color=colour, label=way)
     axes.margins(y=0.12)
-    finish(axes, "number of blocks", "evaluations to the verdict settled", "Growth: slopes and walls", loc="upper left",
+    finish(axes, "number of blocks", "pair evaluations of a block", "Growth: slopes and walls", loc="upper left",
            bbox_to_anchor=(0.45, 1.0))
 
 
@@ -102,7 +102,7 @@ def main():
                                    for part in ("cost", "paths", "random", "growth"))
     random = [row for row in random if row.get("normal_off")]
     figure, axes = plt.subplots(2, 3, figsize=(14.5, 8.4))
-    draw_cost(axes[0, 0], cost, "evaluations", "evaluations of all contacts")
+    draw_cost(axes[0, 0], cost, "evaluations", "evaluations")
     draw_cost(axes[0, 1], cost, "cpu_s", "CPU time, s")
     draw_growth(axes[0, 2], growth)
     draw_increments(axes[1, 0], paths, random, "normal_off", "largest difference of the 20 largest normal forces")

@@ -4,9 +4,9 @@
     run/study/statics.py BUILD OUT_DIR [--quick] [--only PART ...]
     run/study/statics.py BUILD OUT_DIR --large
 
-PART is cost, paths, random or growth. Every run is on one rank. A count of evaluations is that of the contacts of all
-blocks: one a step. The ways to rest are the static solver with 1 to 800 increments of the load, kinetic damping, local
-damping of 0.8, and slow loading: the load rises smoothly over a number of steps under local damping.
+PART is cost, paths, random or growth. Every run is on one rank. A count of evaluations is that of steps; pair evaluations
+count the pairs of blocks that were evaluated. The ways to rest are the static solver with 1 to 800 increments of the load,
+kinetic damping, local damping of 0.8, and slow loading: the load rises smoothly over a number of steps under local damping.
 
 OUT_DIR/statics_cost.csv     evaluations and CPU time until the unbalanced ratio has fallen to a value
 OUT_DIR/statics_paths.csv    difference from slow loading over 16,000 steps, against cost
