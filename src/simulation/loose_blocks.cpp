@@ -93,4 +93,12 @@ void note_loose_blocks(RunState &run) {
        "look at them in the frames; they go on moving in the next stage"});
 }
 
+void note_loose_blocks_at_end(RunState &run) {
+  const StageState &state = run.clock.state;
+  if (state.ended && state.verdict == Verdict::settled && !run.clock.stage().is_trial() &&
+      state.memory.settled_looks < 2) {
+    note_loose_blocks(run);
+  }
+}
+
 } // namespace gcpdda

@@ -27,5 +27,7 @@ void look_for_loose_blocks(RunState &run, StageLook &look);
 
 /// Remember and say that the stage at hand has settled but for the loose blocks of the last look. Collective.
 void note_loose_blocks(RunState &run);
+/// The same where the stage at hand has ended so. Collective.
+void note_loose_blocks_at_end(RunState &run);
 
 } // namespace gcpdda

@@ -173,10 +173,6 @@ void look_at_stage(RunState &run) {
   if (is_loading(run) || (is_weakening(run) && run.clock.state.verdict == Verdict::settled)) {
     run.clock.state.verdict = Verdict::undecided;
   }
-  if (run.clock.state.verdict == Verdict::settled && !stage.is_trial() &&
-      run.clock.state.memory.settled_looks < 2) {
-    note_loose_blocks(run);
-  }
   run.clock.state.end_time = run.clock.time();
   run.clock.state.ended = stage.until_verdict && run.clock.state.verdict != Verdict::undecided;
 }
@@ -328,6 +324,7 @@ void judge_stage(RunState &run) {
   }
   if (run.clock.is_staged && run.clock.stage_step() % steps_between_verdicts(num_blocks(run.scene)) == 0) {
     look_at_stage(run);
+    note_loose_blocks_at_end(run);
     hold_at_look(run);
     if (drag_has_ended(run)) {
       run.local_damping = 0.0;

@@ -275,6 +275,7 @@ void judge_statics(RunState &run) {
                                      window, iteration.last_least));
     }
   }
+  note_loose_blocks_at_end(run);
 }
 
 void report_statically(RunState &run) {
