@@ -329,10 +329,9 @@ void close_statics(RunState &run) {
   drop_pseudo_rows(run.blocks);
 }
 
-void static_step(RunState &run) {
-  if (run.neighbours.stale) {
-    refresh_statics(run);
-  }
+namespace {
+
+void move_and_evaluate(RunState &run) {
   run.statics->move(run.blocks);
   pose_in_lanes(run.blocks, 0, run.blocks.num_owned);
   add_half_works(run.blocks, 0, run.blocks.num_owned);
@@ -345,9 +344,28 @@ void static_step(RunState &run) {
   run.neighbours.ghosts.begin(run.blocks, run.neighbours.border_trials);
   receive_ghosts(run);
   evaluate_statically(run);
+}
+
+} // namespace
+
+void static_step(RunState &run) {
+  if (run.neighbours.stale) {
+    refresh_statics(run);
+  }
+  move_and_evaluate(run);
   ++run.clock.step_count;
   book_static_work(run);
-  judge_statics(run);
+  const bool takes_back = !run.clock.stage().is_trial(); // whose dynamic step begins where the trial does
+  if (takes_back && run.communicator.max(run.local_fault ? 1.0 : 0.0) > 0.0) {
+    run.local_fault.reset();
+    run.statics->turn_back(run.blocks);
+    book_static_work(run);
+    move_and_evaluate(run);
+    book_static_work(run);
+    leave_statics(run, "a joint would have closed by more than half of a block");
+  } else {
+    judge_statics(run);
+  }
   if (is_static(run)) {
     find_static_motion(run);
     book_static_work(run);

@@ -221,6 +221,23 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
   state.momentum = momentum.value();
 }
 
+// x + v - v, and (I + G)^-1 (I + G) F.
+void PseudoTime::turn_back(BlockSystem &system) const {
+  for_rows(moving_, [&](std::size_t row) {
+    std::array<double, 6> &v = system.pseudo[row].velocity;
+    for (double &part : v) {
+      part = -part;
+    }
+    if (system.is_deformable(row)) {
+      const Mat2 back = inverse(Mat2{1.0 - v[2], -v[3], -v[4], 1.0 - v[5]});
+      v[2] = back.xx - 1.0;
+      v[3] = back.xy;
+      v[4] = back.yx;
+      v[5] = back.yy - 1.0;
+    }
+  });
+}
+
 void PseudoTime::move(BlockSystem &system) const {
   for_rows(moving_, [&](std::size_t row) {
     const std::array<double, 6> &v = system.pseudo[row].velocity;

@@ -110,6 +110,8 @@ public:
                    const ContactForces &contacts, double overlap, double balanced, IterationState &state);
   /// Owned rows move by it. Their trial configurations and states are the same afterwards, and at rest.
   void move(BlockSystem &system) const;
+  /// The next step takes back the last one.
+  void turn_back(BlockSystem &system) const;
 
 private:
   /// What touches a row, as far as damping is concerned.
