@@ -69,30 +69,32 @@ private:
     return false;
   }
 
-  // Far beyond its limit a pile may fall so wildly that the trial breaks down: then the next one is halfway
-  // down.
+  // Far beyond its limit a pile may fall so wildly that the trial breaks down, and just beyond it so slowly
+  // that nothing is decided: the search then comes down, and goes on up where that has not found a trial that
+  // fails.
   bool find_failing_end() {
-    double growth = 1.25;
-    double top = reduction_.to;
+    constexpr double growth = 1.25;
+    double tried = *found_.holds;
     while (!found_.fails) {
-      const bool broke_down = top < reduction_.to;
-      const double factor =
-          broke_down ? std::midpoint(*found_.holds, top) : std::min(growth * *found_.holds, top);
-      growth *= growth;
+      const bool comes_down = !found_.undecided.empty() && is_wide(found_.undecided.front());
+      if (!comes_down && tried >= reduction_.to) {
+        return false;
+      }
+      const double factor = comes_down ? std::midpoint(*found_.holds, found_.undecided.front())
+                                       : std::min(growth * tried, reduction_.to);
       const std::optional<Verdict> verdict = ask(factor);
       if (!verdict) {
         return false;
       }
       note(factor, *verdict);
-      if (*verdict == Verdict::undecided) {
-        top = factor;
-      }
-      const double left = top < reduction_.to ? reduction_.tolerance * *found_.holds : 0.0;
-      if (!found_.fails && top - *found_.holds <= left) {
-        return false;
-      }
+      tried = std::max(tried, factor);
     }
     return true;
+  }
+
+  /// What lies between the largest factor that holds and another one.
+  [[nodiscard]] bool is_wide(double end) const {
+    return end - *found_.holds > reduction_.tolerance * *found_.holds;
   }
 
   void note(double factor, Verdict verdict) {
@@ -113,12 +115,12 @@ private:
   [[nodiscard]] std::optional<double> widest_gap() const {
     const double low_end = found_.undecided.empty() ? *found_.fails : found_.undecided.front();
     const double high_begin = found_.undecided.empty() ? *found_.fails : found_.undecided.back();
-    const double width = reduction_.tolerance * *found_.holds;
-    if (low_end - *found_.holds > width) {
+    if (is_wide(low_end)) {
       return std::midpoint(*found_.holds, low_end);
     }
-    return *found_.fails - high_begin > width ? std::optional(std::midpoint(high_begin, *found_.fails))
-                                              : std::nullopt;
+    return *found_.fails - high_begin > reduction_.tolerance * *found_.holds
+               ? std::optional(std::midpoint(high_begin, *found_.fails))
+               : std::nullopt;
   }
 
   const StrengthReduction &reduction_;

@@ -106,7 +106,7 @@ TEST(SafetySearch, EndsWhereTheEndsDoNotBracketIt) {
   EXPECT_FALSE(strong.search.fails);
   StrengthReduction coarse;
   coarse.tolerance = 3.0;
-  EXPECT_EQ(search({coarse}, 3.0, 0.0, 1).search.fails, coarse.to) << "the end is tried all the same";
+  EXPECT_EQ(search({coarse}, 3.9, 0.0, 1).search.fails, coarse.to) << "the end is tried all the same";
 }
 
 // What is tried is what the settled state makes likely.
@@ -118,10 +118,10 @@ TEST(SafetySearch, GoesUpFromTheSettledState) {
     return factors;
   };
   EXPECT_EQ(first_factors(1.0, 1.2), (std::vector<double>{1.0, 1.25, 1.125, 1.1875}));
-  EXPECT_EQ(first_factors(1.0, 3.9), (std::vector<double>{1.0, 1.25, 1.25 * 1.5625, 4.0}));
+  EXPECT_EQ(first_factors(1.0, 3.9), (std::vector<double>{1.0, 1.25, 1.5625, 1.953125}));
   EXPECT_EQ(first_factors(1.0, 0.9), (std::vector<double>{1.0, 0.5, 0.75, 0.875}))
       << "it did not stay at rest";
-  EXPECT_EQ(first_factors(0.5, 0.9), (std::vector<double>{0.5, 0.625, 0.625 * 1.5625, 0.80078125}));
+  EXPECT_EQ(first_factors(0.5, 0.9), (std::vector<double>{0.5, 0.625, 0.78125, 0.9765625}));
   EXPECT_EQ(first_factors(5.0, 0.9)[0], reduction.from) << "beyond what is tried";
 }
 
@@ -143,6 +143,19 @@ TEST(SafetySearch, ComesDownFromAnEndWithoutAVerdict) {
   EXPECT_GT(*found.fails, 1.4534);
   EXPECT_LE(*found.fails - *found.holds, reduction.tolerance * *found.holds);
   EXPECT_TRUE(found.undecided.empty()) << "none is in the bracket";
+}
+
+// Trials just beyond the limit are too slow for a verdict.
+TEST(SafetySearch, GoesOnUpwardFromFactorsWithoutAVerdict) {
+  const StrengthReduction reduction;
+  const Outcome found = search({reduction}, 1.5, 0.2, 1);
+  ASSERT_TRUE(found.search.holds && found.search.fails);
+  EXPECT_NEAR(*found.search.holds, 1.3, 0.015);
+  EXPECT_NEAR(*found.search.fails, 1.7, 0.02);
+  const Outcome none = search({reduction}, 3.9, 0.2, 1);
+  EXPECT_NEAR(*none.search.holds, 3.7, 0.04);
+  EXPECT_FALSE(none.search.fails) << "the end is undecided";
+  EXPECT_EQ(none.search.undecided.back(), reduction.to);
 }
 
 Scene staged_scene() {
