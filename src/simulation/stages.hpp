@@ -44,7 +44,9 @@
 // moved by failure_motion and beyond the sag, and gone on as above or for two windows in a row, and a series
 //     M + g (q + q^2 + ...)     with q, g over that of the window before, but at most 1
 // that reaches five times failure_motion within 60 windows, twice those of a trial. Near the limit blocks
-// creep to rest for a thousand evaluations, in each window a little less.
+// creep to rest for a thousand evaluations, in each window a little less. Where M is as much as that already
+// and a block has moved beyond the sag, the trial is left at once. The dynamic step judges it from its second
+// look on: the first has nothing to be compared with.
 
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/model/stage.hpp"

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -183,7 +184,7 @@ void judge_static_trial(RunState &run) {
     }
     return;
   }
-  const bool has_moved_far = run.clock.state.verdict == Verdict::failed;
+  const bool is_failing = run.clock.state.verdict == Verdict::failed;
   run.clock.state.ended = false;
   run.clock.state.verdict = Verdict::undecided;
   const std::optional<double> closed =
@@ -197,13 +198,15 @@ void judge_static_trial(RunState &run) {
   const double failure = run.clock.stage().failure_motion;
   const double far = times_as_far * failure;
   const bool goes_far = look.moved + series * window * windows.last_rate >= far;
-  const bool goes_on = has_moved_far || (windows.undiminished >= 2 && look.moved_beyond_sag >= failure);
-  const bool fails = look.moved >= far || (closed && goes_on && goes_far);
+  const bool goes_on = is_failing || windows.undiminished >= 2;
+  const bool fails =
+      look.moved_beyond_sag >= failure && (look.moved >= far || (closed && goes_on && goes_far));
   if (fails || evaluations >= most_evaluations) {
     if (fails || windows.undiminished > 0) {
       run.local_damping = 0.0; // as drag it would hold back what goes on moving
     }
     windows = {};
+    run.clock.state.memory.last.motion = std::numeric_limits<double>::infinity(); // no look of a step
     leave_statics(run, fails ? "its motion has gone far or goes on at an undiminished rate"
                              : fmt::format("it has no verdict after {} evaluations", most_evaluations));
   }
