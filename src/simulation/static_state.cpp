@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t reals_per_block = 20;
 constexpr std::size_t counts_per_spring = 6;
-constexpr std::size_t reals_per_spring = 9;
+constexpr std::size_t reals_per_spring = 10;
 
 struct BlockRecord {
   std::int64_t block = 0;
@@ -29,7 +29,7 @@ void visit_spring(Record &record, Count &&count, Real &&real) {
   count(memory.open_for), count(memory.slid_for);
   real(spring.normal.x), real(spring.normal.y), real(spring.lower_arm.x), real(spring.lower_arm.y);
   real(spring.higher_arm.x), real(spring.higher_arm.y), real(spring.normal_stiffness), real(spring.bending);
-  real(spring.tangential);
+  real(spring.tangential), real(spring.grip);
 }
 
 template <class Motion, class Real> void visit_motion(Motion &motion, Real &&real) {

@@ -120,7 +120,7 @@ void add_springs_of_deformable(const ContactSpring &s, Vec2 arm, double *matrix,
   std::array<double, 6> bend{};
   add_force(bend.data(), true, {}, outer(s.normal, t));
   add_square(forces_of(true, s.normal, arm), s.normal_stiffness, 6, matrix, width);
-  add_square(forces_of(true, t, arm), s.tangential, 6, matrix, width);
+  add_square(forces_of(true, t, arm + s.grip * t), s.tangential, 6, matrix, width);
   add_square(bend, s.bending, 6, matrix, width);
 }
 

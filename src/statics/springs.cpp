@@ -32,6 +32,7 @@ ContactSpring spring_of(const BlockSystem &system, const CandidatePair &pair, co
   spring.normal_stiffness = pulls_or_pushes ? 2.0 * law.half_stiffness * length : 0.0;
   spring.bending = spring.normal_stiffness * length * length / 12.0;
   spring.tangential = law.tangential_stiffness * memory.longest;
+  spring.grip = dot(force.grip - middle, tangent);
   return spring;
 }
 
@@ -200,9 +201,11 @@ void add_any(const BlockSystem &system, std::span<const ContactSpring> springs, 
     const Vec2 n = s.normal;
     const Vec2 t = perp(n);
     const Vec2 apart = a.at(s.lower_arm) - b.at(s.higher_arm);
-    const double bent = s.bending * dot(n, (a.gradient - b.gradient)(t));
-    const Vec2 force = (s.normal_stiffness * dot(n, apart)) * n + (s.tangential * dot(t, apart)) * t;
-    const Mat2 moment = bent * outer(n, t);
+    const Vec2 strain = (a.gradient - b.gradient)(t);
+    const double bent = s.bending * dot(n, strain);
+    const double shear = s.tangential * (dot(t, apart) + s.grip * dot(t, strain));
+    const Vec2 force = (s.normal_stiffness * dot(n, apart)) * n + shear * t;
+    const Mat2 moment = bent * outer(n, t) + (s.grip * shear) * outer(t, t);
     add_force(y.of(s.lower), lower_deforms, force, outer(force, s.lower_arm) + moment);
     add_force(y.of(s.higher), higher_deforms, -force, -1.0 * (outer(force, s.higher_arm) + moment));
   }

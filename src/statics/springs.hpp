@@ -7,9 +7,13 @@
 // the difference of both motions, and its stick spring by k_t t.[...]. With x_m the middle of the region, a =
 // x_m - x_c the arms of the two blocks A and B, and s the place along t from x_m,
 //     e_n = n.(u_A + H_A a_A - u_B - H_B a_B),   e_r = n.(H_A - H_B) t,   e_t = t.(the same difference),
-//     int k_n (e_n + s e_r)^2 ds + k_t e_t^2 = k_n l e_n^2 + (k_n l^3/12) e_r^2 + k_t e_t^2:
-// three springs with one set of constants, 80 bytes for a region (`ContactSpring`). Two rigid blocks see
-// e_r = -(r_A - r_B) and the levers a x n and a x t. Left out is what the turning of n adds, of the order of
+//     int k_n (e_n + s e_r)^2 ds + k_t (e_t + s_g e_s)^2 = k_n l e_n^2 + (k_n l^3/12) e_r^2 + k_t (...)^2:
+// three springs with one set of constants (`ContactSpring`). Friction acts at the grip of the region
+// (contact/laws/grip.hpp), s_g from x_m, and e_s = t.(H_A - H_B) t is how far the strains of the blocks
+// differ along t. Where a joint gapes the grip is up to half of its length from the middle of what is closed:
+// with friction in the middle, K has as little as a quarter of the true stiffness of soft blocks between
+// stiff joints, and the iteration swings for ever. Two rigid blocks see e_r = -(r_A - r_B), e_s = 0 and the
+// levers a x n and a x t. Left out is what the turning of n adds, of the order of
 // the force over the length, against k_n times the length: the share by which the joint is closed.
 //
 // K need not be the tangent of the force. It is the mass of a motion in pseudo-time (pseudo_time.hpp), which
@@ -60,6 +64,7 @@ struct ContactSpring {
   double normal_stiffness = 0.0; ///< k_n l, Pa
   double bending = 0.0;          ///< k_n l^3/12, N
   double tangential = 0.0;       ///< Pa
+  double grip = 0.0;             ///< where it acts along t from the middle, m
 };
 
 /// What is remembered of a region from one evaluation to the next.

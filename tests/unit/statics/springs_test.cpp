@@ -49,48 +49,86 @@ std::vector<double> forces_at(const ContactBench &base, ContactForces &forces, c
   return sums;
 }
 
-// A flush joint: what K leaves out is of the order of the depth over the length, 1e-5, and differences of
-// forces leave as much.
-TEST(ContactSprings, OfAFlushJointAreTheDerivativeOfItsForces) {
-  for (unsigned seed = 0; seed < 24; ++seed) {
-    std::mt19937 engine(seed);
-    const double depth = 1e-5;
-    const TouchingPair shapes = touching_pair(engine, Touch::face_on_face, depth, 0.3);
-    const bool lower_deforms = seed % 2 == 1;
-    const bool higher_deforms = seed % 3 == 1;
-    ContactBench bench(
-        strained_blocks(engine, {shapes.lower, shapes.higher}, {lower_deforms, higher_deforms}, 1e10, 1e-4),
-        one_law(k_n, 1.0));
-    bench.forces.keep_details(true);
-    bench.evaluate();
-    bench.evaluate(); // the spring is there now
-    statics::ContactSprings springs;
-    springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
-    ASSERT_EQ(springs.springs().size(), 1U);
+constexpr double depth = 1e-5;
+constexpr double strong = 10.0; ///< friction that no motion here overcomes
 
-    ContactForces forces({one_law(k_n, 1.0), 0.0, PotentialKind::exact});
-    const double step = 1e-2 * depth;
-    double largest = 0.0;
-    double error = 0.0;
-    for (std::size_t row = 0; row < 2; ++row) {
-      for (std::size_t i = 0; i < statics::num_freedoms(bench.system, row); ++i) {
-        statics::Field motion(2, 6);
-        motion.of(row)[i] = step;
-        const std::vector<double> ahead = forces_at(bench, forces, motion);
-        motion.of(row)[i] = -step;
-        const std::vector<double> behind = forces_at(bench, forces, motion);
-        motion.of(row)[i] = 1.0;
-        statics::Field product(2, 6);
-        springs.add_product(bench.system, motion, product);
-        for (std::size_t k = 0; k < ahead.size(); ++k) {
-          const double stiffness = -(ahead[k] - behind[k]) / (2.0 * step);
-          largest = std::max(largest, std::abs(stiffness));
-          error = std::max(error, std::abs(stiffness - product.values()[k]));
-        }
+/// Two blocks with a flush joint, each deformable in some of the benches.
+ContactBench flush_joint(unsigned seed) {
+  std::mt19937 engine(seed);
+  const TouchingPair shapes = touching_pair(engine, Touch::face_on_face, depth, 0.3);
+  const bool lower_deforms = seed % 2 == 1;
+  const bool higher_deforms = seed % 3 == 1;
+  ContactBench bench(
+      strained_blocks(engine, {shapes.lower, shapes.higher}, {lower_deforms, higher_deforms}, 1e10, 1e-4),
+      one_law(k_n, strong));
+  bench.forces.keep_details(true);
+  bench.evaluate();
+  return bench;
+}
+
+/// The higher block turns about its centroid.
+void tilt(ContactBench &bench, double angle) {
+  constexpr std::size_t row = 1;
+  if (bench.system.is_deformable(row)) {
+    Mat2 &gradient = bench.system.deformation_of(row).trial;
+    gradient = gradient + Mat2{0.0, -angle, angle, 0.0} * gradient;
+  } else {
+    bench.system.trial[row].r += angle;
+  }
+}
+
+/// Largest difference of K from the derivative of the forces over the largest element of that.
+double error_of_springs(const ContactBench &bench) {
+  statics::ContactSprings springs;
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+  EXPECT_EQ(springs.springs().size(), 1U);
+  ContactForces forces({one_law(k_n, strong), 0.0, PotentialKind::exact});
+  const double step = 1e-2 * depth;
+  double largest = 0.0;
+  double error = 0.0;
+  for (std::size_t row = 0; row < 2; ++row) {
+    for (std::size_t i = 0; i < statics::num_freedoms(bench.system, row); ++i) {
+      statics::Field motion(2, 6);
+      motion.of(row)[i] = step;
+      const std::vector<double> ahead = forces_at(bench, forces, motion);
+      motion.of(row)[i] = -step;
+      const std::vector<double> behind = forces_at(bench, forces, motion);
+      motion.of(row)[i] = 1.0;
+      statics::Field product(2, 6);
+      springs.add_product(bench.system, motion, product);
+      for (std::size_t k = 0; k < ahead.size(); ++k) {
+        const double stiffness = -(ahead[k] - behind[k]) / (2.0 * step);
+        largest = std::max(largest, std::abs(stiffness));
+        error = std::max(error, std::abs(stiffness - product.values()[k]));
       }
     }
-    EXPECT_LT(error, 1e-3 * largest) << "seed " << seed;
   }
+  return error / largest;
+}
+
+// What K leaves out is of the order of the depth over the length, 1e-5, and differences of forces leave as
+// much.
+TEST(ContactSprings, OfAFlushJointAreTheDerivativeOfItsForces) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    ContactBench bench = flush_joint(seed);
+    bench.evaluate(); // the spring is there now
+    EXPECT_LT(error_of_springs(bench), 1e-3) << "seed " << seed;
+  }
+}
+
+// One end has opened: friction acts where it did when all of the joint was closed. The end of what is closed
+// moves with the blocks, which differences of forces see over their step of a hundredth of the depth.
+TEST(ContactSprings, OfAJointThatGapesAreTheDerivativeOfItsForces) {
+  double farthest = 0.0;
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    ContactBench bench = flush_joint(seed);
+    tilt(bench, seed % 4 < 2 ? 4.0 * depth : -4.0 * depth);
+    const RegionForce region = bench.evaluate();
+    const double middle = 0.5 * (region.extent_begin + region.extent_end);
+    farthest = std::max(farthest, std::abs(dot(region.grip - region.point, perp(region.normal)) - middle));
+    EXPECT_LT(error_of_springs(bench), 1e-2) << "seed " << seed;
+  }
+  EXPECT_GT(farthest, 0.1) << "m";
 }
 
 // Rigid motions stretch no spring, and both forms of the product agree.
