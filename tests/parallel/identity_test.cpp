@@ -78,13 +78,12 @@ std::string glued_wall_toml(int rows, int columns, double duration) {
 /// Folders of one scene run by all ranks and by one alone, and whether they are the same.
 class TwoRuns {
 public:
-  explicit TwoRuns(const Scene &scene) : folder_(world_) {
+  explicit TwoRuns(const Scene &scene, ExitCode expected = exit_code::done) : folder_(world_) {
     const testing::CapturedLog log;
-    const int code = run_scene(world_, scene, {together(), false});
-    EXPECT_EQ(code, 0) << "together";
+    EXPECT_EQ(run_scene(world_, scene, {together(), false}), expected) << "together";
     world_.barrier();
     if (world_.is_root()) {
-      EXPECT_EQ(run_scene(Communicator::self(), scene, {alone(), false}), 0) << "alone";
+      EXPECT_EQ(run_scene(Communicator::self(), scene, {alone(), false}), expected) << "alone";
       compare();
     }
     world_.barrier();
@@ -358,6 +357,24 @@ TEST(Identity, OfAStaticStageThatIsLeft) {
   if (runs.world().is_root()) {
     EXPECT_NE(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
     EXPECT_EQ(summary_text(runs.together(), "verdict"), "\"failed\"");
+  }
+}
+
+// All of the weight at once closes soft joints by more than half of a block: a step is taken back on all
+// ranks, and the dynamic solver goes on to the limit of the stage.
+TEST(Identity, OfAStaticStepThatIsTakenBack) {
+  const TwoRuns runs(testing::scene_of(static_wall_toml(20, 16, "[[6, 2], [8, 2], [8, 4], [6, 4]]"),
+                                       {"joint.default.normal_stiffness=3e6", "stage.weight.increments=1",
+                                        "stage.weight.limit=0.5"}),
+                     exit_code::undecided);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+  if (runs.world().is_root()) {
+    EXPECT_NE(
+        testing::file_text(runs.alone() / "run.log").find("would have closed by more than half of a block"),
+        std::string::npos);
+    EXPECT_EQ(summary_text(runs.together(), "stages"), summary_text(runs.alone(), "stages"));
   }
 }
 
