@@ -97,6 +97,8 @@ def cases(work, quick):
         "tunnel_jointed, 10 GPa": Case(SCENES / "tunnel_jointed.toml", excavation, slow_excavation,
                                        ["run.fidelity=deformable", "material.rock.youngs_modulus=10e9",
                                         "material.rock.poissons_ratio=0.25"]),
+        "deformable_slope, 1e11 Pa/m": Case(SCENES / "deformable_slope.toml", [settle("weight")], slow_gravity,
+                                            [f"joint.{name}.normal_stiffness=1e11" for name in ("default", "bedding", "cross")]),
     }
 
 
