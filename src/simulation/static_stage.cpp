@@ -151,6 +151,23 @@ void open_statics(RunState &run) {
   book_static_work(run);
 }
 
+/// Where a window ends in which neither the unbalanced ratio nor the share of loose blocks has fallen to half
+/// of its least in the window before.
+bool has_stalled(RunState &run) {
+  statics::IterationState &iteration = run.clock.state.iteration;
+  const StageLook &look = run.clock.state.memory.last;
+  iteration.least_ratio = std::min(iteration.least_ratio, look.unbalanced_ratio);
+  iteration.least_loose = std::min(iteration.least_loose, look.loose_share);
+  if (iteration.evaluations % run.statics->rules().stall_window != 0) {
+    return false;
+  }
+  const bool stalls = iteration.least_ratio > 0.5 * iteration.last_least &&
+                      iteration.least_loose > 0.5 * iteration.last_loose;
+  iteration.last_least = std::exchange(iteration.least_ratio, 1e300);
+  iteration.last_loose = std::exchange(iteration.least_loose, 1.0);
+  return stalls;
+}
+
 /// By which the motion of a single block has grown in the window of a trial that ends here, in its sizes.
 /// Collective.
 double farthest_in_window(RunState &run) {
@@ -169,11 +186,12 @@ double farthest_in_window(RunState &run) {
 // blocks do not hold up a trial where each of them would move by less than a tenth of what fails if it went
 // on as in the last window for all windows ahead.
 void judge_static_trial(RunState &run) {
-  constexpr double window = 50.0; // evaluations
-  constexpr std::int64_t most_evaluations = 1500;
+  constexpr double window = 50.0;                   // evaluations
+  constexpr std::int64_t enough_evaluations = 1500; // for a trial that does not come nearer to rest
   constexpr double windows_ahead = 60.0;
   constexpr double times_as_far = 5.0;
   const std::int64_t evaluations = run.clock.state.iteration.evaluations;
+  const bool stalls = has_stalled(run);
   const StageLook &look = run.clock.state.memory.last;
   MotionWindows &windows = run.clock.state.memory.windows;
   const bool all_rest = run.clock.state.memory.settled_looks >= 2;
@@ -201,14 +219,14 @@ void judge_static_trial(RunState &run) {
   const bool goes_on = is_failing || windows.undiminished >= 2;
   const bool fails =
       look.moved_beyond_sag >= failure && (look.moved >= far || (closed && goes_on && goes_far));
-  if (fails || evaluations >= most_evaluations) {
+  if (fails || (stalls && evaluations >= enough_evaluations)) {
     if (fails || windows.undiminished > 0) {
       run.local_damping = 0.0; // as drag it would hold back what goes on moving
     }
     windows = {};
     run.clock.state.memory.last.motion = std::numeric_limits<double>::infinity(); // no look of a step
     leave_statics(run, fails ? "its motion has gone far or goes on at an undiminished rate"
-                             : fmt::format("it has no verdict after {} evaluations", most_evaluations));
+                             : fmt::format("it has no verdict after {} evaluations", evaluations));
   }
 }
 
@@ -236,10 +254,8 @@ void judge_confirmation(RunState &run) {
 }
 
 void judge_statics(RunState &run) {
-  statics::IterationState &iteration = run.clock.state.iteration;
-  const std::int64_t window = run.statics->rules().stall_window;
   look_at_stage(run);
-  if (run.statics->load_share(iteration.evaluations) < 1.0) {
+  if (run.statics->load_share(run.clock.state.iteration.evaluations) < 1.0) {
     run.clock.state.ended = false;
     run.clock.state.verdict = Verdict::undecided;
     run.clock.state.memory.settled_looks = 0;
@@ -264,19 +280,10 @@ void judge_statics(RunState &run) {
     leave_statics(run, "a block has moved so far that the stage may have failed");
     return;
   }
-  const StageLook &look = run.clock.state.memory.last;
-  iteration.least_ratio = std::min(iteration.least_ratio, look.unbalanced_ratio);
-  iteration.least_loose = std::min(iteration.least_loose, look.loose_share);
-  if (!run.clock.state.ended && iteration.evaluations % window == 0) {
-    const bool has_stalled = iteration.least_ratio > 0.5 * iteration.last_least &&
-                             iteration.least_loose > 0.5 * iteration.last_loose;
-    iteration.last_least = std::exchange(iteration.least_ratio, 1e300);
-    iteration.last_loose = std::exchange(iteration.least_loose, 1.0);
-    if (has_stalled) {
-      leave_statics(run, fmt::format("neither the unbalanced ratio nor the number of blocks in motion has "
-                                     "fallen by half in {} evaluations: {:.3g}",
-                                     window, iteration.last_least));
-    }
+  if (!run.clock.state.ended && has_stalled(run)) {
+    leave_statics(run, fmt::format("neither the unbalanced ratio nor the number of blocks in motion has "
+                                   "fallen by half in {} evaluations: {:.3g}",
+                                   run.statics->rules().stall_window, run.clock.state.iteration.last_least));
   }
   note_loose_blocks_at_end(run);
 }

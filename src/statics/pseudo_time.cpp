@@ -23,6 +23,7 @@ void PseudoTime::lay(BlockSystem &system, std::span<const Surroundings> around, 
   });
   solver_.lay(system, moving_, std::move(mass), std::move(bolts), std::move(border));
   force_ = Field(system.num_rows(), width_);
+  driving_ = force_;
   direction_ = Field(system.num_rows(), width_);
   springs_.set_moving({});
   double some_rest = 0.0;
@@ -147,9 +148,15 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   ++state.evaluations;
   gather(system, load_share(state.evaluations));
   const bool begins = !(state.momentum > 0.0) || power(system) < 0.0;
+  const bool loads = load_share(state.evaluations) < 1.0;
+  const double c = 2.0 * (loads ? rules_.damping_share : rules_.damping_of_slides) * std::sqrt(square);
   solver_.set(system, springs_, rules_.mass_share, is_coarse_due);
-  state.products += solver_.solve(system, springs_, force_, direction_);
-  const double c = 2.0 * rules_.damping_share * std::sqrt(square);
+  for_places(moving_, width_, [&](std::size_t i) { driving_.values()[i] = force_.values()[i]; });
+  if (!begins && !loads && c < 1.0) {
+    solver_.damp_strains(system, springs_, 1.0 - c, driving_);
+    ++state.products;
+  }
+  state.products += solver_.solve(system, springs_, driving_, direction_);
   const double limit = longest_step(overlap, state);
   if (begins) {
     advance(system, 0.0, 0.5, limit, state);
@@ -198,10 +205,11 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
     PseudoMotion &motion = system.pseudo[row];
     const double *const g = direction_.of(row);
     const double *const f = force_.of(row);
+    const double *const driving = driving_.of(row);
     const double part = stands_[row] == Standing::lands ? 0.5 : b;
     for (std::size_t i = 0; i < width_; ++i) {
       motion.velocity[i] = a * motion.velocity[i] + part * g[i];
-      motion.momentum[i] = a * motion.momentum[i] + part * f[i];
+      motion.momentum[i] = a * motion.momentum[i] + part * driving[i];
     }
     const double length = length_of_step(system, row);
     const double longest = std::min(limit, rules_.step_of_width * system.properties[row].width);

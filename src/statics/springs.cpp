@@ -130,7 +130,8 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
     const SpringMemory memory = moved_on(before, state, force.cap, rules);
     const std::int32_t law = state.law >= 0 ? state.law : pair.law;
     ContactSpring spring = spring_of(system, pair, force, state, contacts.parameters().constants(law));
-    if (state.state == ContactState::slip && memory.turned == 0) {
+    spring.slips = state.state == ContactState::slip && memory.turned == 0;
+    if (spring.slips) {
       spring.tangential *= share_of_slipping(memory, rules);
     }
     spring.normal_stiffness = std::max(spring.normal_stiffness, rules.fade * last.normal_stiffness);
@@ -166,7 +167,9 @@ void ContactSprings::find_those_at_work() {
 
 namespace {
 
-void add_rigid(std::span<const ContactSpring> springs, const Field &p, Field &y) {
+/// @param tangential  stiffness of a spring
+template <class Tangential>
+void add_rigid(std::span<const ContactSpring> springs, const Field &p, Field &y, Tangential &&tangential) {
   for (const ContactSpring &s : springs) {
     const double *const a = p.of(s.lower);
     const double *const b = p.of(s.higher);
@@ -178,7 +181,7 @@ void add_rigid(std::span<const ContactSpring> springs, const Field &p, Field &y)
     const double higher_t = cross(s.higher_arm, t);
     const Vec2 apart{a[0] - b[0], a[1] - b[1]};
     const double along_n = s.normal_stiffness * (dot(n, apart) + lower_n * a[2] - higher_n * b[2]);
-    const double along_t = s.tangential * (dot(t, apart) + lower_t * a[2] - higher_t * b[2]);
+    const double along_t = tangential(s) * (dot(t, apart) + lower_t * a[2] - higher_t * b[2]);
     const double bent = s.bending * (a[2] - b[2]);
     const Vec2 force = along_n * n + along_t * t;
     double *const to_a = y.of(s.lower);
@@ -192,7 +195,9 @@ void add_rigid(std::span<const ContactSpring> springs, const Field &p, Field &y)
   }
 }
 
-void add_any(const BlockSystem &system, std::span<const ContactSpring> springs, const Field &p, Field &y) {
+template <class Tangential>
+void add_any(const BlockSystem &system, std::span<const ContactSpring> springs, const Field &p, Field &y,
+             Tangential &&tangential) {
   for (const ContactSpring &s : springs) {
     const bool lower_deforms = system.is_deformable(s.lower);
     const bool higher_deforms = system.is_deformable(s.higher);
@@ -203,7 +208,7 @@ void add_any(const BlockSystem &system, std::span<const ContactSpring> springs, 
     const Vec2 apart = a.at(s.lower_arm) - b.at(s.higher_arm);
     const Vec2 strain = (a.gradient - b.gradient)(t);
     const double bent = s.bending * dot(n, strain);
-    const double shear = s.tangential * (dot(t, apart) + s.grip * dot(t, strain));
+    const double shear = tangential(s) * (dot(t, apart) + s.grip * dot(t, strain));
     const Vec2 force = (s.normal_stiffness * dot(n, apart)) * n + shear * t;
     const Mat2 moment = bent * outer(n, t) + (s.grip * shear) * outer(t, t);
     add_force(y.of(s.lower), lower_deforms, force, outer(force, s.lower_arm) + moment);
@@ -211,16 +216,26 @@ void add_any(const BlockSystem &system, std::span<const ContactSpring> springs, 
   }
 }
 
+template <class Tangential>
+void add_lists(const ContactSprings &all, const BlockSystem &system, const Field &p, Field &y,
+               Tangential &&tangential) {
+  all.for_lists([&](std::span<const ContactSpring> springs) {
+    if (p.width() == 3) {
+      add_rigid(springs, p, y, tangential);
+    } else {
+      add_any(system, springs, p, y, tangential);
+    }
+  });
+}
+
 } // namespace
 
 void ContactSprings::add_product(const BlockSystem &system, const Field &p, Field &y) const {
-  for_lists([&](std::span<const ContactSpring> springs) {
-    if (p.width() == 3) {
-      add_rigid(springs, p, y);
-    } else {
-      add_any(system, springs, p, y);
-    }
-  });
+  add_lists(*this, system, p, y, [](const ContactSpring &s) { return s.tangential; });
+}
+
+void ContactSprings::add_product_without_slip(const BlockSystem &system, const Field &p, Field &y) const {
+  add_lists(*this, system, p, y, [](const ContactSpring &s) { return s.slips ? 0.0 : s.tangential; });
 }
 
 std::vector<SpringRecord> ContactSprings::records() const {

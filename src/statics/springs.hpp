@@ -65,6 +65,7 @@ struct ContactSpring {
   double bending = 0.0;          ///< k_n l^3/12, N
   double tangential = 0.0;       ///< Pa
   double grip = 0.0;             ///< where it acts along t from the middle, m
+  bool slips = false;            ///< the tangential one is what the region keeps while it slips
 };
 
 /// What is remembered of a region from one evaluation to the next.
@@ -118,6 +119,8 @@ public:
 
   /// y += K p. Rows of y that are not owned get sums that mean nothing.
   void add_product(const BlockSystem &system, const Field &p, Field &y) const;
+  /// The same without the tangential springs of regions that slip.
+  void add_product_without_slip(const BlockSystem &system, const Field &p, Field &y) const;
 
   /// All springs, for a neighbourhood that is made anew.
   [[nodiscard]] std::vector<SpringRecord> records() const;

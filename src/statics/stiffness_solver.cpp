@@ -3,6 +3,7 @@
 #include "base/exact_sum.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -58,6 +59,7 @@ void StiffnessSolver::choose(const BlockSystem &system, std::vector<RowRun> movi
 void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &springs, double rho,
                           bool with_coarse) {
   const std::size_t width = mass_.width();
+  rho_ = rho;
   for_rows(moving_, [&](std::size_t row) {
     double *const own = own_.of(row);
     const double *const mass = mass_.of(row);
@@ -82,6 +84,26 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
   for_rows(moving_, [&](std::size_t row) { std::copy_n(own_.of(row), width * width, inverse_.of(row)); });
   springs.for_lists([&](std::span<const ContactSpring> list) { add_diagonal(system, list, inverse_); });
   for_rows(moving_, [&](std::size_t row) { invert(inverse_.of(row), num_freedoms(system, row), width); });
+}
+
+void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprings &springs, double gamma,
+                                   Field &force) {
+  const std::size_t width = mass_.width();
+  for_rows(moving_, [&](std::size_t row) { // p of rows that rest is zero
+    std::copy_n(system.pseudo[row].velocity.data(), width, p_.of(row));
+  });
+  border_.copy(p_);
+  for_places(moving_, width, [&](std::size_t i) { q_.values()[i] = 0.0; });
+  springs.add_product_without_slip(system, p_, q_);
+  for_rows(moving_, [&](std::size_t row) {
+    const std::size_t freedoms = num_freedoms(system, row);
+    std::array<double, 6> of_mass{};
+    add_block_product(own_.of(row), freedoms, width, p_.of(row), q_.of(row));
+    add_block_product(mass_.of(row), freedoms, width, p_.of(row), of_mass.data());
+    for (std::size_t i = 0; i < freedoms; ++i) {
+      force.of(row)[i] -= gamma * (q_.of(row)[i] - rho_ * of_mass[i]);
+    }
+  });
 }
 
 template <std::size_t width, class Sum>

@@ -55,6 +55,9 @@ public:
   /// @return number of products with K
   std::int64_t solve(const BlockSystem &system, const ContactSprings &springs, const Field &force,
                      Field &solution);
+  /// force -= gamma K' v for moving rows, with the velocities v of pseudo-time and K' the stiffness of all
+  /// that does not slip, without rho D. Collective.
+  void damp_strains(const BlockSystem &system, const ContactSprings &springs, double gamma, Field &force);
   /// y = (K + rho D) p for moving rows, with p of ghosts copied. Collective.
   void multiply(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y);
 
@@ -80,6 +83,7 @@ private:
   std::vector<RowRun> moving_;
   BlockMatrices mass_;
   BlockMatrices bolts_;
+  double rho_ = 0.0;
   BlockMatrices own_;     ///< rho D and own springs
   BlockMatrices inverse_; ///< B^-1
   Field r_;

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -198,6 +200,35 @@ TEST(ContactSprings, SlipTakesMostOfTheTangentialStiffness) {
   }
   springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
   EXPECT_NEAR(springs.springs()[0].tangential, rules.slip_share * whole, 1e-9 * whole);
+}
+
+// Without slip: all of the springs of a joint that sticks, the normal ones alone of one that slips.
+TEST(ContactSprings, ASlideIsFreeWithoutSlip) {
+  ContactBench bench = stacked_squares(0.1);
+  statics::ContactSprings springs;
+  bench.evaluate();
+  bench.evaluate();
+  const auto products = [&](const std::array<double, 3> &motion) {
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+    statics::Field p(2, 3);
+    statics::Field whole(2, 3);
+    statics::Field without(2, 3);
+    std::copy(motion.begin(), motion.end(), p.of(0));
+    springs.add_product(bench.system, p, whole);
+    springs.add_product_without_slip(bench.system, p, without);
+    return std::array{whole, without};
+  };
+  const auto [sticking, also_sticking] = products({0.3, -0.2, 0.1});
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(also_sticking.of(0)[i], sticking.of(0)[i]);
+  }
+  bench.move(0, {{1e-3, 0.0}, 0.0});
+  const auto [slide, free_slide] = products({1.0, 0.0, 0.0});
+  EXPECT_GT(slide.of(0)[0], 1e-3 * k_n);
+  EXPECT_EQ(free_slide.of(0)[0], 0.0);
+  const auto [closing, also_closing] = products({0.0, 1.0, 0.0});
+  EXPECT_GT(closing.of(0)[1], 0.9 * k_n);
+  EXPECT_EQ(also_closing.of(0)[1], closing.of(0)[1]);
 }
 
 TEST(ContactSprings, OfARegionThatSlidesOnFadeToAFloor) {

@@ -107,6 +107,32 @@ TEST(StiffnessSolver, AgreesWithADenseFactorisationOfDeformableBlocks) {
 }
 
 // Each number is rounded to 2^-45 of the size at most. Sums of parts are the sum of all, as on several ranks.
+// In a wall whose joints stick, what damps strains is the whole of K and nothing of rho D.
+TEST(StiffnessSolver, DampsStrainsByTheirStiffnessAlone) {
+  constexpr double gamma = 0.7;
+  constexpr double rho = 0.1;
+  for (const auto deforms :
+       {+[](std::size_t) { return false; }, +[](std::size_t row) { return row % 3 != 0; }}) {
+    Problem light(wall(4, 5, deforms), 0.0);
+    Problem problem(wall(4, 5, deforms), rho);
+    BlockSystem &system = problem.bench.system;
+    std::mt19937 engine(5);
+    statics::Field velocity(system.num_rows(), problem.width);
+    for (std::size_t row = 0; row < system.num_owned; ++row) {
+      for (std::size_t i = 0; i < statics::num_freedoms(system, row); ++i) {
+        velocity.of(row)[i] = pseudo_rows(system)[row].velocity[i] = uniform(engine, -1.0, 1.0);
+      }
+    }
+    statics::Field force(system.num_rows(), problem.width);
+    problem.solver.damp_strains(system, problem.springs, gamma, force);
+    statics::Field product(system.num_rows(), problem.width);
+    light.solver.multiply(light.bench.system, light.springs, velocity, product);
+    for (std::size_t i = 0; i < system.num_owned * problem.width; ++i) {
+      EXPECT_NEAR(force.values()[i], -gamma * product.values()[i], 1e-12 * k_n); // forces of 1e9 rounded
+    }
+  }
+}
+
 TEST(SumInUnits, IsTheSumToTheLastBitButForItsRounding) {
   constexpr std::size_t num_rows = 1000;
   std::mt19937 engine(3);
