@@ -162,7 +162,7 @@ bool has_stalled(RunState &run) {
     return false;
   }
   const bool stalls = iteration.least_ratio > 0.5 * iteration.last_least &&
-                      iteration.least_loose > 0.5 * iteration.last_loose;
+                      iteration.least_loose >= 0.5 * iteration.last_loose; // both may be none
   iteration.last_least = std::exchange(iteration.least_ratio, 1e300);
   iteration.last_loose = std::exchange(iteration.least_loose, 1.0);
   return stalls;

@@ -13,8 +13,8 @@ namespace gcpdda {
 namespace {
 
 constexpr std::size_t reals_per_block = 20;
-constexpr std::size_t counts_per_spring = 7;
-constexpr std::size_t reals_per_spring = 10;
+constexpr std::size_t counts_per_spring = 6;
+constexpr std::size_t reals_per_spring = 11;
 
 struct BlockRecord {
   std::int64_t block = 0;
@@ -26,10 +26,10 @@ template <class Record, class Count, class Real>
 void visit_spring(Record &record, Count &&count, Real &&real) {
   auto &[spring, memory] = record;
   count(memory.lower.value), count(memory.higher.value), count(memory.side), count(memory.turned);
-  count(memory.open_for), count(memory.slid_for), count(spring.slips);
+  count(memory.open_for), count(memory.slid_for);
   real(spring.normal.x), real(spring.normal.y), real(spring.lower_arm.x), real(spring.lower_arm.y);
   real(spring.higher_arm.x), real(spring.higher_arm.y), real(spring.normal_stiffness), real(spring.bending);
-  real(spring.tangential), real(spring.grip);
+  real(spring.tangential), real(spring.sticking), real(spring.grip);
 }
 
 template <class Motion, class Real> void visit_motion(Motion &motion, Real &&real) {

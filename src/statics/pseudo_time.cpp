@@ -150,6 +150,9 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   const bool begins = !(state.momentum > 0.0) || power(system) < 0.0;
   const bool loads = load_share(state.evaluations) < 1.0;
   const double c = 2.0 * (loads ? rules_.damping_share : rules_.damping_of_slides) * std::sqrt(square);
+  if (begins && !loads) {
+    springs_.hold_slip();
+  }
   solver_.set(system, springs_, rules_.mass_share, is_coarse_due);
   for_places(moving_, width_, [&](std::size_t i) { driving_.values()[i] = force_.values()[i]; });
   if (!begins && !loads && c < 1.0) {

@@ -32,6 +32,7 @@ ContactSpring spring_of(const BlockSystem &system, const CandidatePair &pair, co
   spring.normal_stiffness = pulls_or_pushes ? 2.0 * law.half_stiffness * length : 0.0;
   spring.bending = spring.normal_stiffness * length * length / 12.0;
   spring.tangential = law.tangential_stiffness * memory.longest;
+  spring.sticking = spring.tangential;
   spring.grip = dot(force.grip - middle, tangent);
   return spring;
 }
@@ -94,6 +95,7 @@ void ContactSprings::keep_open(const BlockSystem &system, std::size_t number, co
   spring.normal_stiffness *= rules.fade;
   spring.bending *= rules.fade;
   spring.tangential *= rules.fade;
+  spring.sticking *= rules.fade;
   next_springs_.push_back(spring);
   next_memories_.push_back(memory);
 }
@@ -130,14 +132,14 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
     const SpringMemory memory = moved_on(before, state, force.cap, rules);
     const std::int32_t law = state.law >= 0 ? state.law : pair.law;
     ContactSpring spring = spring_of(system, pair, force, state, contacts.parameters().constants(law));
-    spring.slips = state.state == ContactState::slip && memory.turned == 0;
-    if (spring.slips) {
+    if (state.state == ContactState::slip && memory.turned == 0) {
       spring.tangential *= share_of_slipping(memory, rules);
     }
     spring.normal_stiffness = std::max(spring.normal_stiffness, rules.fade * last.normal_stiffness);
     spring.bending = std::max(spring.bending, rules.fade * last.bending);
     if (before.open_for > 0) {
       spring.tangential = std::max(spring.tangential, rules.fade * last.tangential);
+      spring.sticking = std::max(spring.sticking, spring.tangential);
     }
     next_springs_.push_back(spring);
     next_memories_.push_back(memory);
@@ -150,6 +152,15 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
   std::swap(springs_, next_springs_);
   std::swap(memories_, next_memories_);
   find_those_at_work();
+}
+
+void ContactSprings::hold_slip() {
+  for (ContactSpring &spring : springs_) {
+    spring.tangential = spring.sticking;
+  }
+  for (ContactSpring &spring : at_work_) {
+    spring.tangential = spring.sticking;
+  }
 }
 
 void ContactSprings::set_moving(std::vector<std::uint8_t> moves) {
@@ -235,7 +246,8 @@ void ContactSprings::add_product(const BlockSystem &system, const Field &p, Fiel
 }
 
 void ContactSprings::add_product_without_slip(const BlockSystem &system, const Field &p, Field &y) const {
-  add_lists(*this, system, p, y, [](const ContactSpring &s) { return s.slips ? 0.0 : s.tangential; });
+  add_lists(*this, system, p, y,
+            [](const ContactSpring &s) { return s.tangential < s.sticking ? 0.0 : s.tangential; });
 }
 
 std::vector<SpringRecord> ContactSprings::records() const {

@@ -18,7 +18,7 @@
 //
 // K need not be the tangent of the force. It is the mass of a motion in pseudo-time (pseudo_time.hpp), which
 // is stable as long as the true stiffness is below four times K along each motion and quick where it is near
-// K. Three rules keep it so.
+// K. Four rules keep it so.
 // - A region whose shear is at its cap has no tangential stiffness. It keeps `slip_share` of k_t here: with
 //   none its blocks would run as far as their mass lets them. A mechanism near its limit slides on with a
 //   force that hardly changes, held back by these springs alone. Where a region has slipped to one side for
@@ -32,6 +32,8 @@
 //   block that has lost its contact is braked by them, and speeds up only as fast as they fade. One that gets
 //   shorter, or closes again at a corner, is not weaker than that either: with the springs of a sliver alone
 //   its blocks would run into each other by the whole width of the joint.
+// - Where a motion begins anew (pseudo_time.hpp) it may go either way. A region that slips would stick if it
+//   turned, and all regions keep all of k_t for that step (`hold_slip`).
 // A kept spring also ends when its blocks are farther apart than `reach`, which both ranks of a border pair
 // know from exact copies.
 //
@@ -65,7 +67,7 @@ struct ContactSpring {
   double bending = 0.0;          ///< k_n l^3/12, N
   double tangential = 0.0;       ///< Pa
   double grip = 0.0;             ///< where it acts along t from the middle, m
-  bool slips = false;            ///< the tangential one is what the region keeps while it slips
+  double sticking = 0.0;         ///< the tangential one if the region stuck, Pa
 };
 
 /// What is remembered of a region from one evaluation to the next.
@@ -112,6 +114,8 @@ public:
     f(std::span<const ContactSpring>(moves_.empty() ? springs_ : at_work_));
     f(std::span<const ContactSpring>(links_));
   }
+  /// Regions that slip have all of k_t up to the next update.
+  void hold_slip();
   /// Which rows move from here on.
   /// @param moves  by row; empty: all do
   void set_moving(std::vector<std::uint8_t> moves);

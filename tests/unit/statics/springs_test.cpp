@@ -231,6 +231,22 @@ TEST(ContactSprings, ASlideIsFreeWithoutSlip) {
   EXPECT_EQ(also_closing.of(0)[1], closing.of(0)[1]);
 }
 
+TEST(ContactSprings, ThatSlipHaveAllOfTheirStiffnessWhereTheMotionBeginsAnew) {
+  ContactBench bench = stacked_squares(0.1);
+  statics::ContactSprings springs;
+  bench.evaluate();
+  bench.evaluate();
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+  const double whole = springs.springs()[0].tangential;
+  bench.move(0, {{1e-3, 0.0}, 0.0});
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+  EXPECT_LT(springs.springs()[0].tangential, 0.1 * whole);
+  springs.hold_slip();
+  EXPECT_NEAR(springs.springs()[0].tangential, whole, 1e-9 * whole);
+  springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+  EXPECT_LT(springs.springs()[0].tangential, 0.1 * whole) << "for one step";
+}
+
 TEST(ContactSprings, OfARegionThatSlidesOnFadeToAFloor) {
   ContactBench bench = stacked_squares(0.1);
   statics::ContactSprings springs;
