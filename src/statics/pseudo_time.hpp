@@ -22,7 +22,7 @@
 // f_before is f at the beginning of the step under the loads that it ended with. q is summed along, so that
 // no product is needed for it. Where f.v < 0 the motion has passed its rest: it begins anew, v = q = 0. The
 // first step from rest takes b = 1/2: a whole one would be Newton's, which runs away where the true stiffness
-// is more than twice K.
+// is more than twice K. In it regions that slip have all of k_t, since they may turn (springs.hpp).
 //
 // Near a limit the slowest motion is a slide. Of the regions that slip K has a small share (springs.hpp), the
 // forces hardly change with it, and w and c ought to go to zero. Then nothing damps the few blocks elsewhere
