@@ -74,7 +74,7 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time,
       const StageResult &trial = outcome.summary.stages[outcome.summary.stages.size() - 2].result;
       facts.moved = std::max(facts.moved, trial.moved);
       facts.steps += trial.steps;
-      facts.is_confirmed = 1;
+      facts.is_confirmed = stage.verdict == trial.verdict ? 1 : 0;
     }
   }
   return facts;
@@ -222,19 +222,23 @@ private:
 
   [[nodiscard]] SearchRange range() const { return {scene_.reduction, report_.settled.factor}; }
 
-  /// Largest factors that hold, as far as the static solver alone has said so; at most so many.
+  /// Ends of the bracket, as far as the static solver alone has found them; at most so many, the largest
+  /// factors that hold first.
   [[nodiscard]] std::vector<double> unconfirmed(std::size_t most) const {
-    std::set<double> ends;
-    const auto add = [&](const SafetySearch &search) {
-      if (search.holds && unconfirmed_.contains(*search.holds) && ends.size() < most) {
-        ends.insert(*search.holds);
+    std::vector<double> ends;
+    const auto add = [&](std::optional<double> end) {
+      const bool is_new = end && std::find(ends.begin(), ends.end(), *end) == ends.end();
+      if (is_new && unconfirmed_.contains(*end) && ends.size() < most) {
+        ends.push_back(*end);
       }
     };
-    add(follow(range(), [&](double factor) { return verdict_of(factor); }));
+    const SafetySearch search = follow(range(), [&](double factor) { return verdict_of(factor); });
+    add(search.holds);
     if (watches_mechanism()) {
-      add(follow(range(), [&](double factor) { return verdict_on_first_block(factor); }));
+      add(follow(range(), [&](double factor) { return verdict_on_first_block(factor); }).holds);
     }
-    return {ends.begin(), ends.end()};
+    add(search.fails);
+    return ends;
   }
 
   /// Each group takes one; true if the signal came.
@@ -290,8 +294,9 @@ private:
   RunOutcome run_confirmation(double factor) {
     const fs::path directory = confirmation_directory(factor);
     const Scene trial = trial_scene(factor);
+    const Verdict found = trials_.at(factor).verdict;
     const RunOutcome outcome =
-        run_in(directory, with_confirming_stage(trial), trial_directory(factor), factor);
+        run_in(directory, with_confirming_stage(trial, found), trial_directory(factor), factor);
     return fell_through(outcome, trial) ? run_dynamic_trial(directory, factor) : outcome;
   }
 
@@ -317,8 +322,12 @@ private:
     const auto messages = world_.all_gather(std::vector<char>(message.begin(), message.end()));
     const auto all = world_.all_gather(mine);
     bool stopped = false;
+    bool is_overturned = false;
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
       for (const TrialFacts &facts : all[rank]) {
+        if (is_overturned) {
+          continue; // no end of the bracket any more; one group alone would not have looked
+        }
         StrengthTrial trial = trial_of(facts);
         trial.message.assign(messages[rank].begin(), messages[rank].end());
         trial.directory = trial_directory(facts.factor);
@@ -326,6 +335,7 @@ private:
           trial.directory = confirmation_directory(facts.factor);
           trial.evaluations += trials_[facts.factor].evaluations;
           trial.cpu_s += trials_[facts.factor].cpu_s;
+          is_overturned = trial.verdict != trials_[facts.factor].verdict;
         }
         is_by_statics_alone(facts) ? void(unconfirmed_.insert(facts.factor))
                                    : void(unconfirmed_.erase(facts.factor));
@@ -348,7 +358,7 @@ private:
   }
 
   static bool is_by_statics_alone(const TrialFacts &facts) {
-    return static_cast<Verdict>(facts.verdict) == Verdict::settled && facts.is_confirmed == 0 &&
+    return static_cast<Verdict>(facts.verdict) != Verdict::undecided && facts.is_confirmed == 0 &&
            static_cast<VerdictMeans>(facts.means) == VerdictMeans::static_solver;
   }
 
@@ -357,8 +367,8 @@ private:
     if (verdict == Verdict::undecided) {
       return "";
     }
-    return is_by_statics_alone(facts)                               ? "static solver"
-           : facts.is_confirmed != 0 && verdict == Verdict::settled ? "static solver and dynamic step"
+    return is_by_statics_alone(facts) ? "static solver"
+           : facts.is_confirmed != 0  ? "static solver and dynamic step"
            : static_cast<VerdictMeans>(facts.means) == VerdictMeans::no_drag ? "dynamic step without damping"
                                                                              : "dynamic step";
   }
@@ -466,7 +476,7 @@ private:
   double start_time_ = 0.0; ///< of all trials, s
   std::int64_t num_blocks_ = 0;
   std::map<double, StrengthTrial> trials_; ///< by factor
-  std::set<double> unconfirmed_;           ///< factors that hold by the static solver alone
+  std::set<double> unconfirmed_;           ///< factors whose verdict is by the static solver alone
   std::set<double> stopped_;               ///< factors of those without a verdict because the signal came
   SafetyReport report_;
   std::string message_; ///< why there is no factor

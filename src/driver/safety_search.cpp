@@ -271,13 +271,19 @@ Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   return weakened;
 }
 
-Scene with_confirming_stage(Scene weakened) {
+Scene with_confirming_stage(Scene weakened, Verdict found) {
   Stage confirm = weakened.stages.back();
   confirm.name = confirming_stage;
   confirm.after = nullptr;
   confirm.increments = 1; // nothing has changed
-  confirm.begins_at_rest = true;
-  confirm.tolerance *= 10.0; // swings of the step about a state of rest are no motion away from it
+  if (found == Verdict::failed) {
+    confirm.solver = Solver::dynamic;
+    confirm.goes_on_failing = true;
+    confirm.local_damping = 0.0; // as drag it would hold back what goes on moving
+  } else {
+    confirm.begins_at_rest = true;
+    confirm.tolerance *= 10.0; // swings of the step about a state of rest are no motion away from it
+  }
   weakened.stages.push_back(std::move(confirm));
   return weakened;
 }

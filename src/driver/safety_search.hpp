@@ -58,8 +58,8 @@ inline constexpr const char *confirming_stage = "confirm";
 ///                        step fall from there in increments
 Scene weakened_scene(const Scene &scene, double factor, double settled_factor = 1.0);
 
-/// A trial in which the static solver finds that the blocks hold, and a stage in which the dynamic step
-/// confirms it.
-Scene with_confirming_stage(Scene weakened);
+/// A trial in which the static solver finds that the blocks hold, or that they fail, and a stage in which the
+/// dynamic step confirms it.
+Scene with_confirming_stage(Scene weakened, Verdict found);
 
 } // namespace gcpdda

@@ -28,8 +28,11 @@ struct StageClock {
   [[nodiscard]] bool stage_is_over() const { return state.ended || stage_step() >= plan.num_steps; }
   /// No stage follows, or the next one must not begin.
   [[nodiscard]] bool is_finished() const {
-    const bool goes_on = !stage().until_verdict || state.verdict == Verdict::settled;
-    return stage_is_over() && (state.index + 1 == std::ssize(stages) || !goes_on);
+    if (!stage_is_over() || state.index + 1 == std::ssize(stages)) {
+      return stage_is_over();
+    }
+    const bool follows = stages[static_cast<std::size_t>(state.index + 1)].goes_on_failing;
+    return stage().until_verdict && state.verdict != (follows ? Verdict::failed : Verdict::settled);
   }
 };
 

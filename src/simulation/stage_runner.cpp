@@ -51,7 +51,8 @@ void mark_stage(RunState &run) {
   }
   const std::span<BlockMark> marks = mark_rows(run.blocks);
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
-    marks[row] = {run.blocks.displacement[row], run.blocks.displacement[row]};
+    const RigidDof &now = run.blocks.displacement[row];
+    marks[row] = {run.clock.stage().goes_on_failing ? marks[row].stage : now, now};
   }
 }
 
@@ -388,7 +389,12 @@ void open_next_stage(RunState &run) {
   ++state.index;
   state.ended = false;
   state.verdict = Verdict::undecided;
+  const StageLook last = state.memory.last;
   state.memory = {};
+  if (run.clock.stage().goes_on_failing) {
+    state.memory.last = last;
+    state.memory.last.motion = std::numeric_limits<double>::infinity(); // no look of a step
+  }
   state.mechanism = {};
   state.first_block = Verdict::undecided;
   state.iteration = {};
@@ -439,6 +445,9 @@ void begin_next_stage(RunState &run) {
   run.loads.time = run.clock.time();
   accelerate_owned(run);
   mark_stage(run);
+  if (stage.goes_on_failing) {
+    hold_after_statics(run);
+  }
   if (!stage.takes_steps()) {
     run.clock.state.verdict = Verdict::done;
     run.clock.state.end_time = run.clock.time();

@@ -39,14 +39,15 @@
 // doubles at least. The threshold lies between the first and the other two. The term in m refuses blocks
 // that slide on while what drives them fades.
 //
-// The same rule decides when the static solver leaves a trial to the dynamic one, with windows of equal
+// The same rule decides when a trial fails under the static solver, with windows of equal
 // length: in pseudo-time motion is damped, and a constant force gives a constant speed. A block must have
 // moved by failure_motion and beyond the sag, and gone on as above or for two windows in a row, and a series
 //     M + g (q + q^2 + ...)     with q, g over that of the window before, but at most 1
 // that reaches five times failure_motion within 60 windows, twice those of a trial. Near the limit blocks
 // creep to rest for a thousand evaluations, in each window a little less. Where M is as much as that already
-// and a block has moved beyond the sag, the trial is left at once. The dynamic step judges it from its second
-// look on: the first has nothing to be compared with.
+// and a block has moved beyond the sag, the trial fails at once. Where that is an end of the bracket, the
+// dynamic step goes on from there and judges from its second look on: the first has nothing to be compared
+// with.
 
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/model/stage.hpp"

@@ -182,9 +182,10 @@ double farthest_in_window(RunState &run) {
   return run.communicator.max(farthest);
 }
 
-// The dynamic solver has the last word on a trial that fails, so that statics never says so alone. Loose
-// blocks do not hold up a trial where each of them would move by less than a tenth of what fails if it went
-// on as in the last window for all windows ahead.
+// A trial that fails ends here: where that is an end of the bracket, the dynamic step goes on with it in a
+// stage of its own. What a watched part of the blocks does, the dynamic step says at once. Loose blocks do
+// not hold up a trial where each of them would move by less than a tenth of what fails if it went on as in
+// the last window for all windows ahead.
 void judge_static_trial(RunState &run) {
   constexpr double window = 50.0;                   // evaluations
   constexpr std::int64_t enough_evaluations = 1500; // for a trial that does not come nearer to rest
@@ -219,6 +220,11 @@ void judge_static_trial(RunState &run) {
   const bool goes_on = is_failing || windows.undiminished >= 2;
   const bool fails =
       look.moved_beyond_sag >= failure && (look.moved >= far || (closed && goes_on && goes_far));
+  if (fails && !run.clock.stage().watches_mechanism()) {
+    run.clock.state.verdict = Verdict::failed;
+    run.clock.state.ended = true;
+    return;
+  }
   if (fails || (stalls && evaluations >= enough_evaluations)) {
     if (fails || windows.undiminished > 0) {
       run.local_damping = 0.0; // as drag it would hold back what goes on moving

@@ -67,7 +67,8 @@ struct Stage {
   double local_damping = -1.0; ///< in place of that of the run; negative for none
   bool mass_scaling = false;
   bool kinetic_damping = false; ///< velocities are set to zero whenever the kinetic energy has passed a peak
-  bool begins_at_rest = false;  ///< the dynamic step confirms that a trial has come to rest
+  bool begins_at_rest = false;  ///< the dynamic step confirms that a trial has come to rest ...
+  bool goes_on_failing = false; ///< ... or that it fails; how far blocks have moved in the trial counts
   Solver solver = Solver::dynamic;
   std::int64_t increments = 50; ///< of the load, of the static solver
   /// s of a trial of gcpdda fos after which it goes on without local damping and is judged by its motion in

@@ -216,10 +216,13 @@ TEST(WeakenedScene, IsSolvedAsTheLastSettleStageIs) {
   last_settle->solver = Solver::statics;
   const Scene trial = weakened_scene(scene, 2.0);
   EXPECT_EQ(trial.stages.back().solver, Solver::statics);
-  const std::vector<Stage> stages = with_confirming_stage(trial).stages;
-  EXPECT_EQ(stages.size(), trial.stages.size() + 1);
-  EXPECT_EQ(stages.back().name, confirming_stage);
-  EXPECT_TRUE(stages.back().begins_at_rest) << "the dynamic step confirms it";
+  for (const Verdict found : {Verdict::settled, Verdict::failed}) {
+    const std::vector<Stage> stages = with_confirming_stage(trial, found).stages;
+    EXPECT_EQ(stages.size(), trial.stages.size() + 1);
+    EXPECT_EQ(stages.back().name, confirming_stage);
+    EXPECT_EQ(stages.back().begins_at_rest, found == Verdict::settled);
+    EXPECT_EQ(stages.back().goes_on_failing, found == Verdict::failed);
+  }
 }
 
 // Increments of at most 2 % from the strengths of the settled state to those of the trial, which come last.
