@@ -68,17 +68,15 @@ void leave_statics(RunState &run, const std::string &reason) {
 // The damping of pseudo-time, and what holds the load back, take all that the forces do together. By the
 // trapezoid: half over the step that ends here, and half over the one that begins, which is found already.
 void book_static_work(RunState &run) {
-  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
-    if (!run.blocks.properties[row].keeps_its_velocity()) {
-      const std::array<double, 6> force = statics::unbalanced_forces(run.blocks, row);
-      const std::array<double, 6> &step = run.blocks.pseudo[row].velocity;
-      double done = 0.0;
-      for (std::size_t i = 0; i < step.size(); ++i) {
-        done += force[i] * step[i];
-      }
-      run.blocks.ledger[row].damping -= 0.5 * done;
+  statics::for_rows(run.statics->moving(), [&](std::size_t row) {
+    const std::array<double, 6> force = statics::unbalanced_forces(run.blocks, row);
+    const std::array<double, 6> &step = run.blocks.pseudo[row].velocity;
+    double done = 0.0;
+    for (std::size_t i = 0; i < step.size(); ++i) {
+      done += force[i] * step[i];
     }
-  }
+    run.blocks.ledger[row].damping -= 0.5 * done;
+  });
 }
 
 /// What may be left on a block that is balanced, N/m.
@@ -302,11 +300,13 @@ void report_statically(RunState &run) {
   const bool may_pause = !is_static(run) || run.statics->may_pause(run.clock.state.iteration);
   is_asked = run.stop_asked && may_pause ? 1.0 : 0.0;
   has_failed = run.local_fault ? 1.0 : 0.0;
-  for (std::size_t row = 0; row < run.blocks.num_owned && is_static(run); ++row) {
-    const double ahead = statics::length_of_step(run.blocks, row);
-    if (moved_since_refresh(run.blocks, row) + ahead > share_of_skin_kept * run.neighbours.skin) {
-      is_stale = 1.0;
-    }
+  if (is_static(run)) {
+    statics::for_rows(run.statics->moving(), [&](std::size_t row) {
+      const double ahead = statics::length_of_step(run.blocks, row);
+      if (moved_since_refresh(run.blocks, row) + ahead > share_of_skin_kept * run.neighbours.skin) {
+        is_stale = 1.0;
+      }
+    });
   }
   run.communicator.max(status);
   run.neighbours.stale = run.clock.state.iteration.is_left != 0 || is_stale > 0.0;
@@ -349,8 +349,10 @@ namespace {
 
 void move_and_evaluate(RunState &run) {
   run.statics->move(run.blocks);
-  pose_in_lanes(run.blocks, 0, run.blocks.num_owned);
-  add_half_works(run.blocks, 0, run.blocks.num_owned);
+  for (const statics::RowRun &rows : run.statics->moving()) { // the others are where they were
+    pose_in_lanes(run.blocks, rows.first, rows.last);
+    add_half_works(run.blocks, rows.first, rows.last);
+  }
   run.neighbours.border_trials.clear();
   for (const std::uint32_t row : run.neighbours.ghosts.sent_rows()) {
     run.neighbours.border_trials.push_back({run.blocks.trial[row], run.blocks.is_deformable(row)

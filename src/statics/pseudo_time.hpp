@@ -70,6 +70,8 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace gcpdda::statics {
 
@@ -115,6 +117,8 @@ public:
   /// @param any_deformable  on any rank
   void lay(BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
            std::vector<BorderRows> border);
+  /// Owned rows that the next step moves; the others have no velocity.
+  [[nodiscard]] std::span<const RowRun> moving() const { return moving_; }
   /// Some blocks stay where they are while others move.
   [[nodiscard]] bool is_local() const { return is_local_; }
   /// What is out of balance is held from here on. The forces are those of the last evaluation.
