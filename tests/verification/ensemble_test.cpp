@@ -7,6 +7,7 @@
 #include "gcpdda/io/scene_reader.hpp"
 #include "io/results/ensemble_report.hpp"
 #include "support/run_facts.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -47,10 +48,8 @@ struct Found {
   int exit_code = 0;
 
   explicit Found(const std::vector<std::string> &sets) {
-    std::string folder = (std::filesystem::temp_directory_path() / "gcpdda_ensemble_XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr) {
-      throw std::runtime_error("no temporary folder");
-    }
+    const TemporaryFolder temporary;
+    const std::string folder = temporary.path().string();
     ::testing::internal::CaptureStdout();
     ::testing::internal::CaptureStderr();
     const Scene scene = shipped_scene("plane_failure", sets);
@@ -72,7 +71,6 @@ struct Found {
     for (const char *key : {"probability_of_failure", "low", "high"}) {
       json += json_value(folder + "/e/ensemble.json", key) + " ";
     }
-    std::filesystem::remove_all(folder);
   }
 };
 

@@ -1,18 +1,14 @@
 // What a search for a factor of safety takes, counted in evaluations and steps.
 
 #include "problem.hpp"
+#include "safety_limits.hpp"
 
 #include "blockgen/region_cutter.hpp"
-#include "driver/safety_factor.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
-#include <stdexcept>
-#include <string>
 
 namespace gcpdda::testing::safety_cost_test {
 namespace {
@@ -23,16 +19,7 @@ SafetyOutcome search_of_one_bench() {
                                               "region.slope.toe_length=8.0", "region.slope.crest_length=17.0",
                                               "region.slope.depth=5.0", "output.contacts=false"});
   scene.region_blocks = std::make_shared<RegionCutter>(scene);
-  std::string folder = (std::filesystem::temp_directory_path() / "gcpdda_cost_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw std::runtime_error("no temporary folder");
-  }
-  SafetyOptions options;
-  options.directory = std::filesystem::path(folder) / "fos";
-  options.quiet = true;
-  SafetyOutcome outcome = search_safety_factor(Communicator::self(), scene, options);
-  std::filesystem::remove_all(folder);
-  return outcome;
+  return search_quietly(scene);
 }
 
 // All trials take some 2,000 evaluations and steps together. Where a slide is damped by what chatters

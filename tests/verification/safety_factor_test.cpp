@@ -6,6 +6,7 @@
 #include "driver/safety_factor.hpp"
 #include "support/plane_failure.hpp"
 #include "support/run_facts.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -25,13 +26,10 @@ struct Found {
 
   explicit Found(const std::string &toml) : Found(scene_of(toml)) {}
   explicit Found(const Scene &scene) {
-    std::string folder = (std::filesystem::temp_directory_path() / "gcpdda_fos_XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr) {
-      throw std::runtime_error("no temporary folder");
-    }
+    const TemporaryFolder folder;
     ::testing::internal::CaptureStdout();
     ::testing::internal::CaptureStderr();
-    const std::filesystem::path result = std::filesystem::path(folder) / "fos";
+    const std::filesystem::path result = folder.path() / "fos";
     exit_code = find_safety_factor(Communicator::self(), scene, {result, false});
     ::testing::internal::GetCapturedStderr();
     text = ::testing::internal::GetCapturedStdout();
@@ -39,7 +37,6 @@ struct Found {
       holds = std::atof(json_value(result / "fos.json", "holds").c_str());
       fails = std::atof(json_value(result / "fos.json", "fails").c_str());
     }
-    std::filesystem::remove_all(folder);
   }
   [[nodiscard]] double factor() const { return 0.5 * (holds + fails); }
 };

@@ -1,37 +1,29 @@
 #include "safety_limits.hpp"
 
-#include "driver/safety_factor.hpp"
 #include "driver/safety_search.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
-#include <stdexcept>
 
 namespace gcpdda::testing {
 
-namespace {
-
-/// gcpdda fos, or the bound of limit analysis alone.
-SafetyOutcome search(const Scene &scene, bool only_bound) {
-  std::string folder = (std::filesystem::temp_directory_path() / "gcpdda_limits_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw std::runtime_error("no temporary folder");
-  }
+SafetyOutcome search_quietly(const Scene &scene, bool only_bound) {
+  const TemporaryFolder folder;
   SafetyOptions options;
-  options.directory = std::filesystem::path(folder) / "fos";
+  options.directory = folder.path() / "fos";
   options.quiet = true;
   options.only_bound = only_bound;
-  SafetyOutcome outcome = search_safety_factor(Communicator::self(), scene, options);
-  std::filesystem::remove_all(folder);
-  return outcome;
+  return search_safety_factor(Communicator::self(), scene, options);
 }
+
+namespace {
 
 Scene with_solver(Scene scene, Solver solver) {
   scene = with_settle_stage(std::move(scene));
@@ -77,7 +69,7 @@ void add_row(const KnownLimit &limit, const char *solver, const SafetyOutcome &f
 void expect_factor(const KnownLimit &limit, const Scene &scene) {
   double bound = scene.reduction.to;
   if (limit.bound_tolerance > 0.0) {
-    const SafetyOutcome found = search(with_solver(scene, Solver::dynamic), true);
+    const SafetyOutcome found = search_quietly(with_solver(scene, Solver::dynamic), true);
     ASSERT_TRUE(found.report.bound) << limit.problem;
     bound = *found.report.bound;
     expect_value("upper bound by limit analysis, " + limit.problem, limit.factor, bound,
@@ -85,7 +77,7 @@ void expect_factor(const KnownLimit &limit, const Scene &scene) {
   }
   for (const Solver solver : {Solver::dynamic, Solver::statics}) {
     const char *word = solver == Solver::statics ? "static" : "dynamic";
-    const SafetyOutcome found = search(with_solver(scene, solver), false);
+    const SafetyOutcome found = search_quietly(with_solver(scene, solver));
     const std::string name = fmt::format("factor of safety, {}, {} trials", limit.problem, word);
     add_row(limit, word, found);
     EXPECT_EQ(found.exit_code, exit_code::done) << name << ": " << found.message;

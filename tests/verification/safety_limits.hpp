@@ -4,11 +4,15 @@
 
 #include "problem.hpp"
 
+#include "driver/safety_factor.hpp"
 #include "gcpdda/model/scene.hpp"
 
 #include <string>
 
 namespace gcpdda::testing {
+
+/// gcpdda fos without its files, or the bound of limit analysis alone.
+SafetyOutcome search_quietly(const Scene &scene, bool only_bound = false);
 
 /// Whether the thresholds of a trial's verdict (simulation/stages.hpp) were set with a system in view. No
 /// threshold may be set with a system of the untouched half.

@@ -2,16 +2,12 @@
 // are known.
 
 #include "problem.hpp"
-
-#include "driver/safety_factor.hpp"
+#include "safety_limits.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <stdexcept>
 
 namespace gcpdda::testing::safety_mechanism_test {
 namespace {
@@ -32,21 +28,13 @@ std::string block_on_plane(const std::string &name, Vec2 top, double dip_deg, do
 }
 
 SafetyReport search(const std::string &fos_keys, bool is_static) {
-  std::string folder = (std::filesystem::temp_directory_path() / "gcpdda_mechanism_XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw std::runtime_error("no temporary folder");
-  }
   const std::string toml = head({.friction_deg = friction_deg}) +
                            block_on_plane("small", {0.0, 0.0}, steep_deg, 1.0) +
                            block_on_plane("large", {60.0, 0.0}, flat_deg, 6.0);
   const Scene scene = scene_of(without_duration(toml) + "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n" +
                                (is_static ? "solver = \"static\"\n" : "solver = \"dynamic\"\n") +
                                "[fos]\nfrom = 1.0\nto = 1.5\n" + fos_keys);
-  SafetyOptions options;
-  options.directory = std::filesystem::path(folder) / "fos";
-  options.quiet = true;
-  const SafetyOutcome outcome = search_safety_factor(Communicator::self(), scene, options);
-  std::filesystem::remove_all(folder);
+  const SafetyOutcome outcome = search_quietly(scene);
   EXPECT_EQ(outcome.exit_code, exit_code::done) << outcome.message;
   return outcome.report;
 }

@@ -14,6 +14,7 @@
 #include "support/frame_data.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"
+#include "support/temporary_folder.hpp"
 #include "unit/scene_texts.hpp"
 
 #include <gtest/gtest.h>
@@ -30,6 +31,7 @@ using testing::FrameData;
 using testing::GivenContacts;
 using testing::GivenFrame;
 using testing::scene_of;
+using testing::TemporaryFolder;
 
 const std::string scene_text = R"([run]
 duration = 1.0
@@ -172,17 +174,12 @@ TEST(StepToGoOnFrom, IsThatOfTheTime) {
 
 class CutResults : public ::testing::Test {
 protected:
-  CutResults() {
-    std::string name = (fs::temp_directory_path() / "gcpdda_cut_XXXXXX").string();
-    expect(mkdtemp(name.data()) != nullptr, "a temporary folder");
-    folder_ = name;
-  }
-  ~CutResults() override { fs::remove_all(folder_); }
   void write(const std::string &name, const std::string &text) const {
     fs::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  fs::path folder_;
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 TEST_F(CutResults, HistoriesKeepWholeRowsUpToTheTime) {

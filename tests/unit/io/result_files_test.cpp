@@ -8,6 +8,7 @@
 #include "io/results/run_comparison.hpp"
 #include "io/results/summary.hpp"
 #include "support/frame_data.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,6 +28,7 @@ namespace fs = std::filesystem;
 using testing::FrameData;
 using testing::GivenContacts;
 using testing::GivenFrame;
+using testing::TemporaryFolder;
 
 std::string read_text(const fs::path &path) {
   std::ifstream stream(path, std::ios::binary);
@@ -41,14 +43,8 @@ void write_text(const fs::path &path, const std::string &text) {
 
 class ResultFiles : public ::testing::Test {
 protected:
-  ResultFiles() {
-    std::string name = (fs::temp_directory_path() / "gcpdda_results_XXXXXX").string();
-    expect(mkdtemp(name.data()) != nullptr, "a temporary folder");
-    folder_ = name;
-  }
-  ~ResultFiles() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 TEST_F(ResultFiles, HistoryHasUnitsAndSeventeenDigits) {
