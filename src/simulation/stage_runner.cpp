@@ -161,6 +161,12 @@ bool is_loading(const RunState &run) {
 void look_at_stage(RunState &run) {
   StageLook look = look_at_blocks(run);
   const Stage &stage = run.clock.stage();
+  if (stage.begins_at_rest && !is_static(run)) {
+    const double length =
+        static_cast<double>(steps_between_verdicts(num_blocks(run.scene))) * run.clock.plan.time_step;
+    const double looks = static_cast<double>(run.clock.state.memory.confirming) + 0.5;
+    look.fall = looks * length * length * norm(run.scene.run.gravity);
+  }
   if (stage.until_verdict && (!stage.is_trial() || is_static(run))) {
     look_for_loose_blocks(run, look);
   }

@@ -15,6 +15,8 @@ Verdict judge(const Stage &stage, const StageLook &look, std::int64_t looks_at_l
   constexpr double most_loose = 1e-3;      // of the mobile blocks
   constexpr double most_loose_load = 1e-2; // of the load
   constexpr double energy_at_rest = 1e-12; // of what the largest contact holds
+  constexpr double share_of_weight = 2e-4; // that drives no block, once a state of rest is confirmed
+  constexpr std::int64_t confirming_looks = 4;
   const StageLook last = memory.last;
   memory.most_kinetic = std::max(memory.most_kinetic, look.kinetic);
   memory.last = look;
@@ -25,11 +27,15 @@ Verdict judge(const Stage &stage, const StageLook &look, std::int64_t looks_at_l
       look.unbalanced_ratio <= stage.tolerance && hardly_moves &&
       (look.kinetic <= last.kinetic || look.kinetic <= energy_at_rest * look.force * look.overlap);
   memory.settled_looks = is_settled ? memory.settled_looks + 1 : 0;
+  memory.confirming += look.fall > 0.0 ? 1 : 0;
+  const bool is_confirmed = memory.confirming >= confirming_looks &&
+                            look.unbalanced_ratio <= stage.tolerance &&
+                            look.motion <= share_of_weight * look.fall;
   const bool others_rest = look.loose_share <= most_loose && look.loose_load <= most_loose_load &&
                            (look.resting_kinetic <= last.resting_kinetic ||
                             look.resting_kinetic <= energy_at_rest * look.force * look.overlap);
   memory.loose_looks = others_rest ? memory.loose_looks + 1 : 0;
-  if (memory.settled_looks >= 2 || memory.loose_looks >= looks_at_loose) {
+  if (memory.settled_looks >= 2 || memory.loose_looks >= looks_at_loose || is_confirmed) {
     return Verdict::settled;
   }
   const bool goes_on =

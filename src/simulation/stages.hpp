@@ -20,7 +20,13 @@
 // the whole pile by the little that was left unbalanced. The static solver therefore goes on first, until all
 // but a few blocks are balanced so well that the dynamic step holds them (held_blocks.hpp). The swing of the
 // few needs not end: D does not grow there either, in place of being small. A block that goes on under a
-// force moves farther from look to look.
+// force moves farther from look to look. Nor is there much of a force where all blocks, from rest, have moved
+// less than a share e = 2e-4 of their weight would move them. In the n-th look of the dynamic step, of the
+// length t, that is (n - 1/2) e g t^2; it is asked from the fourth on, so that a swing with a period of
+// several looks has been seen as well. A block on a plane with the dip b whose trial is beyond its limit by
+// the share h of the factor has e = h sin(b): what may pass is beyond it by some ten-thousandths. Without
+// this rule a pile near its limit, in which friction feeds a swing of a micrometre, rested by chance after up
+// to 40 looks.
 // failed: M has reached failure_motion, D is at least half of what it was, and T at least a quarter of the
 // most it was: the blocks are not about to come to rest.
 //
@@ -69,6 +75,7 @@ struct StageLook {
   double kinetic = 0.0;          ///< T, J/m
   double moved = 0.0;            ///< M of all blocks
   double moved_beyond_sag = 0.0; ///< M of those that have moved farther than a pile sags
+  double fall = 0.0; ///< (n - 1/2) g t^2 where the dynamic step confirms a state of rest, else 0; m
   // Of a settle stage or a static trial (loose_blocks.hpp); 1 where nobody has looked.
   double loose_share = 1.0;     ///< of the mobile blocks, those that are loose
   double loose_load = 1.0;      ///< their net forces together over the load
@@ -105,7 +112,9 @@ struct LookMemory {
   std::int64_t settled_looks = 0;
   std::int64_t loose_looks = 0; ///< in a row at which all but loose blocks were at rest
   std::int64_t num_loose = 0;   ///< blocks that the stage has not waited for
-  MotionWindows windows;        ///< not in checkpoints, because nothing goes on with a trial
+  std::int64_t confirming =
+      0;                 ///< looks of the dynamic step that confirms a state of rest, not in checkpoints
+  MotionWindows windows; ///< not in checkpoints, because nothing goes on with a trial
 };
 
 /// Looks in a row after which a stage waits no longer for loose blocks: longer than it takes one that bounces

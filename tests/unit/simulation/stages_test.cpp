@@ -86,7 +86,8 @@ TEST(Stages, WindowsTellWhatGoesOnFromWhatFades) {
 }
 
 /// Looks at a trial until it is called settled, at most 40; motion between two looks as it is given.
-template <class Motion> int looks_until_settled(const Stage &stage, Motion &&motion) {
+/// @param fall  by which a block falls in the first look, m; 0: nobody asks
+template <class Motion> int looks_until_settled(const Stage &stage, Motion &&motion, double fall = 0.0) {
   LookMemory memory;
   for (int k = 1; k <= 40; ++k) {
     StageLook look;
@@ -95,6 +96,7 @@ template <class Motion> int looks_until_settled(const Stage &stage, Motion &&mot
     look.force = 1e6;
     look.motion = motion(k);
     look.kinetic = 1e10 * look.motion * look.motion;
+    look.fall = (2.0 * k - 1.0) * fall;
     if (judge(stage, look, looks_at_loose_blocks(false), memory) == Verdict::settled) {
       return k;
     }
@@ -117,6 +119,25 @@ TEST(Stages, ATrialFromRestNeedsNotWaitForTheEndOfASwing) {
       << "the first of two looks at less than 1e-6 m is the 24th";
   EXPECT_EQ(looks_until_settled(from_rest, slide), 0) << "it gains speed";
   EXPECT_EQ(looks_until_settled(from_rest, far_slide), 0);
+}
+
+// A swing that friction feeds gains energy for long; a slide under a thousandth of the weight moves no less
+// at first. From the fourth look on they are told apart by how far blocks have moved.
+TEST(Stages, AStateOfRestIsConfirmedWhereHardlyAForceDrivesIt) {
+  Stage trial;
+  trial.drag_limit = 1.0;
+  Stage from_rest = trial;
+  from_rest.begins_at_rest = true;
+  constexpr double fall = 0.008; // m, in 0.04 s
+  const auto fed_swing = [](int k) { return 4e-7 * std::pow(1.15, k); };
+  const auto slide_under = [&](double share) {
+    return [share](int k) { return share * fall * (2.0 * k - 1.0); };
+  };
+  EXPECT_EQ(looks_until_settled(from_rest, fed_swing), 0);
+  EXPECT_EQ(looks_until_settled(from_rest, fed_swing, fall), 4);
+  EXPECT_EQ(looks_until_settled(from_rest, slide_under(1e-3), fall), 0);
+  EXPECT_EQ(looks_until_settled(from_rest, slide_under(3e-4), fall), 0);
+  EXPECT_EQ(looks_until_settled(from_rest, slide_under(1e-4), fall), 4);
 }
 
 const std::string stack_head = R"([run]
