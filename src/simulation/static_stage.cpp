@@ -292,6 +292,17 @@ void judge_statics(RunState &run) {
   note_loose_blocks_at_end(run);
 }
 
+/// Some owned row may leave the skin in the next step.
+bool uses_up_skin(const RunState &run) {
+  bool uses_up = false;
+  statics::for_rows(run.statics->moving(), [&](std::size_t row) {
+    const double ahead = statics::length_of_step(run.blocks, row);
+    uses_up =
+        uses_up || moved_since_refresh(run.blocks, row) + ahead > share_of_skin_kept * run.neighbours.skin;
+  });
+  return uses_up;
+}
+
 void report_statically(RunState &run) {
   const auto scope = run.phases.measure(Phase::report);
   count_step(run, {});
@@ -300,14 +311,7 @@ void report_statically(RunState &run) {
   const bool may_pause = !is_static(run) || run.statics->may_pause(run.clock.state.iteration);
   is_asked = run.stop_asked && may_pause ? 1.0 : 0.0;
   has_failed = run.local_fault ? 1.0 : 0.0;
-  if (is_static(run)) {
-    statics::for_rows(run.statics->moving(), [&](std::size_t row) {
-      const double ahead = statics::length_of_step(run.blocks, row);
-      if (moved_since_refresh(run.blocks, row) + ahead > share_of_skin_kept * run.neighbours.skin) {
-        is_stale = 1.0;
-      }
-    });
-  }
+  is_stale = is_static(run) && uses_up_skin(run) ? 1.0 : 0.0;
   run.communicator.max(status);
   run.neighbours.stale = run.clock.state.iteration.is_left != 0 || is_stale > 0.0;
   run.stop_agreed = is_asked > 0.0 && has_failed == 0.0;
