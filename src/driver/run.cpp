@@ -211,7 +211,6 @@ private:
         counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_owned));
     const auto work =
         counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.candidates().pairs.size()));
-    const StepBound &bound = simulation_.bound();
     const Scene &scene = simulation_.scene();
     tell_notes();
     const auto mobile = std::accumulate(owned.begin(), owned.end(), std::int64_t{0});
@@ -220,11 +219,7 @@ private:
         communicator_.size(), communicator_.size() == 1 ? "" : "s", mobile, simulation_.num_blocks() - mobile,
         *std::min_element(owned.begin(), owned.end()), *std::max_element(owned.begin(), owned.end()),
         imbalance_of(work), simulation_.partition().by_metis ? "METIS" : "space-filling curve"));
-    log_->line(fmt::format(
-        "step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
-        "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
-        simulation_.plan().time_step, simulation_.plan().num_steps, simulation_.plan().duration,
-        bound.time_step, bound.safety, bound.limit, bound.omega_max));
+    log_->line(words_on_time_step(simulation_));
     for (const JointLaw &law : scene.joints.laws) {
       log_->line(words_on_law(law));
     }

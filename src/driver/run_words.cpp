@@ -121,6 +121,15 @@ void tell_end(const Simulation &simulation, const std::filesystem::path &directo
   }
 }
 
+std::string words_on_time_step(const Simulation &simulation) {
+  const StepBound &bound = simulation.bound();
+  return fmt::format(
+      "step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
+      "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
+      simulation.plan().time_step, simulation.plan().num_steps, simulation.plan().duration, bound.time_step,
+      bound.safety, bound.limit, bound.omega_max);
+}
+
 std::string words_on_law(const JointLaw &law) {
   return fmt::format(
       "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "

@@ -1,6 +1,6 @@
 #pragma once
 
-// Sentences of the log on faults, progress, laws, bolts and verdicts.
+// Sentences of the log on faults, the time step, progress, laws, bolts and verdicts.
 
 #include "gcpdda/io/run_summary.hpp"
 #include "simulation/simulation.hpp"
@@ -16,6 +16,9 @@ std::string fault_message(const Simulation &simulation);
 
 /// Which blocks are rigid, and what that leaves out.
 std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_error);
+
+/// The time step, how many there are, and what bounds it.
+std::string words_on_time_step(const Simulation &simulation);
 
 std::string words_on_law(const JointLaw &law);
 

@@ -1,15 +1,12 @@
 // One rank and many write the same bytes. Each test also proves that there was something to get wrong: blocks
 // in contact across ranks, blocks that changed their rank, neighbourhoods made anew.
 
-#include "driver/restart.hpp"
-#include "gcpdda/driver/run.hpp"
-#include "io/checkpoint/checkpoint_reader.hpp"
 #include "io/results/frame_reader.hpp"
 #include "io/results/run_comparison.hpp"
 #include "model/contact_history.hpp"
-#include "shared_folder.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"
+#include "two_runs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,8 +18,10 @@ namespace gcpdda::identity_test {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::expect_same_after_restart;
 using testing::summary_number;
 using testing::summary_text;
+using testing::TwoRuns;
 
 /// A wall of bricks in running bond, pressed together a little, thrown as a whole and each with a velocity of
 /// its own: contacts in the middle of everything, whatever way the wall is cut.
@@ -73,72 +72,6 @@ std::string glued_wall_toml(int rows, int columns, double duration) {
     }
   }
   return toml;
-}
-
-/// Folders of one scene run by all ranks and by one alone, and whether they are the same.
-class TwoRuns {
-public:
-  explicit TwoRuns(const Scene &scene, ExitCode expected = exit_code::done) : folder_(world_) {
-    const testing::CapturedLog log;
-    EXPECT_EQ(run_scene(world_, scene, {together(), false}), expected) << "together";
-    world_.barrier();
-    if (world_.is_root()) {
-      EXPECT_EQ(run_scene(Communicator::self(), scene, {alone(), false}), expected) << "alone";
-      compare();
-    }
-    world_.barrier();
-  }
-
-  [[nodiscard]] const Communicator &world() const { return world_; }
-  [[nodiscard]] fs::path together() const { return folder_.path("together"); }
-  [[nodiscard]] fs::path alone() const { return folder_.path("alone"); }
-  /// A counter of the run together, on every rank.
-  [[nodiscard]] double counted(const std::string &key) const { return summary_number(together(), key); }
-
-private:
-  void compare() const {
-    for (const std::string &difference : compare_runs(together(), alone())) {
-      ADD_FAILURE() << difference;
-    }
-    for (const fs::path &checkpoint : checkpoint_files(alone())) {
-      const fs::path other = together() / checkpoint.lexically_relative(alone());
-      EXPECT_TRUE(testing::file_text(checkpoint) == testing::file_text(other)) << checkpoint.filename();
-    }
-    // These facts of the summary do not depend on the ranks either.
-    for (const char *fact :
-         {"blocks", "fixed_blocks", "steps", "time", "time_step", "contacts", "contact_steps", "max_overlap",
-          "energy", "normals_undefined", "verdict", "message"}) {
-      EXPECT_EQ(summary_text(together(), fact), summary_text(alone(), fact)) << fact;
-    }
-    EXPECT_EQ(summary_number(together(), "ranks"), world_.size());
-    EXPECT_EQ(summary_number(alone(), "ranks"), 1);
-    for (const char *crossing : {"cross_rank_contacts", "migrations", "messages_per_step"}) {
-      EXPECT_EQ(summary_number(alone(), crossing), 0) << crossing;
-    }
-  }
-
-  Communicator world_ = Communicator::world();
-  testing::SharedFolder folder_;
-};
-
-/// A restart from the last checkpoint but one, of the middle of the last stage, comes to the same results.
-void expect_same_after_restart(const TwoRuns &runs, const Scene &scene) {
-  const testing::SharedFolder folder(runs.world());
-  if (runs.world().is_root()) {
-    fs::copy(runs.alone(), folder.path("run"), fs::copy_options::recursive);
-    const std::vector<fs::path> checkpoints = checkpoint_files(folder.path("run"));
-    EXPECT_EQ(checkpoints.size(), 2U);
-    fs::remove(std::max(checkpoints.front(), checkpoints.back()));
-  }
-  runs.world().barrier();
-  const testing::CapturedLog log;
-  EXPECT_EQ(restart_scene(runs.world(), scene, scene, folder.path("run")), 0);
-  runs.world().barrier();
-  if (runs.world().is_root()) {
-    for (const std::string &difference : compare_runs(folder.path("run"), runs.alone())) {
-      ADD_FAILURE() << "restarted: " << difference;
-    }
-  }
 }
 
 /// Ranks that own a block at the start.
@@ -275,109 +208,6 @@ TEST(Identity, OfAMixedWallInStages) {
   }
 }
 
-/// Ls with a brick in the notch of each, rigid and deformable ones, at rest on a floor and beside a pillar;
-/// weak joints let the wall sag by more than half the skin. Both settle stages have the static solver.
-std::string static_wall_toml(int rows, int columns, const std::string &opening) {
-  std::string toml = "[run]\ngravity_ramp = 0.1\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 2e9\n"
-                     "poissons_ratio = 0.25\n[joint.default]\nnormal_stiffness = 5e7\n"
-                     "friction_angle_deg = 45.0\n[output]\ninterval = 0.02\ncheckpoint_interval = 0.04\n";
-  toml += testing::block_toml("floor", testing::rectangle({-2.0, -1.0}, {2.0 * columns + 3.0, 0.0}),
-                              "fixed = true");
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      const double x = 2.0 * column + 0.5 * (row % 2);
-      const double y = row;
-      const auto fidelity = [](bool deforms) {
-        return fmt::format("fidelity = \"{}\"", deforms ? "deformable" : "rigid");
-      };
-      toml += testing::block_toml(
-          fmt::format("l{}_{}", row, column),
-          {{x, y}, {x + 2.0, y}, {x + 2.0, y + 0.5}, {x + 1.0, y + 0.5}, {x + 1.0, y + 1.0}, {x, y + 1.0}},
-          fidelity((row + column) % 2 == 0));
-      toml += testing::block_toml(fmt::format("b{}_{}", row, column),
-                                  testing::rectangle({x + 1.0, y + 0.5}, {x + 2.0, y + 1.0}),
-                                  fidelity((row + column) % 3 == 0));
-    }
-  }
-  return toml +
-         "[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 30.0\nsolver = \"static\"\n"
-         "[[stage]]\nkind = \"excavate\"\nregion = " +
-         opening +
-         "\n"
-         "[[stage]]\nname = \"opening\"\nkind = \"settle\"\nlimit = 30.0\nsolver = \"static\"\n";
-}
-
-// The static solver on rigid, deformable and non-convex blocks, through refreshes, an excavation, and a stop
-// in the middle of each of its stages.
-TEST(Identity, OfStagesWithTheStaticSolver) {
-  const Scene scene = testing::scene_of(static_wall_toml(20, 16, "[[6, 2], [8, 2], [8, 4], [6, 4]]"));
-  const TwoRuns runs(scene);
-  EXPECT_GE(runs.counted("refreshes"), 2);
-  EXPECT_GE(runs.counted("contacts"), 1000);
-  if (runs.world().size() > 1) {
-    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
-  }
-  if (runs.world().is_root()) {
-    EXPECT_EQ(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
-    EXPECT_EQ(summary_text(runs.together(), "stages"), summary_text(runs.alone(), "stages"));
-  }
-  expect_same_after_restart(runs, scene);
-}
-
-// Joints that dilate, and bonds of which some break: those that hang over the opening.
-TEST(Identity, OfStaticStagesWithBondsAndDilation) {
-  const std::string opening = "[[6, 2], [8, 2], [8, 4], [6, 4]]";
-  const auto with = [&](const std::string &tension) {
-    return testing::scene_of(static_wall_toml(20, 16, opening),
-                             {"joint.default.dilation_angle_deg=5", "joint.default.dilation_limit=0.01",
-                              "joint.default.cohesion=1e5", "joint.default.tension=" + tension,
-                              "joint.default.residual_cohesion=0"});
-  };
-  const TwoRuns runs(with("2e4"));
-  EXPECT_GE(runs.counted("refreshes"), 2);
-  if (runs.world().size() > 1) {
-    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
-  }
-  const TwoRuns unbroken(with("1e5"));
-  if (runs.world().is_root()) {
-    EXPECT_EQ(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
-    EXPECT_NE(summary_text(runs.alone(), "stages"), summary_text(unbroken.alone(), "stages"))
-        << "bonds break";
-  }
-}
-
-// Friction does not hold this opening: the dynamic solver takes over in the middle of a stage and finds that
-// it has failed.
-TEST(Identity, OfAStaticStageThatIsLeft) {
-  const TwoRuns runs(testing::scene_of(static_wall_toml(20, 16, "[[4, 2], [9, 2], [9, 5], [4, 5]]"),
-                                       {"joint.default.friction_angle_deg=30"}));
-  if (runs.world().size() > 1) {
-    EXPECT_GE(runs.counted("cross_rank_contacts"), 20);
-  }
-  if (runs.world().is_root()) {
-    EXPECT_NE(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
-    EXPECT_EQ(summary_text(runs.together(), "verdict"), "\"failed\"");
-  }
-}
-
-// All of the weight at once closes soft joints by more than half of a block: a step is taken back on all
-// ranks, and the dynamic solver goes on to the limit of the stage.
-TEST(Identity, OfAStaticStepThatIsTakenBack) {
-  const TwoRuns runs(testing::scene_of(static_wall_toml(20, 16, "[[6, 2], [8, 2], [8, 4], [6, 4]]"),
-                                       {"joint.default.normal_stiffness=3e6", "stage.weight.increments=1",
-                                        "stage.weight.limit=0.5"}),
-                     exit_code::undecided);
-  if (runs.world().size() > 1) {
-    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
-  }
-  if (runs.world().is_root()) {
-    EXPECT_NE(
-        testing::file_text(runs.alone() / "run.log").find("would have closed by more than half of a block"),
-        std::string::npos);
-    EXPECT_EQ(summary_text(runs.together(), "stages"), summary_text(runs.alone(), "stages"));
-  }
-}
-
 // Blocks are held while another one falls, wake when it hits them, and are held again; rigid ones, or
 // deformable ones on two ranks and on four.
 TEST(Identity, OfBlocksThatAreHeld) {
@@ -391,27 +221,6 @@ TEST(Identity, OfBlocksThatAreHeld) {
   if (runs.world().size() > 1) {
     EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
     EXPECT_GE(runs.counted("migrations"), 1);
-  }
-  expect_same_after_restart(runs, scene);
-}
-
-// At most evaluations the static solver moves a block that falls and leaves out the wall beside it; rigid
-// ones, or deformable ones on two ranks and on four. That pairs are left out is seen from the summary: all of
-// them would be more than there are contacts at each step.
-TEST(Identity, OfAStaticStageInWhichFewMove) {
-  const std::string fidelity = Communicator::world().size() % 2 == 1 ? "rigid" : "deformable";
-  const Scene scene = testing::scene_of(
-      testing::fall_from_shelf_toml(fidelity, 32, 16, "interval = 0.02\ncheckpoint_interval = 0.032\n"));
-  const TwoRuns runs(scene);
-  EXPECT_GE(runs.counted("refreshes"), 1);
-  if (runs.world().size() > 1) {
-    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
-    EXPECT_GE(runs.counted("migrations"), 1);
-  }
-  if (runs.world().is_root()) {
-    const std::string evaluations = summary_text(runs.alone(), "evaluations_per_rank");
-    EXPECT_LT(std::stod(evaluations.substr(1)), summary_number(runs.alone(), "contact_steps"));
-    EXPECT_EQ(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
   }
   expect_same_after_restart(runs, scene);
 }

@@ -11,7 +11,7 @@
 
 namespace gcpdda::testing {
 
-/// gcpdda fos without its files, or the bound of limit analysis alone.
+/// gcpdda fos, whose files are removed, or the bound of limit analysis alone.
 SafetyOutcome search_quietly(const Scene &scene, bool only_bound = false);
 
 /// Whether the thresholds of a trial's verdict (simulation/stages.hpp) were set with a system in view. No
