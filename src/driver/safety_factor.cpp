@@ -8,6 +8,7 @@
 #include "driver/trial_frames.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "limit_analysis/limit_analysis.hpp"
+#include "model/kept_blocks.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/simulation.hpp"
 
@@ -17,6 +18,7 @@
 #include <iostream>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -486,7 +488,10 @@ private:
 
 SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene &scene,
                                    const SafetyOptions &options) {
-  const Scene staged = with_settle_stage(scene);
+  Scene staged = with_settle_stage(scene);
+  if (staged.region_blocks) { // strengths alone differ from trial to trial
+    staged.region_blocks = std::make_shared<KeptBlocks>(staged.region_blocks);
+  }
   return SafetyFactor(communicator, staged, options).find();
 }
 
