@@ -34,7 +34,7 @@ std::vector<RowSpan> waiting_rows(const BlockSystem &blocks, const Candidates &c
 } // namespace
 
 std::int64_t Neighbourhood::refresh(BlockSystem &blocks, const ContactParameters &parameters, Bolts &bolts,
-                                    ContactMemory memory, double time_step) {
+                                    ContactMemory memory, double least_skin, double time_step) {
   // Rows change places. What is made anew goes first: old and new lists together would be the largest thing
   // in memory.
   blocks.motion = {};
@@ -59,7 +59,7 @@ std::int64_t Neighbourhood::refresh(BlockSystem &blocks, const ContactParameters
   }
   communicator.max(largest);
   opening += parameters.joints.largest_opening();
-  skin = std::max(base_skin, steps_in_skin * reach);
+  skin = std::max(least_skin, steps_in_skin * reach);
 
   // A joint is remembered until it is open by twice that; only one of its blocks may be inflated.
   const double reach_skin = skin + 4.0 * opening;

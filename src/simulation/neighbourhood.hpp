@@ -44,10 +44,11 @@ struct Neighbourhood {
 
   /// Collective.
   /// @param memory  of contacts; that of the present candidates has been taken out
+  /// @param least_skin  m
   /// @param time_step  s, for how far blocks go
   /// @return how many blocks have left this rank
   std::int64_t refresh(BlockSystem &blocks, const ContactParameters &parameters, Bolts &bolts,
-                       ContactMemory memory, double time_step);
+                       ContactMemory memory, double least_skin, double time_step);
 
   /// Cut the map again if this rank's work since the start shows that it is uneven; blocks follow by the
   /// migration of a refresh. Collective.

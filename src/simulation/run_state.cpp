@@ -29,8 +29,10 @@ void refresh(RunState &run, ContactMemory memory) {
   run.bolts.share(run.communicator);
   run.digest.reset();
   run.contacts.forget_resting();
+  // In pseudo-time no velocity says how far blocks go, and they slide farther than in a step.
+  const double least_skin = (run.statics ? 2.0 : 1.0) * run.neighbours.base_skin;
   const std::int64_t left = run.neighbours.refresh(run.blocks, run.contacts.parameters(), run.bolts,
-                                                   std::move(memory), run.clock.plan.time_step);
+                                                   std::move(memory), least_skin, run.clock.plan.time_step);
   if (run.clock.step_count > 0) {
     run.counters.migrations += left;
     ++run.counters.refreshes;

@@ -6,10 +6,6 @@
 
 namespace gcpdda {
 
-/// Share of the skin that blocks may use up before a refresh: pairs that are twice as far apart are still
-/// known, and with them the springs of contacts that have opened.
-inline constexpr double share_of_skin_kept = 0.25;
-
 /// The rows have been found anew. Collective.
 void lay_statics(RunState &run);
 /// Find the neighbourhood anew; springs go with their blocks. Collective.

@@ -23,6 +23,10 @@ namespace gcpdda {
 
 namespace {
 
+/// The spring of a contact that has opened is kept while the boxes of its blocks are so near, over the skin
+/// of blocks at rest.
+constexpr double spring_reach = 0.25;
+
 /// When the loads of the stage at hand are complete, s; infinite where that is never.
 double end_of_loads(const RunState &run) {
   const double now = run.clock.time();
@@ -110,8 +114,7 @@ void open_statics(RunState &run) {
   run.communicator.sum(std::span(&num_mobile, 1));
   rules.mass_share = statics::mass_share(num_mobile);
   rules.increments = run.clock.stage().increments;
-  // Boxes of two blocks that are this near meet within what each may move before the next refresh.
-  rules.springs.reach = share_of_skin_kept * run.neighbours.base_skin;
+  rules.springs.reach = spring_reach * run.neighbours.base_skin;
   run.statics.emplace(run.communicator, rules);
   run.contacts.keep_details(true);
   // The limit of the stage comes where the iteration may pause, because a restart may go on from there: after
@@ -292,13 +295,14 @@ void judge_statics(RunState &run) {
   note_loose_blocks_at_end(run);
 }
 
-/// Some owned row may leave the skin in the next step.
+/// Some owned row may leave the skin in the next step. Blocks whose springs are kept are still candidates
+/// then.
 bool uses_up_skin(const RunState &run) {
+  const double most = 0.5 * (run.neighbours.skin - spring_reach * run.neighbours.base_skin);
   bool uses_up = false;
   statics::for_rows(run.statics->moving(), [&](std::size_t row) {
     const double ahead = statics::length_of_step(run.blocks, row);
-    uses_up =
-        uses_up || moved_since_refresh(run.blocks, row) + ahead > share_of_skin_kept * run.neighbours.skin;
+    uses_up = uses_up || moved_since_refresh(run.blocks, row) + ahead > most;
   });
   return uses_up;
 }
