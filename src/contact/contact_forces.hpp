@@ -92,18 +92,17 @@ public:
     resting_.forget();
     sums_.drop_all();
   }
-  /// visit(pair, number of its region, details) for all regions of the last evaluation, by ascending pair.
+  /// visit(pair, number of its region, details) for all regions of a pair in the last evaluation.
   template <class Visit>
-  void for_kept_details(const Candidates &candidates, const ContactHistory &history, Visit &&visit) const {
-    for (std::uint32_t pair = 0; pair < candidates.pairs.size(); ++pair) {
-      if (!candidates.pairs[pair].is_plain) {
-        std::uint32_t k = 0;
-        for (const RegionForce &force : pairs_.regions(ranges_[pair].begin, ranges_[pair].count)) {
-          visit(pair, k++, static_cast<const RegionDetails &>(force));
-        }
-      } else if (history.has_plain(pair)) {
-        visit(pair, 0U, plain_.kept(pair));
+  void for_kept_details(const Candidates &candidates, const ContactHistory &history, std::uint32_t pair,
+                        Visit &&visit) const {
+    if (!candidates.pairs[pair].is_plain) {
+      std::uint32_t k = 0;
+      for (const RegionForce &force : pairs_.regions(ranges_[pair].begin, ranges_[pair].count)) {
+        visit(pair, k++, static_cast<const RegionDetails &>(force));
       }
+    } else if (history.has_plain(pair)) {
+      visit(pair, 0U, plain_.kept(pair));
     }
   }
 

@@ -138,6 +138,9 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
                              IterationState &state) {
   rules_.springs.slides_fade = load_share(state.evaluations) >= 1.0;
   springs_.update(system, candidates, history, contacts, rules_.springs);
+  if (may_pause(state)) { // all rows may move from here on
+    springs_.set_moving({});
+  }
   find_standing(system);
   gather(system, load_share(state.evaluations));
   const double power_behind = power(system);

@@ -70,60 +70,56 @@ bool is_before(const SpringMemory &a, const SpringMemory &b) {
 
 } // namespace
 
-void ContactSprings::clear() {
-  springs_.clear();
-  memories_.clear();
-  num_closed_ = 0;
+void ContactSprings::List::clear() {
+  springs.clear();
+  memories.clear();
 }
 
-void ContactSprings::keep_as_it_is(std::size_t number) {
-  next_springs_.push_back(springs_[number]);
-  next_memories_.push_back(memories_[number]);
+void ContactSprings::List::push_back(const ContactSpring &spring, const SpringMemory &memory) {
+  springs.push_back(spring);
+  memories.push_back(memory);
+}
+
+void ContactSprings::clear() {
+  at_work_.clear();
+  before_.clear();
+  moves_.clear();
+  pairs_at_work_.clear();
+  are_held_ = false;
 }
 
 void ContactSprings::keep_open(const BlockSystem &system, std::size_t number, const SpringRules &rules) {
-  SpringMemory memory = memories_[number];
-  if (both_rest(springs_[number].lower, springs_[number].higher)) {
-    keep_as_it_is(number);
-    return;
-  }
-  if (memory.open_for >= rules.open_memory || !are_near(system, springs_[number], rules.reach)) {
+  SpringMemory memory = at_work_.memories[number];
+  if (memory.open_for >= rules.open_memory || !are_near(system, at_work_.springs[number], rules.reach)) {
     return;
   }
   ++memory.open_for;
-  ContactSpring spring = springs_[number];
+  ContactSpring spring = at_work_.springs[number];
   spring.normal_stiffness *= rules.fade;
   spring.bending *= rules.fade;
   spring.tangential *= rules.fade;
   spring.sticking *= rules.fade;
-  next_springs_.push_back(spring);
-  next_memories_.push_back(memory);
+  next_.push_back(spring, memory);
 }
 
 void ContactSprings::update(const BlockSystem &system, const Candidates &candidates,
                             const ContactHistory &history, const ContactForces &contacts,
                             const SpringRules &rules) {
   expect(contacts.keeps_details(), "the last evaluation has left its details behind");
-  next_springs_.clear();
-  next_memories_.clear();
-  num_closed_ = 0;
+  next_.clear();
   std::size_t old = 0;
+  const std::vector<SpringMemory> &memories = at_work_.memories;
   const auto add = [&](std::uint32_t number, std::uint32_t k, const RegionDetails &force) {
     const CandidatePair &pair = candidates.pairs[number];
     SpringMemory key;
     key.lower = system.properties[pair.lower.value].id;
     key.higher = system.properties[pair.higher.value].id;
-    for (; old < memories_.size() && is_before(memories_[old], key); ++old) {
+    for (; old < memories.size() && is_before(memories[old], key); ++old) {
       keep_open(system, old, rules);
     }
-    const bool is_known = old < memories_.size() && !is_before(key, memories_[old]);
-    if (is_known && both_rest(pair.lower.value, pair.higher.value)) {
-      num_closed_ += memories_[old].open_for == 0 ? 1 : 0;
-      keep_as_it_is(old++);
-      return;
-    }
-    const SpringMemory before = is_known ? memories_[old] : key;
-    const ContactSpring last = is_known ? springs_[old] : ContactSpring{};
+    const bool is_known = old < memories.size() && !is_before(key, memories[old]);
+    const SpringMemory before = is_known ? memories[old] : key;
+    const ContactSpring last = is_known ? at_work_.springs[old] : ContactSpring{};
     old += is_known ? 1 : 0;
     if (force.normal_undefined) {
       return;
@@ -141,38 +137,81 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
       spring.tangential = std::max(spring.tangential, rules.fade * last.tangential);
       spring.sticking = std::max(spring.sticking, spring.tangential);
     }
-    next_springs_.push_back(spring);
-    next_memories_.push_back(memory);
-    ++num_closed_;
+    next_.push_back(spring, memory);
   };
-  contacts.for_kept_details(candidates, history, add);
-  for (; old < memories_.size(); ++old) {
+  if (moves_.empty()) {
+    for (std::uint32_t pair = 0; pair < candidates.pairs.size(); ++pair) {
+      contacts.for_kept_details(candidates, history, pair, add);
+    }
+  } else {
+    find_pairs_at_work(candidates);
+    for (const std::uint32_t pair : pairs_at_work_) {
+      contacts.for_kept_details(candidates, history, pair, add);
+    }
+  }
+  for (; old < memories.size(); ++old) {
     keep_open(system, old, rules);
   }
-  std::swap(springs_, next_springs_);
-  std::swap(memories_, next_memories_);
-  find_those_at_work();
+  std::swap(at_work_, next_);
 }
 
 void ContactSprings::hold_slip() {
-  for (ContactSpring &spring : springs_) {
+  for (ContactSpring &spring : at_work_.springs) {
     spring.tangential = spring.sticking;
   }
-  for (ContactSpring &spring : at_work_) {
-    spring.tangential = spring.sticking;
+  are_held_ = true;
+}
+
+template <class F> void ContactSprings::for_all(F &&f) const {
+  std::size_t at_rest = 0;
+  const auto pass_at_rest = [&](auto &&is_next) {
+    for (; at_rest < before_.springs.size() && is_next(before_.memories[at_rest]); ++at_rest) {
+      ContactSpring spring = before_.springs[at_rest];
+      if (both_rest(spring.lower, spring.higher)) {
+        spring.tangential = are_held_ ? spring.sticking : spring.tangential;
+        f(spring, before_.memories[at_rest]);
+      }
+    }
+  };
+  for (std::size_t k = 0; k < at_work_.springs.size(); ++k) {
+    const SpringMemory &memory = at_work_.memories[k];
+    pass_at_rest([&](const SpringMemory &other) { return is_before(other, memory); });
+    f(at_work_.springs[k], memory);
   }
+  pass_at_rest([](const SpringMemory &) { return true; });
 }
 
 void ContactSprings::set_moving(std::vector<std::uint8_t> moves) {
+  if (!moves_.empty()) {
+    next_.clear();
+    for_all(
+        [&](const ContactSpring &spring, const SpringMemory &memory) { next_.push_back(spring, memory); });
+    std::swap(at_work_, next_);
+    before_.clear();
+  }
   moves_ = std::move(moves);
-  find_those_at_work();
+  pairs_at_work_.clear();
+  are_held_ = false;
+  if (!moves_.empty()) {
+    std::swap(before_, at_work_);
+    at_work_.clear();
+    for (std::size_t k = 0; k < before_.springs.size(); ++k) {
+      if (!both_rest(before_.springs[k].lower, before_.springs[k].higher)) {
+        at_work_.push_back(before_.springs[k], before_.memories[k]);
+      }
+    }
+  }
 }
 
-void ContactSprings::find_those_at_work() {
-  at_work_.clear();
-  if (!moves_.empty()) {
-    std::copy_if(springs_.begin(), springs_.end(), std::back_inserter(at_work_),
-                 [&](const ContactSpring &s) { return !both_rest(s.lower, s.higher); });
+void ContactSprings::find_pairs_at_work(const Candidates &candidates) {
+  if (!pairs_at_work_.empty()) {
+    return;
+  }
+  for (std::uint32_t number = 0; number < candidates.pairs.size(); ++number) {
+    const CandidatePair &pair = candidates.pairs[number];
+    if (!both_rest(pair.lower.value, pair.higher.value)) {
+      pairs_at_work_.push_back(number);
+    }
   }
 }
 
@@ -252,10 +291,8 @@ void ContactSprings::add_product_without_slip(const BlockSystem &system, const F
 
 std::vector<SpringRecord> ContactSprings::records() const {
   std::vector<SpringRecord> all;
-  all.reserve(springs_.size());
-  for (std::size_t k = 0; k < springs_.size(); ++k) {
-    all.push_back({springs_[k], memories_[k]});
-  }
+  all.reserve(std::max(before_.springs.size(), at_work_.springs.size()));
+  for_all([&](const ContactSpring &spring, const SpringMemory &memory) { all.push_back({spring, memory}); });
   return all;
 }
 
@@ -288,8 +325,7 @@ void ContactSprings::take(const BlockSystem &system, std::vector<SpringRecord> r
     }
     record.spring.lower = static_cast<std::uint32_t>(lower);
     record.spring.higher = static_cast<std::uint32_t>(higher);
-    springs_.push_back(record.spring);
-    memories_.push_back(record.memory);
+    at_work_.push_back(record.spring, record.memory);
   }
 }
 

@@ -40,7 +40,8 @@
 // Elements of liners are springs of the same kind, with the middle of the element in the place of the region
 // (`links`): what they hold is as stiff as a joint, and between two blocks of which none is at rest.
 //
-// Springs of two blocks that rest while others move (`set_moving`) stay as they are.
+// Springs of two blocks that rest while others move (`set_moving`) stay as they are, in a list of their own:
+// an update passes over those at work alone.
 //
 // The list ascends by pair as Candidates::pairs do, so that a block adds its springs in the order of its
 // partners' ids and gets the same bits on any number of ranks.
@@ -105,13 +106,14 @@ public:
   void update(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
               const ContactForces &contacts, const SpringRules &rules);
 
-  [[nodiscard]] std::span<const ContactSpring> springs() const { return springs_; }
-  [[nodiscard]] std::span<const SpringMemory> memories() const { return memories_; }
+  /// Of contacts at a row that moves.
+  [[nodiscard]] std::span<const ContactSpring> springs() const { return at_work_.springs; }
+  [[nodiscard]] std::span<const SpringMemory> memories() const { return at_work_.memories; }
   /// Springs of links, from here on, in an order that every rank knows.
   void set_links(std::vector<ContactSpring> links) { links_ = std::move(links); }
   /// Call f with each list of springs: of contacts those at a row that moves, then all links.
   template <class F> void for_lists(F &&f) const {
-    f(std::span<const ContactSpring>(moves_.empty() ? springs_ : at_work_));
+    f(springs());
     f(std::span<const ContactSpring>(links_));
   }
   /// Regions that slip have all of k_t up to the next update.
@@ -119,7 +121,6 @@ public:
   /// Which rows move from here on.
   /// @param moves  by row; empty: all do
   void set_moving(std::vector<std::uint8_t> moves);
-  [[nodiscard]] std::size_t num_closed() const { return num_closed_; }
 
   /// y += K p. Rows of y that are not owned get sums that mean nothing.
   void add_product(const BlockSystem &system, const Field &p, Field &y) const;
@@ -133,21 +134,32 @@ public:
   void clear();
 
 private:
-  void find_those_at_work();
+  /// Springs with their memories, which ascend by pair.
+  struct List {
+    std::vector<ContactSpring> springs;
+    std::vector<SpringMemory> memories;
+
+    void clear();
+    void push_back(const ContactSpring &spring, const SpringMemory &memory);
+  };
+
   [[nodiscard]] bool both_rest(std::size_t lower, std::size_t higher) const {
-    return !moves_.empty() && moves_[lower] == 0 && moves_[higher] == 0;
+    return moves_[lower] == 0 && moves_[higher] == 0;
   }
-  void keep_as_it_is(std::size_t number);
+  /// Call f(spring, memory) for all springs, those at rest among them, in order.
+  template <class F> void for_all(F &&f) const;
+  /// Numbers of the candidates with a row that moves.
+  void find_pairs_at_work(const Candidates &candidates);
   void keep_open(const BlockSystem &system, std::size_t number, const SpringRules &rules);
 
-  std::vector<ContactSpring> springs_;
-  std::vector<SpringMemory> memories_;
+  List at_work_; ///< at a row that moves
+  List next_;    ///< what they become in an update
   std::vector<ContactSpring> links_;
-  std::vector<std::uint8_t> moves_;    ///< by row; empty: all do
-  std::vector<ContactSpring> at_work_; ///< of springs_, those at a row that moves
-  std::vector<ContactSpring> next_springs_;
-  std::vector<SpringMemory> next_memories_;
-  std::size_t num_closed_ = 0;
+  std::vector<std::uint8_t> moves_; ///< by row; empty: all do
+  // While some rows rest.
+  List before_;                              ///< all springs when that was set
+  bool are_held_ = false;                    ///< hold_slip() has been called since
+  std::vector<std::uint32_t> pairs_at_work_; ///< of the candidates at hand; none: not found yet
 };
 
 } // namespace gcpdda::statics

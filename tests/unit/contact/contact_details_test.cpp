@@ -118,16 +118,18 @@ TEST(ContactDetails, ThatAreKeptAreThoseThatAreFound) {
     }
     bench.evaluate();
     std::size_t next = 0;
-    bench.forces.for_kept_details(
-        bench.candidates, bench.history, [&](std::uint32_t pair, std::uint32_t, const RegionDetails &kept) {
-          const RegionForce &found = bench.regions.all()[next++];
-          const auto all = [](const RegionDetails &d) {
-            return std::tie(d.dyad, d.origin, d.point, d.normal, d.normal_force, d.shear, d.cap, d.overlap,
-                            d.extent_begin, d.extent_end, d.grip, d.normal_undefined, d.bonded);
-          };
-          EXPECT_EQ(found.pair, pair);
-          EXPECT_EQ(all(kept), all(found));
-        });
+    const auto compare = [&](std::uint32_t pair, std::uint32_t, const RegionDetails &kept) {
+      const RegionForce &found = bench.regions.all()[next++];
+      const auto all = [](const RegionDetails &d) {
+        return std::tie(d.dyad, d.origin, d.point, d.normal, d.normal_force, d.shear, d.cap, d.overlap,
+                        d.extent_begin, d.extent_end, d.grip, d.normal_undefined, d.bonded);
+      };
+      EXPECT_EQ(found.pair, pair);
+      EXPECT_EQ(all(kept), all(found));
+    };
+    for (std::uint32_t pair = 0; pair < bench.candidates.pairs.size(); ++pair) {
+      bench.forces.for_kept_details(bench.candidates, bench.history, pair, compare);
+    }
     EXPECT_EQ(next, bench.regions.all().size());
     seen += next;
   }
