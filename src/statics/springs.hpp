@@ -122,11 +122,6 @@ public:
   /// @param moves  by row; empty: all do
   void set_moving(std::vector<std::uint8_t> moves);
 
-  /// y += K p. Rows of y that are not owned get sums that mean nothing.
-  void add_product(const BlockSystem &system, const Field &p, Field &y) const;
-  /// The same without the tangential springs of regions that slip.
-  void add_product_without_slip(const BlockSystem &system, const Field &p, Field &y) const;
-
   /// All springs, for a neighbourhood that is made anew.
   [[nodiscard]] std::vector<SpringRecord> records() const;
   /// Springs of these records between rows of the system; others are dropped, and doubles.

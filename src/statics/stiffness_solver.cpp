@@ -94,7 +94,8 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
   });
   border_.copy(p_);
   for_places(moving_, width, [&](std::size_t i) { q_.values()[i] = 0.0; });
-  springs.add_product_without_slip(system, p_, q_);
+  take_lean(springs, SlipSprings::none_tangential, lean_);
+  add_product(system, lean_, p_, q_);
   for_rows(moving_, [&](std::size_t row) {
     const std::size_t freedoms = num_freedoms(system, row);
     std::array<double, 6> of_mass{};
@@ -107,11 +108,10 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
 }
 
 template <std::size_t width, class Sum>
-void StiffnessSolver::multiply_by(const BlockSystem &system, const ContactSprings &springs, Field &p,
-                                  Field &y, Sum &sum) {
+void StiffnessSolver::multiply_by(const BlockSystem &system, Field &p, Field &y, Sum &sum) {
   border_.copy(p);
   for_places(moving_, width, [&](std::size_t i) { y.values()[i] = 0.0; });
-  springs.add_product(system, p, y);
+  add_product(system, lean_, p, y);
   for_rows(moving_, [&](std::size_t row) {
     const std::size_t freedoms = deforms<width>(system, row) ? 6 : 3;
     add_block_product(own_.of(row), freedoms, width, p.of(row), y.of(row));
@@ -121,8 +121,8 @@ void StiffnessSolver::multiply_by(const BlockSystem &system, const ContactSpring
 
 void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y) {
   NoSum none;
-  mass_.width() == 3 ? multiply_by<3>(system, springs, p, y, none)
-                     : multiply_by<6>(system, springs, p, y, none);
+  take_lean(springs, SlipSprings::all, lean_);
+  mass_.width() == 3 ? multiply_by<3>(system, p, y, none) : multiply_by<6>(system, p, y, none);
 }
 
 template <std::size_t width>
@@ -146,8 +146,7 @@ void StiffnessSolver::precondition(const BlockSystem &system, Sum &sum) {
 }
 
 template <std::size_t width>
-std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const ContactSprings &springs,
-                                       const Field &force, Field &solution) {
+std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const Field &force, Field &solution) {
   double *const x = solution.values().data();
   double *const r = r_.values().data();
   double *const p = p_.values().data();
@@ -171,7 +170,7 @@ std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const ContactS
   std::int64_t products = 0;
   while (size > enough && products < most_products) {
     SumInUnits along_p(size);
-    multiply_by<width>(system, springs, p_, q_, along_p);
+    multiply_by<width>(system, p_, q_, along_p);
     ++products;
     const double curvature = along_p.over(communicator_);
     if (!(curvature > 0.0)) {
@@ -197,8 +196,8 @@ std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const ContactS
 
 std::int64_t StiffnessSolver::solve(const BlockSystem &system, const ContactSprings &springs,
                                     const Field &force, Field &solution) {
-  return mass_.width() == 3 ? solve_by<3>(system, springs, force, solution)
-                            : solve_by<6>(system, springs, force, solution);
+  take_lean(springs, SlipSprings::all, lean_);
+  return mass_.width() == 3 ? solve_by<3>(system, force, solution) : solve_by<6>(system, force, solution);
 }
 
 } // namespace gcpdda::statics

@@ -21,6 +21,7 @@
 #include "statics/block_stiffness.hpp"
 #include "statics/border_rows.hpp"
 #include "statics/coarse_grid.hpp"
+#include "statics/spring_products.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,11 +68,10 @@ public:
 
 private:
   template <std::size_t width>
-  std::int64_t solve_by(const BlockSystem &system, const ContactSprings &springs, const Field &force,
-                        Field &solution);
-  /// y = (K + rho D) p. sum.add(p.y) of every row.
+  std::int64_t solve_by(const BlockSystem &system, const Field &force, Field &solution);
+  /// y = (K + rho D) p with the springs at hand. sum.add(p.y) of every row.
   template <std::size_t width, class Sum>
-  void multiply_by(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y, Sum &sum);
+  void multiply_by(const BlockSystem &system, Field &p, Field &y, Sum &sum);
   /// B^-1 r to z, and P^T r to the coarse grid.
   template <std::size_t width> void begin_preconditioning(const BlockSystem &system, std::size_t row);
   /// The rest of z. sum.add(r.z) of every row. Collective.
@@ -84,8 +84,9 @@ private:
   BlockMatrices mass_;
   BlockMatrices bolts_;
   double rho_ = 0.0;
-  BlockMatrices own_;     ///< rho D and own springs
-  BlockMatrices inverse_; ///< B^-1
+  std::vector<LeanSpring> lean_; ///< of the product at hand
+  BlockMatrices own_;            ///< rho D and own springs
+  BlockMatrices inverse_;        ///< B^-1
   Field r_;
   Field z_;
   Field p_;
