@@ -102,6 +102,25 @@ void ContactSprings::keep_open(const BlockSystem &system, std::size_t number, co
   next_.push_back(spring, memory);
 }
 
+template <class F> void ContactSprings::for_pairs_at_work(const Candidates &candidates, F &&f) {
+  const auto count = static_cast<std::uint32_t>(candidates.pairs.size());
+  if (moves_.empty()) {
+    for (std::uint32_t number = 0; number < count; ++number) {
+      f(number);
+    }
+    return;
+  }
+  if (pairs_at_work_.empty()) {
+    for (std::uint32_t number = 0; number < count; ++number) {
+      const CandidatePair &pair = candidates.pairs[number];
+      if (!both_rest(pair.lower.value, pair.higher.value)) {
+        pairs_at_work_.push_back(number);
+      }
+    }
+  }
+  std::for_each(pairs_at_work_.begin(), pairs_at_work_.end(), f);
+}
+
 void ContactSprings::update(const BlockSystem &system, const Candidates &candidates,
                             const ContactHistory &history, const ContactForces &contacts,
                             const SpringRules &rules) {
@@ -139,16 +158,8 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
     }
     next_.push_back(spring, memory);
   };
-  if (moves_.empty()) {
-    for (std::uint32_t pair = 0; pair < candidates.pairs.size(); ++pair) {
-      contacts.for_kept_details(candidates, history, pair, add);
-    }
-  } else {
-    find_pairs_at_work(candidates);
-    for (const std::uint32_t pair : pairs_at_work_) {
-      contacts.for_kept_details(candidates, history, pair, add);
-    }
-  }
+  for_pairs_at_work(candidates,
+                    [&](std::uint32_t pair) { contacts.for_kept_details(candidates, history, pair, add); });
   for (; old < memories.size(); ++old) {
     keep_open(system, old, rules);
   }
@@ -199,18 +210,6 @@ void ContactSprings::set_moving(std::vector<std::uint8_t> moves) {
       if (!both_rest(before_.springs[k].lower, before_.springs[k].higher)) {
         at_work_.push_back(before_.springs[k], before_.memories[k]);
       }
-    }
-  }
-}
-
-void ContactSprings::find_pairs_at_work(const Candidates &candidates) {
-  if (!pairs_at_work_.empty()) {
-    return;
-  }
-  for (std::uint32_t number = 0; number < candidates.pairs.size(); ++number) {
-    const CandidatePair &pair = candidates.pairs[number];
-    if (!both_rest(pair.lower.value, pair.higher.value)) {
-      pairs_at_work_.push_back(number);
     }
   }
 }

@@ -143,8 +143,8 @@ private:
   }
   /// Call f(spring, memory) for all springs, those at rest among them, in order.
   template <class F> void for_all(F &&f) const;
-  /// Numbers of the candidates with a row that moves.
-  void find_pairs_at_work(const Candidates &candidates);
+  /// Call f(number) for each candidate with a row that moves.
+  template <class F> void for_pairs_at_work(const Candidates &candidates, F &&f);
   void keep_open(const BlockSystem &system, std::size_t number, const SpringRules &rules);
 
   List at_work_; ///< at a row that moves
