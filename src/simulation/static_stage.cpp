@@ -23,8 +23,8 @@ namespace gcpdda {
 
 namespace {
 
-/// The spring of a contact that has opened is kept while the boxes of its blocks are so near, over the skin
-/// of blocks at rest.
+/// Over the skin of blocks at rest: how far apart the boxes of two blocks may be while the spring of their
+/// contact is kept after it has opened.
 constexpr double spring_reach = 0.25;
 
 /// When the loads of the stage at hand are complete, s; infinite where that is never.
@@ -295,8 +295,9 @@ void judge_statics(RunState &run) {
   note_loose_blocks_at_end(run);
 }
 
-/// Some owned row may leave the skin in the next step. Blocks whose springs are kept are still candidates
-/// then.
+/// Some owned row may leave the skin in the next step. Until then a rank knows both blocks of each spring
+/// that is kept: boxes that are so near now met within the skin, or one of the blocks is fixed, which all
+/// know.
 bool uses_up_skin(const RunState &run) {
   const double most = 0.5 * (run.neighbours.skin - spring_reach * run.neighbours.base_skin);
   bool uses_up = false;

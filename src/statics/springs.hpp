@@ -101,8 +101,8 @@ struct SpringRules {
 
 class ContactSprings {
 public:
-  /// Springs of all regions of the last evaluation and those that are kept. The arguments are those of the
-  /// evaluation, which has kept its details.
+  /// Springs of all regions of the last evaluation at a row that moves, and those that are kept. The
+  /// arguments are those of the evaluation, which has kept its details.
   void update(const BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
               const ContactForces &contacts, const SpringRules &rules);
 
