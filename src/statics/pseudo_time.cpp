@@ -159,7 +159,7 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   solver_.set(system, springs_, rules_.mass_share, is_coarse_due);
   for_places(moving_, width_, [&](std::size_t i) { driving_.values()[i] = force_.values()[i]; });
   if (!begins && !loads && c < 1.0) {
-    solver_.damp_strains(system, springs_, 1.0 - c, driving_);
+    solver_.damp_strains(system, springs_, 1.0 - c, state.momentum, driving_);
     ++state.products;
   }
   state.products += solver_.solve(system, springs_, driving_, direction_);

@@ -87,7 +87,7 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
 }
 
 void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprings &springs, double gamma,
-                                   Field &force) {
+                                   double momentum, Field &force) {
   const std::size_t width = mass_.width();
   for_rows(moving_, [&](std::size_t row) { // p of rows that rest is zero
     std::copy_n(system.pseudo[row].velocity.data(), width, p_.of(row));
@@ -96,13 +96,24 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
   for_places(moving_, width, [&](std::size_t i) { q_.values()[i] = 0.0; });
   take_lean(springs, SlipSprings::none_tangential, lean_);
   add_product(system, lean_, p_, q_);
+  ExactSum strained;
   for_rows(moving_, [&](std::size_t row) {
     const std::size_t freedoms = num_freedoms(system, row);
     std::array<double, 6> of_mass{};
     add_block_product(own_.of(row), freedoms, width, p_.of(row), q_.of(row));
     add_block_product(mass_.of(row), freedoms, width, p_.of(row), of_mass.data());
+    double product = 0.0;
     for (std::size_t i = 0; i < freedoms; ++i) {
-      force.of(row)[i] -= gamma * (q_.of(row)[i] - rho_ * of_mass[i]);
+      q_.of(row)[i] -= rho_ * of_mass[i];
+      product += q_.of(row)[i] * p_.of(row)[i];
+    }
+    strained.add(product);
+  });
+  communicator_.sum(strained.limbs());
+  const double slides = std::clamp(1.0 - strained.value() / momentum, 0.0, 1.0);
+  for_rows(moving_, [&](std::size_t row) {
+    for (std::size_t i = 0; i < num_freedoms(system, row); ++i) {
+      force.of(row)[i] -= gamma * slides * q_.of(row)[i];
     }
   });
 }

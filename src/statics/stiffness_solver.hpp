@@ -56,9 +56,11 @@ public:
   /// @return number of products with K
   std::int64_t solve(const BlockSystem &system, const ContactSprings &springs, const Field &force,
                      Field &solution);
-  /// force -= gamma K' v for moving rows, with the velocities v of pseudo-time and K' the stiffness of all
-  /// that does not slip, without rho D. Collective.
-  void damp_strains(const BlockSystem &system, const ContactSprings &springs, double gamma, Field &force);
+  /// force -= gamma (1 - s) K' v for moving rows, with the velocities v of pseudo-time, K' the stiffness of
+  /// all that does not slip, without rho D, and s the share that K' has of v.q, within [0, 1]. Collective.
+  /// @param momentum  v.q, positive
+  void damp_strains(const BlockSystem &system, const ContactSprings &springs, double gamma, double momentum,
+                    Field &force);
   /// y = (K + rho D) p for moving rows, with p of ghosts copied. Collective.
   void multiply(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y);
 
