@@ -1,14 +1,18 @@
 #include "statics/border_rows.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace gcpdda::statics {
 
-void BorderExchange::copy(Field &field) {
+template <class Number> void BorderExchange::copy(FieldOf<Number> &field) {
   if (rows_.empty()) {
     return;
   }
-  const std::size_t width = field.width();
+  const std::size_t bytes = field.width() * sizeof(Number);
+  const auto row_of = [&](std::uint32_t row) {
+    return std::as_writable_bytes(std::span(field.of(row), field.width()));
+  };
   sent_.resize(rows_.size());
   received_.resize(rows_.size());
   std::vector<Communicator::Message> leaving;
@@ -16,24 +20,28 @@ void BorderExchange::copy(Field &field) {
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     sent_[k].clear();
     for (const std::uint32_t row : rows_[k].send) {
-      sent_[k].insert(sent_[k].end(), field.of(row), field.of(row) + width);
+      const std::span<std::byte> of_row = row_of(row);
+      sent_[k].insert(sent_[k].end(), of_row.begin(), of_row.end());
     }
-    received_[k].resize(rows_[k].receive.size() * width);
+    received_[k].resize(rows_[k].receive.size() * bytes);
     if (!sent_[k].empty()) {
-      leaving.push_back({rows_[k].rank, std::as_writable_bytes(std::span(sent_[k]))});
+      leaving.push_back({rows_[k].rank, sent_[k]});
     }
     if (!received_[k].empty()) {
-      arriving.push_back({rows_[k].rank, std::as_writable_bytes(std::span(received_[k]))});
+      arriving.push_back({rows_[k].rank, received_[k]});
     }
   }
   communicator_.exchange(leaving, arriving);
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const double *from = received_[k].data();
+    const std::byte *from = received_[k].data();
     for (const std::uint32_t row : rows_[k].receive) {
-      std::copy_n(from, width, field.of(row));
-      from += width;
+      std::copy_n(from, bytes, row_of(row).data());
+      from += bytes;
     }
   }
 }
+
+template void BorderExchange::copy(FieldOf<double> &field);
+template void BorderExchange::copy(FieldOf<float> &field);
 
 } // namespace gcpdda::statics

@@ -5,6 +5,7 @@
 #include "gcpdda/parallel/communicator.hpp"
 #include "statics/field.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -22,13 +23,13 @@ public:
   explicit BorderExchange(const Communicator &communicator) : communicator_(communicator) {}
   void take(std::vector<BorderRows> rows) { rows_ = std::move(rows); }
   /// Rows of the owners to their ghosts.
-  void copy(Field &field);
+  template <class Number> void copy(FieldOf<Number> &field);
 
 private:
   Communicator communicator_;
   std::vector<BorderRows> rows_;
-  std::vector<std::vector<double>> sent_;
-  std::vector<std::vector<double>> received_;
+  std::vector<std::vector<std::byte>> sent_;
+  std::vector<std::vector<std::byte>> received_;
 };
 
 } // namespace gcpdda::statics

@@ -103,20 +103,22 @@ void CoarseGrid::choose(const BlockSystem &system, std::span<const std::uint8_t>
   keys_ = united(communicator_, std::move(mine));
   forces_.assign(3 * keys_.size(), 0);
   motions_.assign(3 * keys_.size(), 0.0);
+  lean_motions_.assign(3 * keys_.size(), 0.0F);
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (moves[row] != 0) {
       const auto [column, line] = place_of(system, row);
       const auto found = std::lower_bound(keys_.begin(), keys_.end(), line * columns_ + column);
       cell_of_[row] = static_cast<std::int32_t>(found - keys_.begin());
       const Vec2 middle{static_cast<double>(column) + 0.5, static_cast<double>(line) + 0.5};
-      arms_[row] = (1.0 / side_) * (system.properties[row].centroid - origin_) - middle;
+      const Vec2 arm = (1.0 / side_) * (system.properties[row].centroid - origin_) - middle;
+      arms_[row] = {static_cast<float>(arm.x), static_cast<float>(arm.y)};
     }
   }
 }
 
 std::array<CoarseGrid::Three, 3> CoarseGrid::forces_on_cell(std::size_t row, Vec2 arm, Vec2 normal) const {
   const Vec2 tangent = perp(normal);
-  const Vec2 from_middle = arms_[row] + (1.0 / side_) * arm;
+  const Vec2 from_middle = Vec2{arms_[row].x, arms_[row].y} + (1.0 / side_) * arm;
   return {{{normal.x, normal.y, cross(from_middle, normal)},
            {tangent.x, tangent.y, cross(from_middle, tangent)},
            {0.0, 0.0, -1.0 / side_}}}; // e_r of a rotation is n.(J t)
@@ -125,7 +127,7 @@ std::array<CoarseGrid::Three, 3> CoarseGrid::forces_on_cell(std::size_t row, Vec
 CoarseGrid::Square CoarseGrid::on_cell(const BlockSystem &system, std::size_t row,
                                        const BlockMatrices &matrices) const {
   const bool is_deformable = system.is_deformable(row);
-  const Vec2 arm = arms_[row];
+  const Arm arm = arms_[row];
   std::array<std::array<double, 6>, 3> motions{};
   motions[0][0] = 1.0;
   motions[1][1] = 1.0;
@@ -280,16 +282,16 @@ void CoarseGrid::fill_matrix(double unit) {
   f.ldlt.factorize(f.matrix);
 }
 
-void CoarseGrid::set_unit(const BlockSystem &system, std::span<const RowRun> rows, const Field &r) {
+double CoarseGrid::largest(const BlockSystem &system, std::span<const RowRun> rows,
+                           const Field &forces) const {
   double largest = 0.0;
   for_rows(rows, [&](std::size_t row) {
-    for (const double value : to_cell(row, system.is_deformable(row), r.of(row))) {
+    for (const double value : to_cell(row, system.is_deformable(row), forces.of(row))) {
       largest = std::max(largest, std::abs(value));
     }
   });
   communicator_.max(std::span(&largest, 1));
-  unit_ = unit_of(largest, 36);
-  per_unit_ = 1.0 / unit_;
+  return largest;
 }
 
 void CoarseGrid::solve() {
@@ -300,9 +302,11 @@ void CoarseGrid::solve() {
     communicator_.sum(forces_);
   }
   std::transform(forces_.begin(), forces_.end(), motions_.begin(),
-                 [&](std::int64_t sum) { return unit_ * static_cast<double>(sum); });
+                 [](std::int64_t sum) { return static_cast<double>(sum) / units; });
   Eigen::Map<Eigen::VectorXd> motions(motions_.data(), std::ssize(motions_));
   motions = factors_->ldlt.solve(motions).eval();
+  std::transform(motions_.begin(), motions_.end(), lean_motions_.begin(),
+                 [](double motion) { return static_cast<float>(motion); });
 }
 
 } // namespace gcpdda::statics

@@ -14,8 +14,8 @@
 // that it needs the same bits. Entries are therefore summed as integers in units of a power of two, 2^-40 of
 // the largest contribution of all ranks: the sum of integers does not depend on their order. A preconditioner
 // forgives the rounding of its entries. Forces on cells have one unit for all iterations of an inner solve,
-// 2^-36 of the largest at its beginning, and are cut where they have grown to 2^12 times that. The pattern of
-// K_c follows from the springs of all ranks, because the order of elimination follows from the pattern.
+// 2^-36 of the size that they begin with, and are cut where they have grown to 2^12 times that. The pattern
+// of K_c follows from the springs of all ranks, because the order of elimination follows from the pattern.
 
 #include "gcpdda/parallel/communicator.hpp"
 #include "statics/block_stiffness.hpp"
@@ -48,22 +48,23 @@ public:
                  const BlockMatrices &matrices);
 
   // z += P K_c^-1 P^T r is found in three parts, so that the solver may take r and z as it passes their rows.
-  /// For forces that begin with these. Collective.
-  void set_unit(const BlockSystem &system, std::span<const RowRun> rows, const Field &r);
+  /// The largest of these forces on cells. Collective.
+  [[nodiscard]] double largest(const BlockSystem &system, std::span<const RowRun> rows,
+                               const Field &forces) const;
   void clear_forces() { std::fill(forces_.begin(), forces_.end(), 0); }
-  /// To P^T r, the part of a row that moves.
-  void add_forces(std::size_t row, bool is_deformable, const double *r) {
+  /// To P^T r, the part of a row that moves; r of about one.
+  void add_forces(std::size_t row, bool is_deformable, const float *r) {
     std::int64_t *to = forces_.data() + first_unknown(row);
-    for (const double value : to_cell(row, is_deformable, r)) {
-      *to++ += std::llrint(std::clamp(value * per_unit_, -most_units, most_units));
+    for (const float value : to_cell(row, is_deformable, r)) {
+      *to++ += std::llrint(std::clamp(value * units, -most_units, most_units));
     }
   }
   /// K_c^-1 of the forces of all ranks. Collective.
   void solve();
   /// To z, the part of a row that moves.
-  void add_motion(std::size_t row, bool is_deformable, double *z) const {
-    const double *const motion = motions_.data() + first_unknown(row);
-    const double turn = motion[2] * per_side_;
+  void add_motion(std::size_t row, bool is_deformable, float *z) const {
+    const float *const motion = lean_motions_.data() + first_unknown(row);
+    const float turn = motion[2] * static_cast<float>(per_side_);
     z[0] += motion[0] - motion[2] * arms_[row].y;
     z[1] += motion[1] + motion[2] * arms_[row].x;
     if (is_deformable) {
@@ -78,8 +79,14 @@ public:
 
 private:
   static constexpr double blocks_a_side = 6.0;
-  static constexpr double most_units = 0x1p48; ///< of the forces of a row
-  using Three = std::array<double, 3>;
+  static constexpr float units = 0x1p36F;      ///< of a force of one
+  static constexpr float most_units = 0x1p48F; ///< of the forces of a row
+  struct Arm {
+    float x = 0.0F;
+    float y = 0.0F;
+  };
+  template <class Number> using ThreeOf = std::array<Number, 3>;
+  using Three = ThreeOf<double>;
   using Square = std::array<Three, 3>;
   struct Factors;
 
@@ -91,9 +98,12 @@ private:
   bool lay_cells(const BlockSystem &system);
   /// Column and line of the cell of a row.
   [[nodiscard]] std::array<std::int64_t, 2> place_of(const BlockSystem &system, std::size_t row) const;
-  [[nodiscard]] Three to_cell(std::size_t row, bool is_deformable, const double *forces) const {
-    const double moment = is_deformable ? forces[4] - forces[3] : forces[2];
-    return {forces[0], forces[1], moment * per_side_ + cross(arms_[row], Vec2{forces[0], forces[1]})};
+  template <class Number>
+  [[nodiscard]] ThreeOf<Number> to_cell(std::size_t row, bool is_deformable, const Number *forces) const {
+    const Number moment = is_deformable ? forces[4] - forces[3] : forces[2];
+    const Arm arm = arms_[row];
+    return {forces[0], forces[1],
+            moment * static_cast<Number>(per_side_) + (arm.x * forces[1] - arm.y * forces[0])};
   }
   /// The unit force of one of a spring's three springs on the freedoms of the cell of a row.
   [[nodiscard]] std::array<Three, 3> forces_on_cell(std::size_t row, Vec2 arm, Vec2 normal) const;
@@ -120,13 +130,12 @@ private:
   std::int64_t columns_ = 1;
   std::vector<std::int64_t> keys_;    ///< of the cells that hold a mobile block of any rank, ascending
   std::vector<std::int32_t> cell_of_; ///< by row; -1: the row does not move
-  std::vector<Vec2> arms_;            ///< by row: of the centroid from the middle of the cell, over the side
+  std::vector<Arm> arms_;             ///< by row: of the centroid from the middle of the cell, over the side
   std::vector<std::int64_t> pattern_; ///< key_of() of the blocks of K_c, ascending
   std::vector<std::int64_t> sums_;    ///< entries of K_c, in units
-  double unit_ = 1.0;                 ///< of forces
-  double per_unit_ = 1.0;
-  std::vector<std::int64_t> forces_; ///< P^T r, in units
-  std::vector<double> motions_;      ///< of cells
+  std::vector<std::int64_t> forces_;  ///< P^T r, in units
+  std::vector<double> motions_;       ///< of cells
+  std::vector<float> lean_motions_;   ///< the same, as it is added to z
   std::unique_ptr<Factors> factors_;
 };
 

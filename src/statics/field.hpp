@@ -36,22 +36,29 @@ constexpr double moment_of(const Mat2 &dyad) {
   return dyad.yx - dyad.xy;
 }
 
-class Field {
+template <class Number> class FieldOf {
 public:
-  Field() = default;
-  Field(std::size_t num_rows, std::size_t width) : width_(width), values_(num_rows * width, 0.0) {}
+  FieldOf() = default;
+  FieldOf(std::size_t num_rows, std::size_t width) : width_(width), values_(num_rows * width) {}
 
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t num_rows() const { return width_ == 0 ? 0 : values_.size() / width_; }
-  [[nodiscard]] double *of(std::size_t row) { return values_.data() + row * width_; }
-  [[nodiscard]] const double *of(std::size_t row) const { return values_.data() + row * width_; }
-  [[nodiscard]] std::span<double> values() { return values_; }
-  [[nodiscard]] std::span<const double> values() const { return values_; }
+  [[nodiscard]] Number *of(std::size_t row) { return values_.data() + row * width_; }
+  [[nodiscard]] const Number *of(std::size_t row) const { return values_.data() + row * width_; }
+  [[nodiscard]] std::span<Number> values() { return values_; }
+  [[nodiscard]] std::span<const Number> values() const { return values_; }
 
 private:
   std::size_t width_ = 0;
-  std::vector<double> values_;
+  std::vector<Number> values_;
 };
+
+using Field = FieldOf<double>;
+/// In single precision, rows padded with zeros to `lean_width` places, which vector instructions take whole.
+using LeanField = FieldOf<float>;
+constexpr std::size_t lean_width(std::size_t width) {
+  return width == 3 ? 4 : 8;
+}
 
 /// Rows [first, last).
 struct RowRun {
@@ -99,20 +106,21 @@ inline std::size_t num_freedoms(const BlockSystem &system, std::size_t row) {
   return system.is_deformable(row) ? 6 : 3;
 }
 
-inline PointMap motion_at(const double *freedoms, bool is_deformable) {
+template <class Number> PointMap motion_at(const Number *freedoms, bool is_deformable) {
   return {{freedoms[0], freedoms[1]},
           is_deformable ? Mat2{freedoms[2], freedoms[3], freedoms[4], freedoms[5]} : turning(freedoms[2])};
 }
-inline void add_force(double *freedoms, bool is_deformable, Vec2 force, const Mat2 &dyad) {
-  freedoms[0] += force.x;
-  freedoms[1] += force.y;
+template <class Number> void add_force(Number *freedoms, bool is_deformable, Vec2 force, const Mat2 &dyad) {
+  const auto add = [&](std::size_t i, double value) { freedoms[i] += static_cast<Number>(value); };
+  add(0, force.x);
+  add(1, force.y);
   if (is_deformable) {
-    freedoms[2] += dyad.xx;
-    freedoms[3] += dyad.xy;
-    freedoms[4] += dyad.yx;
-    freedoms[5] += dyad.yy;
+    add(2, dyad.xx);
+    add(3, dyad.xy);
+    add(4, dyad.yx);
+    add(5, dyad.yy);
   } else {
-    freedoms[2] += moment_of(dyad);
+    add(2, moment_of(dyad));
   }
 }
 

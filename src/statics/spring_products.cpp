@@ -1,55 +1,121 @@
 #include "statics/spring_products.hpp"
 
+#include <cstring>
+
 namespace gcpdda::statics {
 
 namespace {
 
-LeanSpring lean(const ContactSpring &s, double tangential) {
-  const auto single = [](double value) { return static_cast<float>(value); };
-  return {s.lower,
-          s.higher,
-          single(s.normal.x),
-          single(s.normal.y),
-          single(s.lower_arm.x),
-          single(s.lower_arm.y),
-          single(s.higher_arm.x),
-          single(s.higher_arm.y),
-          single(s.normal_stiffness),
-          single(s.bending),
-          single(tangential),
-          single(s.grip)};
+float single(double value) {
+  return static_cast<float>(value);
 }
 
-void add_rigid(std::span<const LeanSpring> springs, const Field &p, Field &y) {
-  for (const LeanSpring &s : springs) {
-    const double *const a = p.of(s.lower);
-    const double *const b = p.of(s.higher);
-    const Vec2 n{s.normal_x, s.normal_y};
-    const Vec2 t = perp(n);
-    const Vec2 lower_arm{s.lower_arm_x, s.lower_arm_y};
-    const Vec2 higher_arm{s.higher_arm_x, s.higher_arm_y};
-    const double lower_n = cross(lower_arm, n);
-    const double higher_n = cross(higher_arm, n);
-    const double lower_t = cross(lower_arm, t);
-    const double higher_t = cross(higher_arm, t);
-    const Vec2 apart{a[0] - b[0], a[1] - b[1]};
-    const double along_n = s.normal_stiffness * (dot(n, apart) + lower_n * a[2] - higher_n * b[2]);
-    const double along_t = s.tangential * (dot(t, apart) + lower_t * a[2] - higher_t * b[2]);
-    const double bent = s.bending * (a[2] - b[2]);
-    const Vec2 force = along_n * n + along_t * t;
-    double *const to_a = y.of(s.lower);
-    double *const to_b = y.of(s.higher);
-    to_a[0] += force.x;
-    to_a[1] += force.y;
-    to_a[2] += lower_n * along_n + lower_t * along_t + bent;
-    to_b[0] -= force.x;
-    to_b[1] -= force.y;
-    to_b[2] -= higher_n * along_n + higher_t * along_t + bent;
+} // namespace
+
+void SpringProducts::take(const ContactSprings &springs, SlipSprings of_slip, std::size_t width) {
+  springs_.clear();
+  fours_.clear();
+  num_rigid_ = 0;
+  springs.for_lists([&](std::span<const ContactSpring> list) {
+    for (const ContactSpring &s : list) {
+      const bool is_left_out = of_slip == SlipSprings::none_tangential && s.tangential < s.sticking;
+      const double tangential = is_left_out ? 0.0 : s.tangential;
+      if (width == 3) {
+        append_rigid(s, tangential);
+      } else {
+        springs_.push_back({s.lower, s.higher, single(s.normal.x), single(s.normal.y), single(s.lower_arm.x),
+                            single(s.lower_arm.y), single(s.higher_arm.x), single(s.higher_arm.y),
+                            single(s.normal_stiffness), single(s.bending), single(tangential),
+                            single(s.grip)});
+      }
+    }
+  });
+}
+
+void SpringProducts::append_rigid(const ContactSpring &s, double tangential) {
+  const std::size_t k = num_rigid_++ % at_once;
+  if (k == 0) {
+    fours_.emplace_back();
+  }
+  FourSprings &four = fours_.back();
+  const Vec2 t = perp(s.normal);
+  four.lower[k] = s.lower;
+  four.higher[k] = s.higher;
+  four.normal_x[k] = single(s.normal.x);
+  four.normal_y[k] = single(s.normal.y);
+  four.lower_n[k] = single(cross(s.lower_arm, s.normal));
+  four.higher_n[k] = single(cross(s.higher_arm, s.normal));
+  four.lower_t[k] = single(cross(s.lower_arm, t));
+  four.higher_t[k] = single(cross(s.higher_arm, t));
+  four.normal_stiffness[k] = single(s.normal_stiffness);
+  four.tangential[k] = single(tangential);
+  four.bending[k] = single(s.bending);
+}
+
+namespace {
+
+using Four = float __attribute__((vector_size(16)));
+/// (u_x, u_y, r, 0) of four rows, or (u_x, u_y, r) of all four.
+struct FourRows {
+  Four a, b, c, d;
+};
+
+Four row_of(const LeanField &field, std::uint32_t row) {
+  Four values;
+  std::memcpy(&values, field.of(row), sizeof values);
+  return values;
+}
+void add_to(LeanField &field, std::uint32_t row, const Four &values) {
+  const Four sum = row_of(field, row) + values;
+  std::memcpy(field.of(row), &sum, sizeof sum);
+}
+
+FourRows transposed(const FourRows &m) {
+  const Four ab_low = __builtin_shufflevector(m.a, m.b, 0, 4, 1, 5);
+  const Four ab_high = __builtin_shufflevector(m.a, m.b, 2, 6, 3, 7);
+  const Four cd_low = __builtin_shufflevector(m.c, m.d, 0, 4, 1, 5);
+  const Four cd_high = __builtin_shufflevector(m.c, m.d, 2, 6, 3, 7);
+  return {__builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5),
+          __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7),
+          __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5),
+          __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7)};
+}
+
+FourRows rows_of(const LeanField &p, const std::array<std::uint32_t, 4> &rows) {
+  return transposed({row_of(p, rows[0]), row_of(p, rows[1]), row_of(p, rows[2]), row_of(p, rows[3])});
+}
+
+} // namespace
+
+void SpringProducts::add_rigid(const LeanField &p, LeanField &y) const {
+  for (const FourSprings &s : fours_) {
+    const FourRows of_lower = rows_of(p, s.lower);
+    const FourRows of_higher = rows_of(p, s.higher);
+    const Four apart_x = of_lower.a - of_higher.a;
+    const Four apart_y = of_lower.b - of_higher.b;
+    const Four along_n = s.normal_stiffness * (s.normal_x * apart_x + s.normal_y * apart_y +
+                                               s.lower_n * of_lower.c - s.higher_n * of_higher.c);
+    const Four along_t = s.tangential * (s.normal_x * apart_y - s.normal_y * apart_x +
+                                         s.lower_t * of_lower.c - s.higher_t * of_higher.c);
+    const Four bent = s.bending * (of_lower.c - of_higher.c);
+    const Four x = along_n * s.normal_x - along_t * s.normal_y;
+    const Four y_ = along_n * s.normal_y + along_t * s.normal_x;
+    const FourRows on_lower = transposed({x, y_, s.lower_n * along_n + s.lower_t * along_t + bent, Four{}});
+    const FourRows on_higher =
+        transposed({-x, -y_, -(s.higher_n * along_n + s.higher_t * along_t + bent), Four{}});
+    add_to(y, s.lower[0], on_lower.a);
+    add_to(y, s.higher[0], on_higher.a);
+    add_to(y, s.lower[1], on_lower.b);
+    add_to(y, s.higher[1], on_higher.b);
+    add_to(y, s.lower[2], on_lower.c);
+    add_to(y, s.higher[2], on_higher.c);
+    add_to(y, s.lower[3], on_lower.d);
+    add_to(y, s.higher[3], on_higher.d);
   }
 }
 
-void add_any(const BlockSystem &system, std::span<const LeanSpring> springs, const Field &p, Field &y) {
-  for (const LeanSpring &s : springs) {
+void SpringProducts::add_any(const BlockSystem &system, const LeanField &p, LeanField &y) const {
+  for (const Spring &s : springs_) {
     const bool lower_deforms = system.is_deformable(s.lower);
     const bool higher_deforms = system.is_deformable(s.higher);
     const PointMap a = motion_at(p.of(s.lower), lower_deforms);
@@ -70,23 +136,11 @@ void add_any(const BlockSystem &system, std::span<const LeanSpring> springs, con
   }
 }
 
-} // namespace
-
-void take_lean(const ContactSprings &springs, SlipSprings of_slip, std::vector<LeanSpring> &lean_springs) {
-  lean_springs.clear();
-  springs.for_lists([&](std::span<const ContactSpring> list) {
-    for (const ContactSpring &s : list) {
-      const bool is_left_out = of_slip == SlipSprings::none_tangential && s.tangential < s.sticking;
-      lean_springs.push_back(lean(s, is_left_out ? 0.0 : s.tangential));
-    }
-  });
-}
-
-void add_product(const BlockSystem &system, std::span<const LeanSpring> springs, const Field &p, Field &y) {
-  if (p.width() == 3) {
-    add_rigid(springs, p, y);
+void SpringProducts::add(const BlockSystem &system, const LeanField &p, LeanField &y) const {
+  if (p.width() == lean_width(3)) {
+    add_rigid(p, y);
   } else {
-    add_any(system, springs, p, y);
+    add_any(system, p, y);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include "base/exact_sum.hpp"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,21 +14,47 @@ namespace gcpdda::statics {
 
 namespace {
 
-/// Fields whose rows are three wide are those of rigid blocks.
-template <std::size_t width> bool deforms(const BlockSystem &system, std::size_t row) {
-  if constexpr (width == 3) {
+template <int places> using LeanRow = Eigen::Matrix<float, places, 1>;
+template <int places> using LeanMatrix = Eigen::Matrix<float, places, places == 4 ? 3 : 6>;
+
+template <int places> Eigen::Map<LeanRow<places>> row_of(LeanField &field, std::size_t row) {
+  return Eigen::Map<LeanRow<places>>(field.of(row));
+}
+
+/// matrix p of a row.
+template <int places>
+LeanRow<places> product_of(const LeanField &matrices, std::size_t row, const LeanRow<places> &p) {
+  const Eigen::Map<const LeanMatrix<places>> matrix(matrices.of(row));
+  LeanRow<places> sum = matrix.col(0) * p[0];
+  for (Eigen::Index j = 1; j < matrix.cols(); ++j) {
+    sum += matrix.col(j) * p[j];
+  }
+  return sum;
+}
+
+/// In double precision: rows far from all that moves have products that a single one does not hold.
+template <int places> double dot_product(const LeanRow<places> &a, const LeanRow<places> &b) {
+  return a.template cast<double>().dot(b.template cast<double>());
+}
+
+/// Fields whose rows have four places are those of rigid blocks.
+template <int places> bool deforms(const BlockSystem &system, std::size_t row) {
+  if constexpr (places == 4) {
     return false;
   } else {
     return system.is_deformable(row);
   }
 }
 
-template <std::size_t width> double row_product(const double *a, const double *b) {
-  double product = a[0] * b[0];
-  for (std::size_t i = 1; i < width; ++i) {
-    product += a[i] * b[i];
+template <class From, class To> void copy_row(const From *from, std::size_t num_places, To *to) {
+  std::transform(from, from + num_places, to, [](From value) { return static_cast<To>(value); });
+}
+
+void take_columns(const BlockMatrices &from, std::size_t row, LeanField &to) {
+  const std::size_t width = from.width();
+  for (std::size_t j = 0; j < width; ++j) { // a symmetric matrix
+    copy_row(from.of(row) + j * width, width, to.of(row) + j * lean_width(width));
   }
-  return product;
 }
 
 struct NoSum {
@@ -42,10 +70,13 @@ void StiffnessSolver::lay(const BlockSystem &system, std::vector<RowRun> moving,
   bolts_ = std::move(bolts);
   border_.take(std::move(border));
   coarse_.lay(system);
-  own_ = BlockMatrices(system.num_owned, mass_.width());
-  inverse_ = own_;
-  for (Field *field : {&r_, &z_, &p_, &q_}) {
-    *field = Field(system.num_rows(), mass_.width());
+  diagonal_ = BlockMatrices(system.num_owned, mass_.width());
+  const std::size_t places = lean_width(mass_.width());
+  for (LeanField *matrices : {&own_, &inverse_}) {
+    *matrices = LeanField(system.num_owned, places * mass_.width());
+  }
+  for (LeanField *field : {&x_, &r_, &z_, &p_, &q_}) {
+    *field = LeanField(system.num_rows(), places);
   }
 }
 
@@ -53,7 +84,7 @@ void StiffnessSolver::choose(const BlockSystem &system, std::vector<RowRun> movi
                              std::span<const std::uint8_t> moves) {
   moving_ = std::move(moving);
   coarse_.choose(system, moves);
-  std::fill(p_.values().begin(), p_.values().end(), 0.0);
+  std::fill(p_.values().begin(), p_.values().end(), 0.0F);
 }
 
 void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &springs, double rho,
@@ -61,154 +92,155 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
   const std::size_t width = mass_.width();
   rho_ = rho;
   for_rows(moving_, [&](std::size_t row) {
-    double *const own = own_.of(row);
+    double *const own = diagonal_.of(row);
     const double *const mass = mass_.of(row);
     const double *const bolts = bolts_.of(row);
     for (std::size_t i = 0; i < width * width; ++i) {
       own[i] = rho * mass[i] + bolts[i];
     }
     add_own_springs(system, row, own, width);
+    take_columns(diagonal_, row, own_);
   });
   if (with_coarse) {
     constexpr double holds_cells = 1e-4;
-    for_rows(moving_, [&](std::size_t row) { // the places of B
+    BlockMatrices held = diagonal_;
+    for_rows(moving_, [&](std::size_t row) {
       for (std::size_t i = 0; i < width * width; ++i) {
-        inverse_.of(row)[i] = own_.of(row)[i] + holds_cells * mass_.of(row)[i];
+        held.of(row)[i] += holds_cells * mass_.of(row)[i];
       }
     });
     std::vector<ContactSpring> all;
     springs.for_lists(
         [&](std::span<const ContactSpring> list) { all.insert(all.end(), list.begin(), list.end()); });
-    coarse_.factorise(system, all, inverse_);
+    coarse_.factorise(system, all, held);
   }
-  for_rows(moving_, [&](std::size_t row) { std::copy_n(own_.of(row), width * width, inverse_.of(row)); });
-  springs.for_lists([&](std::span<const ContactSpring> list) { add_diagonal(system, list, inverse_); });
-  for_rows(moving_, [&](std::size_t row) { invert(inverse_.of(row), num_freedoms(system, row), width); });
+  springs.for_lists([&](std::span<const ContactSpring> list) { add_diagonal(system, list, diagonal_); });
+  for_rows(moving_, [&](std::size_t row) {
+    invert(diagonal_.of(row), num_freedoms(system, row), width);
+    take_columns(diagonal_, row, inverse_);
+  });
 }
 
 void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprings &springs, double gamma,
                                    double momentum, Field &force) {
   const std::size_t width = mass_.width();
   for_rows(moving_, [&](std::size_t row) { // p of rows that rest is zero
-    std::copy_n(system.pseudo[row].velocity.data(), width, p_.of(row));
+    copy_row(system.pseudo[row].velocity.data(), width, p_.of(row));
   });
-  border_.copy(p_);
-  for_places(moving_, width, [&](std::size_t i) { q_.values()[i] = 0.0; });
-  take_lean(springs, SlipSprings::none_tangential, lean_);
-  add_product(system, lean_, p_, q_);
+  springs_.take(springs, SlipSprings::none_tangential, width);
+  NoSum none;
+  width == 3 ? multiply_by<4>(system, p_, q_, none) : multiply_by<8>(system, p_, q_, none);
   ExactSum strained;
   for_rows(moving_, [&](std::size_t row) {
-    const std::size_t freedoms = num_freedoms(system, row);
+    const double *const v = system.pseudo[row].velocity.data();
     std::array<double, 6> of_mass{};
-    add_block_product(own_.of(row), freedoms, width, p_.of(row), q_.of(row));
-    add_block_product(mass_.of(row), freedoms, width, p_.of(row), of_mass.data());
+    add_block_product(mass_.of(row), num_freedoms(system, row), width, v, of_mass.data());
     double product = 0.0;
-    for (std::size_t i = 0; i < freedoms; ++i) {
-      q_.of(row)[i] -= rho_ * of_mass[i];
-      product += q_.of(row)[i] * p_.of(row)[i];
+    for (std::size_t i = 0; i < width; ++i) {
+      q_.of(row)[i] -= static_cast<float>(rho_ * of_mass[i]);
+      product += v[i] * static_cast<double>(q_.of(row)[i]);
     }
     strained.add(product);
   });
   communicator_.sum(strained.limbs());
   const double slides = std::clamp(1.0 - strained.value() / momentum, 0.0, 1.0);
   for_rows(moving_, [&](std::size_t row) {
-    for (std::size_t i = 0; i < num_freedoms(system, row); ++i) {
-      force.of(row)[i] -= gamma * slides * q_.of(row)[i];
+    for (std::size_t i = 0; i < width; ++i) {
+      force.of(row)[i] -= gamma * slides * static_cast<double>(q_.of(row)[i]);
     }
   });
 }
 
-template <std::size_t width, class Sum>
-void StiffnessSolver::multiply_by(const BlockSystem &system, Field &p, Field &y, Sum &sum) {
+template <int places, class Sum>
+void StiffnessSolver::multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Sum &sum) {
   border_.copy(p);
-  for_places(moving_, width, [&](std::size_t i) { y.values()[i] = 0.0; });
-  add_product(system, lean_, p, y);
+  for_places(moving_, places, [&](std::size_t i) { y.values()[i] = 0.0F; });
+  springs_.add(system, p, y);
   for_rows(moving_, [&](std::size_t row) {
-    const std::size_t freedoms = deforms<width>(system, row) ? 6 : 3;
-    add_block_product(own_.of(row), freedoms, width, p.of(row), y.of(row));
-    sum.add(row_product<width>(p.of(row), y.of(row)));
+    const LeanRow<places> of_row = row_of<places>(p, row);
+    const LeanRow<places> product = row_of<places>(y, row) + product_of<places>(own_, row, of_row);
+    row_of<places>(y, row) = product;
+    sum.add(dot_product<places>(of_row, product));
   });
 }
 
-void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y) {
+void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &springs, LeanField &p,
+                               LeanField &y) {
   NoSum none;
-  take_lean(springs, SlipSprings::all, lean_);
-  mass_.width() == 3 ? multiply_by<3>(system, p, y, none) : multiply_by<6>(system, p, y, none);
+  springs_.take(springs, SlipSprings::all, mass_.width());
+  mass_.width() == 3 ? multiply_by<4>(system, p, y, none) : multiply_by<8>(system, p, y, none);
 }
 
-template <std::size_t width>
+template <int places>
 void StiffnessSolver::begin_preconditioning(const BlockSystem &system, std::size_t row) {
-  const bool is_deformable = deforms<width>(system, row);
-  const double *const r = r_.values().data() + width * row;
-  double *const z = z_.values().data() + width * row;
-  std::fill_n(z, width, 0.0);
-  add_block_product(inverse_.of(row), is_deformable ? 6 : 3, width, r, z);
-  coarse_.add_forces(row, is_deformable, r);
+  row_of<places>(z_, row) = product_of<places>(inverse_, row, row_of<places>(r_, row));
+  coarse_.add_forces(row, deforms<places>(system, row), r_.of(row));
 }
 
-template <std::size_t width, class Sum>
-void StiffnessSolver::precondition(const BlockSystem &system, Sum &sum) {
+template <int places, class Sum> void StiffnessSolver::precondition(const BlockSystem &system, Sum &sum) {
   coarse_.solve();
   for_rows(moving_, [&](std::size_t row) {
-    double *const z = z_.values().data() + width * row;
-    coarse_.add_motion(row, deforms<width>(system, row), z);
-    sum.add(row_product<width>(r_.values().data() + width * row, z));
+    coarse_.add_motion(row, deforms<places>(system, row), z_.of(row));
+    sum.add(dot_product<places>(row_of<places>(r_, row), row_of<places>(z_, row)));
   });
 }
 
-template <std::size_t width>
+template <int places>
 std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const Field &force, Field &solution) {
-  double *const x = solution.values().data();
-  double *const r = r_.values().data();
-  double *const p = p_.values().data();
-  const double *const q = q_.values().data();
-  const double *const z = z_.values().data();
-  coarse_.set_unit(system, moving_, force);
+  const std::size_t width = mass_.width();
+  const double largest = coarse_.largest(system, moving_, force);
+  const double scale = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
   coarse_.clear_forces();
   for_rows(moving_, [&](std::size_t row) {
-    for (std::size_t i = width * row; i < width * (row + 1); ++i) {
-      x[i] = 0.0;
-      r[i] = force.values()[i];
+    for (std::size_t i = 0; i < width; ++i) {
+      x_.of(row)[i] = 0.0F;
+      r_.of(row)[i] = static_cast<float>(scale * force.of(row)[i]);
     }
-    begin_preconditioning<width>(system, row);
+    begin_preconditioning<places>(system, row);
   });
   ExactSum first;
-  precondition<width>(system, first);
+  precondition<places>(system, first);
   communicator_.sum(first.limbs());
   double size = first.value();
-  for_places(moving_, width, [&](std::size_t i) { p[i] = z[i]; });
+  for_rows(moving_, [&](std::size_t row) { row_of<places>(p_, row) = row_of<places>(z_, row); });
   const double enough = accuracy * accuracy * size;
   std::int64_t products = 0;
   while (size > enough && products < most_products) {
     SumInUnits along_p(size);
-    multiply_by<width>(system, p_, q_, along_p);
+    multiply_by<places>(system, p_, q_, along_p);
     ++products;
     const double curvature = along_p.over(communicator_);
     if (!(curvature > 0.0)) {
       break;
     }
-    const double step = size / curvature;
+    const auto step = static_cast<float>(size / curvature);
     coarse_.clear_forces();
     for_rows(moving_, [&](std::size_t row) {
-      for (std::size_t i = width * row; i < width * (row + 1); ++i) {
-        x[i] += step * p[i];
-        r[i] -= step * q[i];
-      }
-      begin_preconditioning<width>(system, row);
+      const auto p = row_of<places>(p_, row);
+      row_of<places>(x_, row) += step * p;
+      row_of<places>(r_, row) -= step * row_of<places>(q_, row);
+      begin_preconditioning<places>(system, row);
     });
     SumInUnits along_z(size);
-    precondition<width>(system, along_z);
+    precondition<places>(system, along_z);
     const double before = std::exchange(size, along_z.over(communicator_));
-    const double share = size / before;
-    for_places(moving_, width, [&](std::size_t i) { p[i] = z[i] + share * p[i]; });
+    const auto share = static_cast<float>(size / before);
+    for_rows(moving_, [&](std::size_t row) {
+      row_of<places>(p_, row) = row_of<places>(z_, row) + share * row_of<places>(p_, row);
+    });
   }
+  for_rows(moving_, [&](std::size_t row) {
+    for (std::size_t i = 0; i < width; ++i) {
+      solution.of(row)[i] = static_cast<double>(x_.of(row)[i]) / scale;
+    }
+  });
   return products;
 }
 
 std::int64_t StiffnessSolver::solve(const BlockSystem &system, const ContactSprings &springs,
                                     const Field &force, Field &solution) {
-  take_lean(springs, SlipSprings::all, lean_);
-  return mass_.width() == 3 ? solve_by<3>(system, force, solution) : solve_by<6>(system, force, solution);
+  springs_.take(springs, SlipSprings::all, mass_.width());
+  return mass_.width() == 3 ? solve_by<4>(system, force, solution) : solve_by<8>(system, force, solution);
 }
 
 } // namespace gcpdda::statics

@@ -3,8 +3,9 @@
 // (K + rho D) g = f by conjugate gradients with a preconditioner of two levels.
 //
 // K is the stiffness of contacts (springs.hpp) and of the blocks themselves, D the mass of pseudo-time
-// (block_stiffness.hpp). No matrix but the coarse one is made: a product reads 80 bytes a region and the
-// matrix of each block. The preconditioner is
+// (block_stiffness.hpp). No matrix but the coarse one is made: a product reads the springs (44 bytes a region
+// of rigid blocks) and the matrix of each block. All of it is in single precision (spring_products.hpp) but
+// the coarse matrix and the sums; f is scaled to about one. The preconditioner is
 //     z = B^-1 r + P K_c^-1 P^T r,
 // with B the blocks on the diagonal of K + rho D and K_c the coarse matrix of rigid motions of cells of
 // blocks (coarse_grid.hpp). The iteration ends when r^T z has fallen to `accuracy` squared of what it began
@@ -62,22 +63,22 @@ public:
   void damp_strains(const BlockSystem &system, const ContactSprings &springs, double gamma, double momentum,
                     Field &force);
   /// y = (K + rho D) p for moving rows, with p of ghosts copied. Collective.
-  void multiply(const BlockSystem &system, const ContactSprings &springs, Field &p, Field &y);
+  void multiply(const BlockSystem &system, const ContactSprings &springs, LeanField &p, LeanField &y);
 
   [[nodiscard]] const BlockMatrices &mass() const { return mass_; }
   double accuracy = 0.1;
   std::int64_t most_products = 200;
 
 private:
-  template <std::size_t width>
-  std::int64_t solve_by(const BlockSystem &system, const Field &force, Field &solution);
+  /// For rows of so many places.
+  template <int places> std::int64_t solve_by(const BlockSystem &system, const Field &force, Field &solution);
   /// y = (K + rho D) p with the springs at hand. sum.add(p.y) of every row.
-  template <std::size_t width, class Sum>
-  void multiply_by(const BlockSystem &system, Field &p, Field &y, Sum &sum);
+  template <int places, class Sum>
+  void multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Sum &sum);
   /// B^-1 r to z, and P^T r to the coarse grid.
-  template <std::size_t width> void begin_preconditioning(const BlockSystem &system, std::size_t row);
+  template <int places> void begin_preconditioning(const BlockSystem &system, std::size_t row);
   /// The rest of z. sum.add(r.z) of every row. Collective.
-  template <std::size_t width, class Sum> void precondition(const BlockSystem &system, Sum &sum);
+  template <int places, class Sum> void precondition(const BlockSystem &system, Sum &sum);
 
   Communicator communicator_;
   CoarseGrid coarse_;
@@ -86,13 +87,15 @@ private:
   BlockMatrices mass_;
   BlockMatrices bolts_;
   double rho_ = 0.0;
-  std::vector<LeanSpring> lean_; ///< of the product at hand
-  BlockMatrices own_;            ///< rho D and own springs
-  BlockMatrices inverse_;        ///< B^-1
-  Field r_;
-  Field z_;
-  Field p_;
-  Field q_;
+  SpringProducts springs_; ///< of the product at hand
+  BlockMatrices diagonal_; ///< while B is made
+  LeanField own_;          ///< rho D and own springs, a column of `lean_width` places for each freedom
+  LeanField inverse_;      ///< B^-1, the same
+  LeanField x_;
+  LeanField r_;
+  LeanField z_;
+  LeanField p_;
+  LeanField q_;
 };
 
 /// A sum over the rows of all ranks in units of 2^-44 of a number of its size, which is positive and the same

@@ -69,11 +69,20 @@ ContactBench flush_joint(unsigned seed) {
   return bench;
 }
 
-std::vector<statics::LeanSpring> lean_of(const statics::ContactSprings &springs,
-                                         statics::SlipSprings of_slip = statics::SlipSprings::all) {
-  std::vector<statics::LeanSpring> lean;
-  take_lean(springs, of_slip, lean);
-  return lean;
+/// For so many freedoms a row.
+statics::LeanField lean_field(const BlockSystem &system, std::size_t width) {
+  return {system.num_rows(), statics::lean_width(width)};
+}
+
+/// K p of a field of so many freedoms a row.
+statics::LeanField product_of(const BlockSystem &system, const statics::ContactSprings &springs,
+                              std::size_t width, const statics::LeanField &p,
+                              statics::SlipSprings of_slip = statics::SlipSprings::all) {
+  statics::SpringProducts products;
+  products.take(springs, of_slip, width);
+  statics::LeanField product = lean_field(system, width);
+  products.add(system, p, product);
+  return product;
 }
 
 /// The higher block turns about its centroid.
@@ -103,13 +112,13 @@ double error_of_springs(const ContactBench &bench) {
       const std::vector<double> ahead = forces_at(bench, forces, motion);
       motion.of(row)[i] = -step;
       const std::vector<double> behind = forces_at(bench, forces, motion);
-      motion.of(row)[i] = 1.0;
-      statics::Field product(2, 6);
-      add_product(bench.system, lean_of(springs), motion, product);
+      statics::LeanField unit = lean_field(bench.system, 6);
+      unit.of(row)[i] = 1.0F;
+      const statics::LeanField product = product_of(bench.system, springs, 6, unit);
       for (std::size_t k = 0; k < ahead.size(); ++k) {
         const double stiffness = -(ahead[k] - behind[k]) / (2.0 * step);
         largest = std::max(largest, std::abs(stiffness));
-        error = std::max(error, std::abs(stiffness - product.values()[k]));
+        error = std::max(error, std::abs(stiffness - product.of(k / 6)[k % 6]));
       }
     }
   }
@@ -141,7 +150,6 @@ TEST(ContactSprings, OfAJointThatGapesAreTheDerivativeOfItsForces) {
   EXPECT_GT(farthest, 0.1) << "m";
 }
 
-// Rigid motions stretch no spring, and both forms of the product agree.
 TEST(ContactSprings, LeaveRigidMotionsAlone) {
   std::mt19937 engine(7);
   const TouchingPair shapes = touching_pair(engine, Touch::face_on_face, 1e-3);
@@ -151,30 +159,53 @@ TEST(ContactSprings, LeaveRigidMotionsAlone) {
   bench.evaluate();
   statics::ContactSprings springs;
   springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
-  statics::Field three(2, 3);
-  statics::Field six(2, 6);
   const Vec2 shift{0.3, -0.7};
   const double turn = 0.4;
-  for (std::size_t row = 0; row < 2; ++row) {
-    const Vec2 u = shift + turn * perp(bench.system.motion[row].centroid);
-    for (double *to : {three.of(row), six.of(row)}) {
-      to[0] = u.x, to[1] = u.y, to[2] = turn;
+  for (const std::size_t width : {3U, 6U}) {
+    statics::LeanField motion = lean_field(bench.system, width);
+    for (std::size_t row = 0; row < 2; ++row) {
+      const Vec2 u = shift + turn * perp(bench.system.motion[row].centroid);
+      motion.of(row)[0] = static_cast<float>(u.x);
+      motion.of(row)[1] = static_cast<float>(u.y);
+      motion.of(row)[2] = static_cast<float>(turn);
+    }
+    const statics::LeanField product = product_of(bench.system, springs, width, motion);
+    for (const float force : product.values()) {
+      EXPECT_NEAR(force, 0.0, 1e-6 * k_n); // arms of a metre in single precision
     }
   }
-  statics::Field product(2, 3);
-  add_product(bench.system, lean_of(springs), three, product);
-  for (const double force : product.values()) {
-    EXPECT_NEAR(force, 0.0, 1e-6 * k_n); // arms of a metre in single precision
-  }
-  three.of(0)[0] = six.of(0)[0] = 0.9;
-  three.of(1)[2] = six.of(1)[2] = -0.2;
-  statics::Field narrow(2, 3);
-  statics::Field wide(2, 6);
-  add_product(bench.system, lean_of(springs), three, narrow);
-  add_product(bench.system, lean_of(springs), six, wide);
-  for (std::size_t row = 0; row < 2; ++row) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      EXPECT_NEAR(narrow.of(row)[i], wide.of(row)[i], 1e-6 * k_n); // a unit normal in single precision
+}
+
+// Rows of a floor and of so many squares on it, side by side: three springs, five, and so on, in which the
+// floor comes again and again.
+TEST(ContactSprings, OfRigidBlocksHaveTheSameProductFourAtATime) {
+  for (int num_squares = 1; num_squares < 6; ++num_squares) {
+    std::vector<std::vector<Vec2>> squares;
+    for (int k = 0; k < num_squares; ++k) {
+      const double x = 0.999 * k;
+      squares.push_back({{x, 0.999}, {x + 1.0, 0.999}, {x + 1.0, 1.999}, {x, 1.999}});
+    }
+    squares.push_back({{-1.0, 0.0}, {7.0, 0.0}, {7.0, 1.0}, {-1.0, 1.0}});
+    ContactBench bench(system_of(squares, {}), one_law(k_n, 0.5));
+    bench.forces.keep_details(true);
+    bench.evaluate();
+    statics::ContactSprings springs;
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+    EXPECT_EQ(springs.springs().size(), static_cast<std::size_t>(2 * num_squares - 1));
+    statics::LeanField three = lean_field(bench.system, 3);
+    statics::LeanField six = lean_field(bench.system, 6);
+    std::mt19937 engine(11);
+    for (std::size_t row = 0; row < bench.system.num_rows(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        three.of(row)[i] = six.of(row)[i] = static_cast<float>(uniform(engine, -1.0, 1.0));
+      }
+    }
+    const statics::LeanField narrow = product_of(bench.system, springs, 3, three);
+    const statics::LeanField wide = product_of(bench.system, springs, 6, six);
+    for (std::size_t row = 0; row < bench.system.num_rows(); ++row) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(narrow.of(row)[i], wide.of(row)[i], 1e-5 * k_n); // sums of ten in single precision
+      }
     }
   }
 }
@@ -216,25 +247,22 @@ TEST(ContactSprings, ASlideIsFreeWithoutSlip) {
   statics::ContactSprings springs;
   bench.evaluate();
   bench.evaluate();
-  const auto products = [&](const std::array<double, 3> &motion) {
+  const auto products = [&](const std::array<float, 3> &motion) {
     springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
-    statics::Field p(2, 3);
-    statics::Field whole(2, 3);
-    statics::Field without(2, 3);
+    statics::LeanField p = lean_field(bench.system, 3);
     std::copy(motion.begin(), motion.end(), p.of(0));
-    add_product(bench.system, lean_of(springs), p, whole);
-    add_product(bench.system, lean_of(springs, statics::SlipSprings::none_tangential), p, without);
-    return std::array{whole, without};
+    return std::array{product_of(bench.system, springs, 3, p),
+                      product_of(bench.system, springs, 3, p, statics::SlipSprings::none_tangential)};
   };
-  const auto [sticking, also_sticking] = products({0.3, -0.2, 0.1});
+  const auto [sticking, also_sticking] = products({0.3F, -0.2F, 0.1F});
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(also_sticking.of(0)[i], sticking.of(0)[i]);
   }
   bench.move(0, {{1e-3, 0.0}, 0.0});
-  const auto [slide, free_slide] = products({1.0, 0.0, 0.0});
+  const auto [slide, free_slide] = products({1.0F, 0.0F, 0.0F});
   EXPECT_GT(slide.of(0)[0], 1e-3 * k_n);
-  EXPECT_EQ(free_slide.of(0)[0], 0.0);
-  const auto [closing, also_closing] = products({0.0, 1.0, 0.0});
+  EXPECT_EQ(free_slide.of(0)[0], 0.0F);
+  const auto [closing, also_closing] = products({0.0F, 1.0F, 0.0F});
   EXPECT_GT(closing.of(0)[1], 0.9 * k_n);
   EXPECT_EQ(also_closing.of(0)[1], closing.of(0)[1]);
 }

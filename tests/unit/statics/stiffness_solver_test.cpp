@@ -7,8 +7,8 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -59,13 +59,14 @@ struct Problem {
     const std::size_t size = bench.system.num_owned * width;
     Eigen::MatrixXd matrix(size, size);
     for (std::size_t j = 0; j < size; ++j) {
-      statics::Field p(bench.system.num_rows(), width);
-      statics::Field y(bench.system.num_rows(), width);
-      p.values()[j] = 1.0;
+      statics::LeanField p(bench.system.num_rows(), statics::lean_width(width));
+      statics::LeanField y = p;
+      p.of(j / width)[j % width] = 1.0F;
       solver.multiply(bench.system, springs, p, y);
       const bool is_place = j % width < statics::num_freedoms(bench.system, j / width);
       for (std::size_t i = 0; i < size; ++i) {
-        matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = is_place ? y.values()[i] : 0.0;
+        matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+            is_place ? static_cast<double>(y.of(i / width)[i % width]) : 0.0;
       }
       if (!is_place) {
         matrix(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(j)) = 1.0;
@@ -78,7 +79,7 @@ struct Problem {
 void expect_solution_of_dense(Problem &problem) {
   const BlockSystem &system = problem.bench.system;
   const Eigen::MatrixXd matrix = problem.dense();
-  EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
+  EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-6 * matrix.norm()); // in single precision
   EXPECT_EQ(matrix.llt().info(), Eigen::Success);
   std::mt19937 engine(3);
   statics::Field force(system.num_rows(), problem.width);
@@ -89,12 +90,12 @@ void expect_solution_of_dense(Problem &problem) {
   }
   const Eigen::Map<const Eigen::VectorXd> right(force.values().data(), matrix.rows());
   const Eigen::VectorXd exact = matrix.ldlt().solve(right);
-  problem.solver.accuracy = 1e-10;
+  problem.solver.accuracy = 1e-4;
   statics::Field found(system.num_rows(), problem.width);
   const std::int64_t products = problem.solver.solve(system, problem.springs, force, found);
   EXPECT_LT(products, 120);
   const Eigen::Map<const Eigen::VectorXd> solution(found.values().data(), matrix.rows());
-  EXPECT_LT((solution - exact).norm(), 1e-7 * exact.norm()); // the condition is about 1e4
+  EXPECT_LT((solution - exact).norm(), 1e-2 * exact.norm()); // the condition is about 1e4
 }
 
 TEST(StiffnessSolver, AgreesWithADenseFactorisation) {
@@ -118,25 +119,31 @@ TEST(StiffnessSolver, DampsStrainsByTheirStiffnessAlone) {
     Problem problem(wall(4, 5, deforms), rho);
     BlockSystem &system = problem.bench.system;
     std::mt19937 engine(5);
-    statics::Field velocity(system.num_rows(), problem.width);
+    statics::LeanField velocity(system.num_rows(), statics::lean_width(problem.width));
     for (std::size_t row = 0; row < system.num_owned; ++row) {
       for (std::size_t i = 0; i < statics::num_freedoms(system, row); ++i) {
-        velocity.of(row)[i] = pseudo_rows(system)[row].velocity[i] = uniform(engine, -1.0, 1.0);
+        velocity.of(row)[i] = static_cast<float>(uniform(engine, -1.0, 1.0));
+        pseudo_rows(system)[row].velocity[i] = velocity.of(row)[i];
       }
     }
-    statics::Field product(system.num_rows(), problem.width);
+    statics::LeanField product(system.num_rows(), velocity.width());
     light.solver.multiply(light.bench.system, light.springs, velocity, product);
-    const std::size_t num_values = system.num_owned * problem.width;
-    const double strained = std::inner_product(
-        product.values().begin(), product.values().begin() + static_cast<std::ptrdiff_t>(num_values),
-        velocity.values().begin(), 0.0);
+    double strained = 0.0;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < system.num_owned * product.width(); ++i) {
+      strained += static_cast<double>(product.values()[i]) * static_cast<double>(velocity.values()[i]);
+      largest = std::max(largest, std::abs(static_cast<double>(product.values()[i])));
+    }
     for (const double share : {0.0, 0.25, 0.97, 1.5}) {
       statics::Field force(system.num_rows(), problem.width);
       const double momentum = share > 0.0 ? strained / share : 1e300;
       problem.solver.damp_strains(system, problem.springs, gamma, momentum, force);
       const double expected = gamma * std::max(0.0, 1.0 - share);
-      for (std::size_t i = 0; i < num_values; ++i) {
-        EXPECT_NEAR(force.values()[i], -expected * product.values()[i], 1e-12 * k_n); // forces of 1e9 rounded
+      for (std::size_t row = 0; row < system.num_owned; ++row) {
+        for (std::size_t i = 0; i < problem.width; ++i) {
+          const double of_product = product.of(row)[i];
+          EXPECT_NEAR(force.of(row)[i], -expected * of_product, 1e-6 * largest); // in single precision
+        }
       }
     }
   }
