@@ -5,6 +5,7 @@
 #include "driver/safety_search.hpp"
 #include "driver/stop_signal.hpp"
 #include "driver/svg.hpp"
+#include "driver/trial_facts.hpp"
 #include "driver/trial_frames.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "limit_analysis/limit_analysis.hpp"
@@ -19,7 +20,6 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -28,59 +28,6 @@ namespace gcpdda {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What ranks tell each other of a trial; the strings are the root's of its group.
-struct TrialFacts {
-  double factor = 0.0;
-  std::int64_t verdict = 0;
-  std::int64_t first_block = 0; ///< the verdict on any block
-  std::int64_t means = 0;
-  std::int64_t is_confirmed = 0; ///< by a stage of its own
-  double time = 0.0;
-  double moved = 0.0;
-  double unbalanced_ratio = 0.0;
-  std::int64_t steps = 0;
-  std::int64_t evaluations = 0;
-  double cpu_s = 0.0;
-  std::int64_t ranks = 0;
-  std::int64_t exit_code = exit_code::done;
-};
-
-std::int64_t sum_of(const std::vector<std::int64_t> &counts) {
-  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
-}
-
-/// @param watches  the verdict is that of a part of the blocks
-TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time, bool watches) {
-  TrialFacts facts;
-  facts.factor = factor;
-  facts.exit_code = outcome.exit_code;
-  facts.ranks = outcome.summary.ranks;
-  facts.evaluations = sum_of(outcome.summary.evaluations_per_rank);
-  facts.cpu_s = outcome.summary.cpu_s;
-  facts.time = outcome.summary.time - start_time;
-  if (!outcome.summary.stages.empty()) {
-    const StageResult &stage = outcome.summary.stages.back().result;
-    facts.verdict =
-        static_cast<std::int64_t>(outcome.exit_code == exit_code::done ? stage.verdict : Verdict::undecided);
-    const bool are_two =
-        watches && stage.means != VerdictMeans::static_solver; // that sees all blocks at rest
-    facts.first_block = are_two && outcome.exit_code == exit_code::done
-                            ? static_cast<std::int64_t>(stage.first_block)
-                            : facts.verdict;
-    facts.moved = stage.moved;
-    facts.unbalanced_ratio = stage.unbalanced_ratio;
-    facts.steps = stage.steps;
-    facts.means = static_cast<std::int64_t>(stage.means);
-    if (outcome.summary.stages.back().name == confirming_stage) {
-      const StageResult &trial = outcome.summary.stages[outcome.summary.stages.size() - 2].result;
-      facts.moved = std::max(facts.moved, trial.moved);
-      facts.steps += trial.steps;
-      facts.is_confirmed = stage.verdict == trial.verdict ? 1 : 0;
-    }
-  }
-  return facts;
-}
 
 class SafetyFactor {
 public:
@@ -357,38 +304,6 @@ private:
 
   static std::string word_of(Verdict verdict) {
     return verdict == Verdict::settled ? "holds" : verdict == Verdict::failed ? "fails" : "undecided";
-  }
-
-  static bool is_by_statics_alone(const TrialFacts &facts) {
-    return static_cast<Verdict>(facts.verdict) != Verdict::undecided && facts.is_confirmed == 0 &&
-           static_cast<VerdictMeans>(facts.means) == VerdictMeans::static_solver;
-  }
-
-  static std::string words_on_means(const TrialFacts &facts) {
-    const auto verdict = static_cast<Verdict>(facts.verdict);
-    if (verdict == Verdict::undecided) {
-      return "";
-    }
-    return is_by_statics_alone(facts) ? "static solver"
-           : facts.is_confirmed != 0  ? "static solver and dynamic step"
-           : static_cast<VerdictMeans>(facts.means) == VerdictMeans::no_drag ? "dynamic step without damping"
-                                                                             : "dynamic step";
-  }
-
-  static StrengthTrial trial_of(const TrialFacts &facts) {
-    StrengthTrial trial;
-    trial.factor = facts.factor;
-    trial.verdict = static_cast<Verdict>(facts.verdict);
-    trial.first_block = static_cast<Verdict>(facts.first_block);
-    trial.decided_by = words_on_means(facts);
-    trial.time = facts.time;
-    trial.moved = facts.moved;
-    trial.unbalanced_ratio = facts.unbalanced_ratio;
-    trial.steps = facts.steps;
-    trial.evaluations = facts.evaluations;
-    trial.cpu_s = facts.cpu_s;
-    trial.ranks = static_cast<int>(facts.ranks);
-    return trial;
   }
 
   [[nodiscard]] std::optional<Verdict> verdict_of(double factor) const {

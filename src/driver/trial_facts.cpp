@@ -1,0 +1,83 @@
+#include "driver/trial_facts.hpp"
+
+#include "driver/safety_search.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace gcpdda {
+
+namespace {
+
+std::int64_t sum_of(const std::vector<std::int64_t> &counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+}
+
+std::string words_on_means(const TrialFacts &facts) {
+  const auto verdict = static_cast<Verdict>(facts.verdict);
+  if (verdict == Verdict::undecided) {
+    return "";
+  }
+  return is_by_statics_alone(facts)                                        ? "static solver"
+         : facts.is_confirmed != 0                                         ? "static solver and dynamic step"
+         : static_cast<VerdictMeans>(facts.means) == VerdictMeans::no_drag ? "dynamic step without damping"
+                                                                           : "dynamic step";
+}
+
+} // namespace
+
+TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time, bool watches) {
+  TrialFacts facts;
+  facts.factor = factor;
+  facts.exit_code = outcome.exit_code;
+  facts.ranks = outcome.summary.ranks;
+  facts.evaluations = sum_of(outcome.summary.evaluations_per_rank);
+  facts.cpu_s = outcome.summary.cpu_s;
+  facts.time = outcome.summary.time - start_time;
+  if (!outcome.summary.stages.empty()) {
+    const StageResult &stage = outcome.summary.stages.back().result;
+    facts.verdict =
+        static_cast<std::int64_t>(outcome.exit_code == exit_code::done ? stage.verdict : Verdict::undecided);
+    const bool are_two =
+        watches && stage.means != VerdictMeans::static_solver; // that sees all blocks at rest
+    facts.first_block = are_two && outcome.exit_code == exit_code::done
+                            ? static_cast<std::int64_t>(stage.first_block)
+                            : facts.verdict;
+    facts.moved = stage.moved;
+    facts.unbalanced_ratio = stage.unbalanced_ratio;
+    facts.steps = stage.steps;
+    facts.means = static_cast<std::int64_t>(stage.means);
+    if (outcome.summary.stages.back().name == confirming_stage) {
+      const StageResult &trial = outcome.summary.stages[outcome.summary.stages.size() - 2].result;
+      facts.moved = std::max(facts.moved, trial.moved);
+      facts.steps += trial.steps;
+      facts.is_confirmed = stage.verdict == trial.verdict ? 1 : 0;
+    }
+  }
+  return facts;
+}
+
+bool is_by_statics_alone(const TrialFacts &facts) {
+  return static_cast<Verdict>(facts.verdict) != Verdict::undecided && facts.is_confirmed == 0 &&
+         static_cast<VerdictMeans>(facts.means) == VerdictMeans::static_solver;
+}
+
+StrengthTrial trial_of(const TrialFacts &facts) {
+  StrengthTrial trial;
+  trial.factor = facts.factor;
+  trial.verdict = static_cast<Verdict>(facts.verdict);
+  trial.first_block = static_cast<Verdict>(facts.first_block);
+  trial.decided_by = words_on_means(facts);
+  trial.time = facts.time;
+  trial.moved = facts.moved;
+  trial.unbalanced_ratio = facts.unbalanced_ratio;
+  trial.steps = facts.steps;
+  trial.evaluations = facts.evaluations;
+  trial.cpu_s = facts.cpu_s;
+  trial.ranks = static_cast<int>(facts.ranks);
+  return trial;
+}
+
+} // namespace gcpdda

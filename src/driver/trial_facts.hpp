@@ -1,0 +1,39 @@
+#pragma once
+
+// What the groups of ranks that search for a factor of safety tell each other of their trials.
+
+#include "gcpdda/driver/run.hpp"
+#include "io/results/safety_report.hpp"
+
+#include <cstdint>
+
+namespace gcpdda {
+
+/// Of one trial, as it is sent.
+struct TrialFacts {
+  double factor = 0.0;
+  std::int64_t verdict = 0;
+  std::int64_t first_block = 0; ///< the verdict on any block
+  std::int64_t means = 0;
+  std::int64_t is_confirmed = 0; ///< by a stage of its own
+  double time = 0.0;
+  double moved = 0.0;
+  double unbalanced_ratio = 0.0;
+  std::int64_t steps = 0;
+  std::int64_t evaluations = 0;
+  double cpu_s = 0.0;
+  std::int64_t ranks = 0;
+  std::int64_t exit_code = exit_code::done;
+};
+
+/// @param start_time  of all trials, s
+/// @param watches  the verdict is that of a part of the blocks
+TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time, bool watches);
+
+/// The static solver has found the verdict, and no dynamic step has confirmed it.
+bool is_by_statics_alone(const TrialFacts &facts);
+
+/// Without its message and its folder.
+StrengthTrial trial_of(const TrialFacts &facts);
+
+} // namespace gcpdda
