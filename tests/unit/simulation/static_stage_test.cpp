@@ -27,11 +27,13 @@ std::string head(const std::string &run_keys = "", double friction_deg = 30.0) {
                      run_keys, friction_deg);
 }
 
-std::string stack(int height, const std::string &run_keys = "") {
+/// @param closed  by which each joint has closed at the beginning, m
+std::string stack(int height, const std::string &run_keys = "", double closed = 0.0) {
   std::string toml =
       head(run_keys) + block_toml("floor", rectangle({-2.0, -1.0}, {3.0, 0.0}), "fixed = true");
   for (int k = 0; k < height; ++k) {
-    toml += block_toml(fmt::format("s{}", k), rectangle({0.0, 1.0 * k}, {1.0, k + 1.0}));
+    const double low = k - (k + 1) * closed;
+    toml += block_toml(fmt::format("s{}", k), rectangle({0.0, low}, {1.0, low + 1.0}));
   }
   return toml;
 }
@@ -381,10 +383,12 @@ TEST(StaticStage, BeginsWhenItsLoadsAreComplete) {
 }
 
 // What the energies of a stage come from: nothing moves at its end, and what the weight has done is stored,
-// lost in friction or taken by the iteration. Contact forces are curved over a step, so that the residual is
-// of the order of what one increment of the load stores.
+// lost in friction or taken by the iteration. Contact forces k_n d (1 - d) are hardly curved over an
+// increment of the load. Joints touch from the beginning, by a hundredth of the largest overlap at rest: of
+// those with a gap of zero last bits decide whether a block falls at first, and a joint that closes in the
+// middle of a step leaves some percent of the work.
 TEST(StaticStage, EnergiesAddUp) {
-  Simulation simulation(Communicator::self(), scene_of(stack(4) + settle));
+  Simulation simulation(Communicator::self(), scene_of(stack(4, "", 1e-6) + settle));
   const EnergyLedger ledger(simulation.state());
   run_stages(simulation);
   const EnergyRow row = ledger.row(simulation.state());
@@ -392,7 +396,7 @@ TEST(StaticStage, EnergiesAddUp) {
   EXPECT_LT(row.gravity, 0.0);
   EXPECT_GT(row.contact_normal, 0.0);
   EXPECT_GT(row.damping_loss, 0.0);
-  EXPECT_LT(std::abs(row.residual), 0.02 * -row.gravity);
+  EXPECT_LT(std::abs(row.residual), 1e-6 * -row.gravity);
 }
 
 // A beam of length L and height h, glued to a pier, hangs by M = rho g h L^2/2, whose pull at the upper end
