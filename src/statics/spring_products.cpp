@@ -33,7 +33,7 @@ void SpringProducts::take(const ContactSprings &springs, SlipSprings of_slip, st
 }
 
 void SpringProducts::append_rigid(const ContactSpring &s, double tangential) {
-  const std::size_t k = num_rigid_++ % at_once;
+  const std::size_t k = num_rigid_++ % 4;
   if (k == 0) {
     fours_.emplace_back();
   }
@@ -54,7 +54,6 @@ void SpringProducts::append_rigid(const ContactSpring &s, double tangential) {
 
 namespace {
 
-using Four = float __attribute__((vector_size(16)));
 /// (u_x, u_y, r, 0) of four rows, or (u_x, u_y, r) of all four.
 struct FourRows {
   Four a, b, c, d;
@@ -98,11 +97,12 @@ void SpringProducts::add_rigid(const LeanField &p, LeanField &y) const {
     const Four along_t = s.tangential * (s.normal_x * apart_y - s.normal_y * apart_x +
                                          s.lower_t * of_lower.c - s.higher_t * of_higher.c);
     const Four bent = s.bending * (of_lower.c - of_higher.c);
-    const Four x = along_n * s.normal_x - along_t * s.normal_y;
-    const Four y_ = along_n * s.normal_y + along_t * s.normal_x;
-    const FourRows on_lower = transposed({x, y_, s.lower_n * along_n + s.lower_t * along_t + bent, Four{}});
+    const Four force_x = along_n * s.normal_x - along_t * s.normal_y;
+    const Four force_y = along_n * s.normal_y + along_t * s.normal_x;
+    const FourRows on_lower =
+        transposed({force_x, force_y, s.lower_n * along_n + s.lower_t * along_t + bent, Four{}});
     const FourRows on_higher =
-        transposed({-x, -y_, -(s.higher_n * along_n + s.higher_t * along_t + bent), Four{}});
+        transposed({-force_x, -force_y, -(s.higher_n * along_n + s.higher_t * along_t + bent), Four{}});
     add_to(y, s.lower[0], on_lower.a);
     add_to(y, s.higher[0], on_higher.a);
     add_to(y, s.lower[1], on_lower.b);

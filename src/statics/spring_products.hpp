@@ -21,6 +21,9 @@ namespace gcpdda::statics {
 /// Which springs K has of regions that slip.
 enum class SlipSprings { all, none_tangential };
 
+/// A register that has a number of each of four springs.
+using Four = float __attribute__((vector_size(4 * sizeof(float))));
+
 class SpringProducts {
 public:
   /// Those that ContactSprings::for_lists() tells, in order.
@@ -45,12 +48,10 @@ private:
     float tangential = 0.0F;
     float grip = 0.0F;
   };
-  static constexpr std::size_t at_once = 4;
-  using Four = float __attribute__((vector_size(at_once * sizeof(float))));
   /// Springs between rigid blocks; those that fill up the last four have no stiffness.
   struct FourSprings {
-    std::array<std::uint32_t, at_once> lower{};
-    std::array<std::uint32_t, at_once> higher{};
+    std::array<std::uint32_t, 4> lower{};
+    std::array<std::uint32_t, 4> higher{};
     Four normal_x{};
     Four normal_y{};
     Four lower_n{}; ///< levers of the normal and of the tangential force
