@@ -33,8 +33,8 @@
 //     (K + rho D) x'' + c (K + rho D) x' + g K' x' = f(x),   g = (1 - c)(1 - s)   where c < 1,
 // one product an evaluation, in place of f:
 //     v = a v + b (K + rho D)^-1 (f - g K' v).
-// A motion without slip has K' = K. With c small nothing is left of its v, and it takes Newton's steps; with
-// c = 1 it is damped critically by the first term alone. A slide has K' v = 0 and is damped by c alone,
+// A motion without slip has K' = K. With c and s small nothing is left of its v, and it takes Newton's steps;
+// with c = 1 it is damped critically by the first term alone. A slide has K' v = 0 and is damped by c alone,
 // which now follows its own w. Steps of strains are stable up to a true stiffness of 4 - 2 (1 - c) times K.
 // s = v.K' v/(v.q) says which of the two goes on: 0.02 to 0.05 near the limit of a slope, 0.97 where a wedge
 // between two joints is strained and slips on both. Its friction follows the strain, the forces hardly
