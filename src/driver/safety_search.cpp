@@ -256,7 +256,7 @@ Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   trial.failure_motion = scene.reduction.failure_motion;
   trial.local_damping = scene.reduction.local_damping;
   trial.solver = scene.earthquake.viscous.empty() ? std::prev(last_settle)->solver : Solver::dynamic;
-  trial.increments = std::prev(last_settle)->increments;
+  trial.increments = factor == settled_factor ? 1 : std::prev(last_settle)->increments;
   const bool is_static = trial.solver == Solver::statics;
   if (!is_static) {
     trial.weakening = laws_between(*after, scene.reduction, settled_factor, factor);

@@ -18,11 +18,12 @@
 // one of the blocks goes on nevertheless, the dynamic step that confirms the trial sees it.
 // The dynamic step that confirms a trial of the static solver (Stage::begins_at_rest) would start a swing of
 // the whole pile by the little that was left unbalanced. The static solver therefore goes on first, until all
-// but a few blocks are balanced so well that the dynamic step holds them (held_blocks.hpp). The swing of the
-// few needs not end: D does not grow there either, in place of being small. A block that goes on under a
-// force moves farther from look to look. Nor is there much of a force where all blocks, from rest, have moved
-// less than a share e = 2e-4 of their weight would move them. In the n-th look of the dynamic step, of the
-// length t, that is (n - 1/2) e g t^2; it is asked from the fourth on, so that a swing with a period of
+// but one in 100,000 blocks are balanced so well that the dynamic step holds them (held_blocks.hpp), or for
+// 300 evaluations. (A few in motion set free those around them, and 100 in 100,000 all of a slope.) The swing
+// of the few needs not end: D does not grow there either, in place of being small. A block that goes on under
+// a force moves farther from look to look. Nor is there much of a force where all blocks, from rest, have
+// moved less than a share e = 2e-4 of their weight would move them. In the n-th look of the dynamic step, of
+// the length t, that is (n - 1/2) e g t^2; it is asked from the fourth on, so that a swing with a period of
 // several looks has been seen as well. A block on a plane with the dip b whose trial is beyond its limit by
 // the share h of the factor has e = h sin(b): what may pass is beyond it by some ten-thousandths. Without
 // this rule a pile near its limit, in which friction feeds a swing of a micrometre, rested by chance after up

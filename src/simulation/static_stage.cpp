@@ -90,12 +90,15 @@ double balanced_force(const RunState &run) {
 }
 
 void find_static_motion(RunState &run) {
+  constexpr double near_rest = 100.0; // times the unbalanced ratio at rest
   const auto scope = run.phases.measure(Phase::update);
   const double overlap = run.communicator.max(run.force_report.max_overlap);
   run.statics->springs().set_links(run.bolts.liner_springs(run.blocks));
   const bool was_local = run.statics->is_local();
+  const bool is_near_rest =
+      run.clock.state.memory.last.unbalanced_ratio <= near_rest * run.clock.stage().tolerance;
   run.statics->find_motion(run.blocks, run.neighbours.candidates, run.neighbours.history, run.contacts,
-                           overlap, balanced_force(run), run.clock.state.iteration);
+                           overlap, balanced_force(run), is_near_rest, run.clock.state.iteration);
   run.contacts.leave_out_resting(run.statics->is_local());
   if (was_local && !run.statics->is_local()) { // blocks that were not let move have not shown that they rest
     LookMemory &memory = run.clock.state.memory;
@@ -114,6 +117,7 @@ void open_statics(RunState &run) {
   run.communicator.sum(std::span(&num_mobile, 1));
   rules.mass_share = statics::mass_share(num_mobile);
   rules.increments = run.clock.stage().increments;
+  rules.all_move = run.clock.stage().is_trial() ? 5 : rules.all_move;
   rules.springs.reach = spring_reach * run.neighbours.base_skin;
   run.statics.emplace(run.communicator, rules);
   run.contacts.keep_details(true);
@@ -237,9 +241,9 @@ void judge_static_trial(RunState &run) {
   }
 }
 
-// The dynamic step takes over where no more than a few blocks would move in it at once, or soon.
+// The dynamic step takes over where hardly a block would move in it at once, or soon.
 void judge_confirmation(RunState &run) {
-  constexpr double most_moving = 1e-3; // of the mobile blocks
+  constexpr double most_moving = 1e-5; // of the mobile blocks
   constexpr std::int64_t most_evaluations = 300;
   const double force = held_ratio(run.clock.stage()) * run.clock.state.memory.last.force;
   std::array<std::int64_t, 2> counts{};

@@ -62,11 +62,13 @@ void PseudoTime::keep_resting(BlockSystem &system) {
   springs_.set_moving(is_local_ ? std::move(moves) : std::vector<std::uint8_t>());
 }
 
-void PseudoTime::choose_rows(BlockSystem &system, double balanced, const IterationState &state) {
+void PseudoTime::choose_rows(BlockSystem &system, double balanced, bool is_near_rest,
+                             const IterationState &state) {
   if (!may_pause(state) || load_share(state.evaluations) < 1.0) {
     return;
   }
-  const bool all_move = state.evaluations % rules_.window < rules_.all_move;
+  const bool all_move =
+      state.evaluations % rules_.window < (is_near_rest ? rules_.all_move_near_rest : rules_.all_move);
   const auto chosen = all_move ? std::nullopt : far_.find(system, balanced);
   const bool was_local = std::exchange(is_local_, chosen.has_value());
   if (!is_local_ && !was_local) {
@@ -135,7 +137,7 @@ double PseudoTime::power(const BlockSystem &system) const {
 
 void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                              const ContactForces &contacts, double overlap, double balanced,
-                             IterationState &state) {
+                             bool is_near_rest, IterationState &state) {
   rules_.springs.slides_fade = load_share(state.evaluations) >= 1.0;
   springs_.update(system, candidates, history, contacts, rules_.springs);
   if (may_pause(state)) { // all rows may move from here on
@@ -146,7 +148,7 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   const double power_behind = power(system);
   const double square =
       state.momentum > 0.0 ? std::clamp((state.power_before - power_behind) / state.momentum, 0.0, 3.9) : 0.0;
-  choose_rows(system, balanced, state);
+  choose_rows(system, balanced, is_near_rest, state);
   const bool is_coarse_due = may_pause(state);
   ++state.evaluations;
   gather(system, load_share(state.evaluations));

@@ -216,6 +216,8 @@ TEST(WeakenedScene, IsSolvedAsTheLastSettleStageIs) {
   last_settle->solver = Solver::statics;
   const Scene trial = weakened_scene(scene, 2.0);
   EXPECT_EQ(trial.stages.back().solver, Solver::statics);
+  EXPECT_EQ(trial.stages.back().increments, last_settle->increments);
+  EXPECT_EQ(weakened_scene(scene, 2.0, 2.0).stages.back().increments, 1) << "nothing changes";
   for (const Verdict found : {Verdict::settled, Verdict::failed}) {
     const std::vector<Stage> stages = with_confirming_stage(trial, found).stages;
     EXPECT_EQ(stages.size(), trial.stages.size() + 1);

@@ -172,6 +172,7 @@ Course course_beside_a_fall(const std::string &kind, bool all_move) {
   simulation.step();
   statics::IterationRules &rules = simulation.state().statics->rules();
   rules.all_move = all_move ? rules.window : rules.all_move;
+  rules.all_move_near_rest = all_move ? rules.window : rules.all_move_near_rest;
   run_stages(simulation);
   EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled);
   EXPECT_FALSE(has_fallen_back(simulation));
