@@ -117,7 +117,7 @@ void open_statics(RunState &run) {
   run.communicator.sum(std::span(&num_mobile, 1));
   rules.mass_share = statics::mass_share(num_mobile);
   rules.increments = run.clock.stage().increments;
-  rules.all_move = run.clock.stage().is_trial() ? 5 : rules.all_move;
+  rules.all_move = run.clock.stage().is_trial() ? rules.all_move_in_trial : rules.all_move;
   rules.springs.reach = spring_reach * run.neighbours.base_skin;
   run.statics.emplace(run.communicator, rules);
   run.contacts.keep_details(true);
@@ -190,7 +190,9 @@ double farthest_in_window(RunState &run) {
 // A trial that fails ends here: where that is an end of the bracket, the dynamic step goes on with it in a
 // stage of its own. What a watched part of the blocks does, the dynamic step says at once. Loose blocks do
 // not hold up a trial where each of them would move by less than a tenth of what fails if it went on as in
-// the last window for all windows ahead.
+// the last window for all windows ahead. A trial that does not come nearer to rest is left to the dynamic
+// step unless a block slides on, by a tenth of what fails in the last window: it soon has gone far, and the
+// dynamic step takes many times as long to see it.
 void judge_static_trial(RunState &run) {
   constexpr double window = 50.0;                   // evaluations
   constexpr std::int64_t enough_evaluations = 1500; // for a trial that does not come nearer to rest
@@ -230,7 +232,8 @@ void judge_static_trial(RunState &run) {
     run.clock.state.ended = true;
     return;
   }
-  if (fails || (stalls && evaluations >= enough_evaluations)) {
+  const bool slides = windows.last_rate * window > 0.1 * failure;
+  if (fails || (stalls && !slides && evaluations >= enough_evaluations)) {
     if (fails || windows.undiminished > 0) {
       run.local_damping = 0.0; // as drag it would hold back what goes on moving
     }
