@@ -232,7 +232,7 @@ void judge_static_trial(RunState &run) {
     run.clock.state.ended = true;
     return;
   }
-  const bool slides = windows.last_rate * window > 0.1 * failure;
+  const bool slides = look.moved < far && windows.last_rate * window > 0.1 * failure;
   if (fails || (stalls && !slides && evaluations >= enough_evaluations)) {
     if (fails || windows.undiminished > 0) {
       run.local_damping = 0.0; // as drag it would hold back what goes on moving
