@@ -191,8 +191,8 @@ double farthest_in_window(RunState &run) {
 // stage of its own. What a watched part of the blocks does, the dynamic step says at once. Loose blocks do
 // not hold up a trial where each of them would move by less than a tenth of what fails if it went on as in
 // the last window for all windows ahead. A trial that does not come nearer to rest is left to the dynamic
-// step unless a block slides on, by a tenth of what fails in the last window: it soon has gone far, and the
-// dynamic step takes many times as long to see it.
+// step unless a block has yet to go far and slides on, by a tenth of what fails in the last window: it goes
+// far within fifty windows, and the dynamic step takes many times as long to see it.
 void judge_static_trial(RunState &run) {
   constexpr double window = 50.0;                   // evaluations
   constexpr std::int64_t enough_evaluations = 1500; // for a trial that does not come nearer to rest

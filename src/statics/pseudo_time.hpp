@@ -138,7 +138,7 @@ public:
   /// From the forces of an evaluation to the motion of the next step, in PseudoMotion::velocity. Collective.
   /// @param overlap  largest one of all ranks, m
   /// @param balanced  N/m: what may be left on a block that is balanced
-  /// @param is_near_rest  hardly more than that is left on any
+  /// @param is_near_rest  the largest force that is left is not much more than a verdict asks for
   void find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                    const ContactForces &contacts, double overlap, double balanced, bool is_near_rest,
                    IterationState &state);
