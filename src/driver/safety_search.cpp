@@ -73,7 +73,6 @@ private:
   // that nothing is decided: the search then comes down, and goes on up where that has not found a trial that
   // fails.
   bool find_failing_end() {
-    constexpr double growth = 1.25;
     double tried = *found_.holds;
     while (!found_.fails) {
       const bool comes_down = !found_.undecided.empty() && is_wide(found_.undecided.front());
@@ -81,7 +80,7 @@ private:
         return false;
       }
       const double factor = comes_down ? std::midpoint(*found_.holds, found_.undecided.front())
-                                       : std::min(growth * tried, reduction_.to);
+                                       : std::min(growth() * tried, reduction_.to);
       const std::optional<Verdict> verdict = ask(factor);
       if (!verdict) {
         return false;
@@ -92,10 +91,22 @@ private:
     return true;
   }
 
-  /// What lies between the largest factor that holds and another one.
-  [[nodiscard]] bool is_wide(double end) const {
-    return end - *found_.holds > reduction_.tolerance * *found_.holds;
+  /// Growth of the factor from one trial to the next on the way up: the tolerance times a power of two, so
+  /// that halving ends just where the bracket is as narrow as it has to be.
+  [[nodiscard]] double growth() const {
+    constexpr double most = 1.3;
+    double share = reduction_.tolerance;
+    while (1.0 + 2.0 * share <= most) {
+      share *= 2.0;
+    }
+    return 1.0 + share;
   }
+
+  [[nodiscard]] bool is_wide(double begin, double end) const {
+    return !is_narrow(end - begin, *found_.holds, reduction_.tolerance);
+  }
+  /// What lies between the largest factor that holds and another one.
+  [[nodiscard]] bool is_wide(double end) const { return is_wide(*found_.holds, end); }
 
   void note(double factor, Verdict verdict) {
     if (verdict == Verdict::settled) {
@@ -118,9 +129,8 @@ private:
     if (is_wide(low_end)) {
       return std::midpoint(*found_.holds, low_end);
     }
-    return *found_.fails - high_begin > reduction_.tolerance * *found_.holds
-               ? std::optional(std::midpoint(high_begin, *found_.fails))
-               : std::nullopt;
+    return is_wide(high_begin, *found_.fails) ? std::optional(std::midpoint(high_begin, *found_.fails))
+                                              : std::nullopt;
   }
 
   const StrengthReduction &reduction_;

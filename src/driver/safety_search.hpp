@@ -16,7 +16,7 @@ namespace gcpdda {
 using TrialVerdicts = std::function<std::optional<Verdict>(double factor)>;
 
 /// What a search is about. It begins with the strengths of the settled state where that is one of its
-/// factors, and goes up from there by a quarter at a time.
+/// factors, and goes up from there by 15 to 30 % at a time.
 struct SearchRange {
   StrengthReduction reduction;
   double settled = 1.0; ///< what strengths are divided by in the settled state

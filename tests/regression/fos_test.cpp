@@ -66,13 +66,13 @@ TEST(Fos, WritesWhatItFinds) {
   const double fails = std::stod(json_value(results / "fos.json", "fails"));
   EXPECT_LT(holds, testing::plane_failure_factor(0.0));
   EXPECT_GT(fails, testing::plane_failure_factor(0.0));
-  EXPECT_LE(fails - holds, 0.3 * holds);
+  EXPECT_LE(fails - holds, 0.3 * holds + 1e-12) << "round-off";
   const std::vector<std::string> trials = lines_of(file_text(results / "fos_trials.csv"));
   EXPECT_GE(trials.size(), 4U) << "a header, both ends and what lies between";
   EXPECT_EQ(json_value(results / "fos.json", "block"), "\"slider\"") << "the block that moves";
   expect_sliding_joint(file_text(results / "fos.svg"));
   EXPECT_TRUE(fs::exists(results / "settled/checkpoints"));
-  EXPECT_TRUE(fs::exists(results / "trials/F1.25/frames/frame_000000.hdf"));
+  EXPECT_TRUE(fs::exists(results / "trials/F1.3/frames/frame_000000.hdf"));
 
   const Outcome again = run_gcpdda(0, call, folder);
   EXPECT_EQ(again.exit_code, 4);
@@ -83,7 +83,7 @@ TEST(Fos, WritesWhatItFinds) {
   replace.back() = "1.1"; // the trial at 1, where nothing changes, needs no time
   replace.insert(replace.end(), {"--overwrite", "--set", "fos.limit=0.01", "--set", "fos.patience=0"});
   EXPECT_EQ(run_gcpdda(0, replace, folder).exit_code, 7) << "too short for any verdict";
-  EXPECT_FALSE(fs::exists(results / "trials/F1.25")) << "of the search before";
+  EXPECT_FALSE(fs::exists(results / "trials/F1.3")) << "of the search before";
   EXPECT_EQ(json_value(results / "fos.json", "holds"), "null");
 }
 

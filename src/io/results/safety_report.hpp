@@ -58,6 +58,11 @@ struct SafetyPictures {
   std::string first_block;
 };
 
+/// A part of a bracket, so wide, is within the tolerance, but for the round-off of factors that are halved.
+inline bool is_narrow(double width, double holds, double tolerance) {
+  return width <= (1.0 + 1e-9) * tolerance * holds;
+}
+
 /// What gcpdda fos has found.
 struct SafetyReport {
   std::vector<std::string> families;   ///< laws that were weakened
@@ -75,7 +80,9 @@ struct SafetyReport {
   double ignored_area = 0.0; ///< m^2, fos.ignore_area
 
   /// The bracket is as narrow as asked for.
-  [[nodiscard]] bool is_found() const { return holds && fails && *fails - *holds <= tolerance * *holds; }
+  [[nodiscard]] bool is_found() const {
+    return holds && fails && is_narrow(*fails - *holds, *holds, tolerance);
+  }
 };
 
 /// What people read.

@@ -53,7 +53,7 @@ TEST(SafetySearch, BracketsTheLimit) {
     ASSERT_TRUE(found.search.holds && found.search.fails);
     EXPECT_LT(*found.search.holds, limit);
     EXPECT_GE(*found.search.fails, limit);
-    EXPECT_LE(*found.search.fails - *found.search.holds, 0.002 * *found.search.holds);
+    EXPECT_LE(*found.search.fails - *found.search.holds, 0.002 * *found.search.holds + 1e-12) << "round-off";
     EXPECT_EQ(found.search.decisive.size(), found.tried.size()) << "one at a time tries nothing in vain";
     EXPECT_LE(found.tried.size(), 3 + static_cast<std::size_t>(std::ceil(std::log2(3.5 / (0.002 * 0.5)))));
   }
@@ -117,12 +117,33 @@ TEST(SafetySearch, GoesUpFromTheSettledState) {
     factors.resize(4);
     return factors;
   };
-  EXPECT_EQ(first_factors(1.0, 1.2), (std::vector<double>{1.0, 1.25, 1.125, 1.1875}));
-  EXPECT_EQ(first_factors(1.0, 3.9), (std::vector<double>{1.0, 1.25, 1.5625, 1.953125}));
+  const auto expect_factors = [&](const std::vector<double> &found, const std::vector<double> &expected) {
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      EXPECT_NEAR(found[k], expected[k], 1e-12);
+    }
+  };
+  expect_factors(first_factors(1.0, 1.2), {1.0, 1.16, 1.16 * 1.16, 1.16 * 1.08});
+  expect_factors(first_factors(1.0, 3.9), {1.0, 1.16, 1.16 * 1.16, 1.16 * 1.16 * 1.16});
   EXPECT_EQ(first_factors(1.0, 0.9), (std::vector<double>{1.0, 0.5, 0.75, 0.875}))
       << "it did not stay at rest";
-  EXPECT_EQ(first_factors(0.5, 0.9), (std::vector<double>{0.5, 0.625, 0.78125, 0.9765625}));
+  expect_factors(first_factors(0.5, 0.9), {0.5, 0.5 * 1.16, 0.5 * 1.16 * 1.16, 0.5 * 1.16 * 1.16 * 1.16});
   EXPECT_EQ(first_factors(5.0, 0.9)[0], reduction.from) << "beyond what is tried";
+}
+
+// Steps up are powers of two of the tolerance: no trial makes the bracket narrower than is asked for.
+TEST(SafetySearch, HalvesDownToTheToleranceAndNoFurther) {
+  for (const double tolerance : {0.005, 0.01, 0.02, 0.04}) {
+    StrengthReduction reduction;
+    reduction.tolerance = tolerance;
+    const auto halvings = static_cast<std::size_t>(std::round(std::log2(0.16 / tolerance)));
+    for (const double limit : {1.001, 1.0799, 1.1599}) {
+      const Outcome found = search({reduction}, limit, 0.0, 1);
+      EXPECT_NEAR(*found.search.fails - *found.search.holds, tolerance, 1e-12) << limit;
+      EXPECT_EQ(found.tried.size(), 2 + halvings) << limit;
+    }
+    EXPECT_EQ(search({reduction}, 1.3, 0.0, 1).tried.size(), 3 + halvings);
+    EXPECT_EQ(search({reduction}, 1.5, 0.0, 1).tried.size(), 4 + halvings);
+  }
 }
 
 // Trials beyond 1.5 break down without a verdict; the limit is below.
