@@ -50,11 +50,13 @@
 // length: in pseudo-time motion is damped, and a constant force gives a constant speed. A block must have
 // moved by failure_motion and beyond the sag, and gone on as above or for two windows in a row, and a series
 //     M + g (q + q^2 + ...)     with q, g over that of the window before, but at most 1
-// that reaches five times failure_motion within 60 windows, twice those of a trial. Near the limit blocks
-// creep to rest for a thousand evaluations, in each window a little less. Where M is as much as that already
-// and a block has moved beyond the sag, the trial fails at once. Where that is an end of the bracket, the
-// dynamic step goes on from there and judges from its second look on: the first has nothing to be compared
-// with.
+// that reaches five times failure_motion within 60 windows, twice those of a trial. It is asked from the
+// fourth window on, since the first ones have the motion that the loads have caused: just below the limits of
+// two slopes M grew for one or two of them as fast as before or faster, by a twentieth to a tenth a window,
+// and then hardly at all; whether a trial there failed hung on last bits. Near the limit blocks creep to rest
+// for a thousand evaluations, in each window a little less. Where M is as much as that already and a block
+// has moved beyond the sag, the trial fails at once. Where that is an end of the bracket, the dynamic step
+// goes on from there and judges from its second look on: the first has nothing to be compared with.
 
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/model/stage.hpp"

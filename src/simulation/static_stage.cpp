@@ -198,6 +198,7 @@ void judge_static_trial(RunState &run) {
   constexpr std::int64_t enough_evaluations = 1500; // for a trial that does not come nearer to rest
   constexpr double windows_ahead = 60.0;
   constexpr double times_as_far = 5.0;
+  constexpr std::int64_t first_windows = 4; // see stages.hpp
   const std::int64_t evaluations = run.clock.state.iteration.evaluations;
   const bool stalls = has_stalled(run);
   const StageLook &look = run.clock.state.memory.last;
@@ -223,7 +224,8 @@ void judge_static_trial(RunState &run) {
       ratio < 1.0 ? ratio * (1.0 - std::pow(ratio, windows_ahead)) / (1.0 - ratio) : windows_ahead;
   const double failure = run.clock.stage().failure_motion;
   const double far = times_as_far * failure;
-  const bool goes_far = look.moved + series * window * windows.last_rate >= far;
+  const bool goes_far =
+      windows.closed >= first_windows && look.moved + series * window * windows.last_rate >= far;
   const bool goes_on = is_failing || windows.undiminished >= 2;
   const bool fails =
       look.moved_beyond_sag >= failure && (look.moved >= far || (closed && goes_on && goes_far));

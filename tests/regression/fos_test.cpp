@@ -3,6 +3,7 @@
 #include "child_process.hpp"
 #include "support/plane_failure.hpp"
 #include "support/run_facts.hpp"
+#include "support/scenes.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -85,6 +86,24 @@ TEST(Fos, WritesWhatItFinds) {
   EXPECT_EQ(run_gcpdda(0, replace, folder).exit_code, 7) << "too short for any verdict";
   EXPECT_FALSE(fs::exists(results / "trials/F1.3")) << "of the search before";
   EXPECT_EQ(json_value(results / "fos.json", "holds"), "null");
+}
+
+// Just below its limit the toe of this slope slides by a tenth of a block and comes to rest. A change of the
+// density by its last bits changes on which windows of its motion it does.
+TEST(Fos, VerdictNearTheLimitHangsOnNoLastBit) {
+  const WorkFolder folder;
+  folder.write("wet.toml", testing::shipped_toml("wet_slope"));
+  for (int k = 2; k < 6; ++k) {
+    const std::string density = fmt::format("material.rock.density={}", 2600.0 * (1.0 + 1e-11 * k));
+    const std::string out = fmt::format("density{}", k);
+    run_gcpdda(0,
+               {"fos", "wet.toml", "--from", "1.265", "--to", "1.266", "--tolerance", "0.05", "--set",
+                density, "--out", out},
+               folder);
+    const std::vector<std::string> trials = lines_of(file_text(folder / out / "fos_trials.csv"));
+    ASSERT_EQ(trials.size(), 3U);
+    EXPECT_NE(trials[1].find(",settled,"), std::string::npos) << trials[1];
+  }
 }
 
 TEST(Fos, BeginsWithTheStateOfAnEarlierSearch) {
