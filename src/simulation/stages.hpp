@@ -18,16 +18,19 @@
 // one of the blocks goes on nevertheless, the dynamic step that confirms the trial sees it.
 // The dynamic step that confirms a trial of the static solver (Stage::begins_at_rest) would start a swing of
 // the whole pile by the little that was left unbalanced. The static solver therefore goes on first, until all
-// but one in 100,000 blocks are balanced so well that the dynamic step holds them (held_blocks.hpp), or for
-// 300 evaluations. (A few in motion set free those around them, and 100 in 100,000 all of a slope.) The swing
-// of the few needs not end: D does not grow there either, in place of being small. A block that goes on under
-// a force moves farther from look to look. Nor is there much of a force where all blocks, from rest, have
-// moved less than a share e = 2e-4 of their weight would move them. In the n-th look of the dynamic step, of
-// the length t, that is (n - 1/2) e g t^2; it is asked from the fourth on, so that a swing with a period of
-// several looks has been seen as well. A block on a plane with the dip b whose trial is beyond its limit by
-// the share h of the factor has e = h sin(b): what may pass is beyond it by some ten-thousandths. Without
-// this rule a pile near its limit, in which friction feeds a swing of a micrometre, rested by chance after up
-// to 40 looks.
+// but one in 100,000 blocks are balanced so well that the dynamic step holds them (held_blocks.hpp), for
+// 1,500 evaluations, or until a block has moved by failure_motion. (A few in motion set free those around
+// them, and 100 in 100,000 all of a slope: after 300 evaluations one of 100,290 blocks was still undecided
+// after 6,300 steps of motion, because a loose block slid on by a fiftieth of its size. After 583 it took 881
+// steps.) The swing of the few needs not end: D does not grow there either, in place of being small. A block
+// that goes on under a force moves farther from look to look. Nor is there much of a force where all blocks,
+// from rest, have moved less than a share e = 2e-4 of their weight would move them. In the n-th look of the
+// dynamic step, of the length t, that is (n - 1/2) e g t^2; it is asked from the fourth on, so that a swing
+// with a period of several looks has been seen as well. A block on a plane with the dip b whose trial is
+// beyond its limit by the share h of the factor has e = h sin(b): what may pass is beyond it by some
+// ten-thousandths. Without this rule a pile near its limit, in which friction feeds a swing of a micrometre,
+// rested by chance after up to 40 looks.
+//
 // failed: M has reached failure_motion, D is at least half of what it was, and T at least a quarter of the
 // most it was: the blocks are not about to come to rest.
 //
@@ -50,13 +53,14 @@
 // length: in pseudo-time motion is damped, and a constant force gives a constant speed. A block must have
 // moved by failure_motion and beyond the sag, and gone on as above or for two windows in a row, and a series
 //     M + g (q + q^2 + ...)     with q, g over that of the window before, but at most 1
-// that reaches five times failure_motion within 60 windows, twice those of a trial. It is asked from the
+// that reaches five times failure_motion within 60 windows, twice those of a trial. Where M is as much as
+// that already and a block has moved beyond the sag, the trial fails at once. The series is asked from the
 // fourth window on, since the first ones have the motion that the loads have caused: just below the limits of
 // two slopes M grew for one or two of them as fast as before or faster, by a twentieth to a tenth a window,
 // and then hardly at all; whether a trial there failed hung on last bits. Near the limit blocks creep to rest
-// for a thousand evaluations, in each window a little less. Where M is as much as that already and a block
-// has moved beyond the sag, the trial fails at once. Where that is an end of the bracket, the dynamic step
-// goes on from there and judges from its second look on: the first has nothing to be compared with.
+// for a thousand evaluations, in each window a little less. Where a trial that fails is an end of the
+// bracket, the dynamic step goes on from there and judges from its second look on: the first has nothing to
+// be compared with.
 
 #include "gcpdda/geometry/mat2.hpp"
 #include "gcpdda/model/stage.hpp"

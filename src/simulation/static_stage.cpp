@@ -173,6 +173,9 @@ bool has_stalled(RunState &run) {
   return stalls;
 }
 
+/// For what does not come nearer to rest.
+constexpr std::int64_t enough_evaluations = 1500;
+
 /// By which the motion of a single block has grown in the window of a trial that ends here, in its sizes.
 /// Collective.
 double farthest_in_window(RunState &run) {
@@ -194,8 +197,7 @@ double farthest_in_window(RunState &run) {
 // step unless a block has yet to go far and slides on, by a tenth of what fails in the last window: it goes
 // far within fifty windows, and the dynamic step takes many times as long to see it.
 void judge_static_trial(RunState &run) {
-  constexpr double window = 50.0;                   // evaluations
-  constexpr std::int64_t enough_evaluations = 1500; // for a trial that does not come nearer to rest
+  constexpr double window = 50.0; // evaluations
   constexpr double windows_ahead = 60.0;
   constexpr double times_as_far = 5.0;
   constexpr std::int64_t first_windows = 4; // see stages.hpp
@@ -249,7 +251,6 @@ void judge_static_trial(RunState &run) {
 // The dynamic step takes over where hardly a block would move in it at once, or soon.
 void judge_confirmation(RunState &run) {
   constexpr double most_moving = 1e-5; // of the mobile blocks
-  constexpr std::int64_t most_evaluations = 300;
   const double force = held_ratio(run.clock.stage()) * run.clock.state.memory.last.force;
   std::array<std::int64_t, 2> counts{};
   auto &[moving, mobile] = counts;
@@ -263,7 +264,8 @@ void judge_confirmation(RunState &run) {
   run.clock.state.ended = false;
   run.clock.state.verdict = Verdict::undecided;
   if (static_cast<double>(moving) <= most_moving * static_cast<double>(mobile) ||
-      run.clock.state.iteration.evaluations >= most_evaluations) {
+      run.clock.state.iteration.evaluations >= enough_evaluations ||
+      run.clock.state.memory.last.moved_beyond_sag >= run.clock.stage().failure_motion) {
     run.clock.state.memory.settled_looks = 0;
     leave_statics(run);
   }
