@@ -107,6 +107,7 @@ template <class State, class Count, class Real> void visit_state(State &state, C
   real(last.moved), real(last.resting_kinetic);
   auto &iteration = state.iteration;
   count(iteration.evaluations), count(iteration.products), count(iteration.is_left);
+  count(iteration.run), count(iteration.short_runs);
   real(iteration.power_before), real(iteration.momentum), real(iteration.longest);
   real(iteration.least_ratio), real(iteration.last_least), real(iteration.least_loose);
   real(iteration.last_loose), real(iteration.skipped);

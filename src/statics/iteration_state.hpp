@@ -12,6 +12,8 @@ struct IterationState {
   std::int64_t evaluations = 0; ///< 0: it has not begun
   std::int64_t products = 0;    ///< with K
   std::int64_t is_left = 0;     ///< 1: the dynamic solver has taken over
+  std::int64_t run = 0;         ///< evaluations since the motion has begun anew
+  std::int64_t short_runs = 0;  ///< in a row, before that
   double power_before = 0.0;    ///< v.f at the beginning of the step at hand
   double momentum = 0.0;        ///< v.q
   double longest = 0.0;         ///< largest overlap so far, m

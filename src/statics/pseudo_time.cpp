@@ -155,7 +155,7 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   const bool begins = !(state.momentum > 0.0) || power(system) < 0.0;
   const bool loads = load_share(state.evaluations) < 1.0;
   const double c = 2.0 * (loads ? rules_.damping_share : rules_.damping_of_slides) * std::sqrt(square);
-  if (begins && !loads) {
+  if (!loads && (swings(begins, state) || begins)) {
     springs_.hold_slip();
   }
   solver_.set(system, springs_, rules_.mass_share, is_coarse_due);
@@ -171,6 +171,15 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   } else {
     advance(system, (2.0 - c) / (2.0 + c), 2.0 / (2.0 + c), limit, state);
   }
+}
+
+bool PseudoTime::swings(bool begins, IterationState &state) const {
+  if (begins) {
+    state.short_runs = state.run <= rules_.short_run ? state.short_runs + 1 : 0;
+    state.run = 0;
+  }
+  ++state.run;
+  return state.short_runs > rules_.most_short_runs && state.run <= rules_.short_run;
 }
 
 void PseudoTime::find_standing(BlockSystem &system) {

@@ -98,6 +98,8 @@ struct IterationRules {
   std::int64_t all_move = 10;           ///< of these, ...
   std::int64_t all_move_in_trial = 5;   ///< ... in a trial of gcpdda fos, ...
   std::int64_t all_move_near_rest = 10; ///< ... and near rest
+  std::int64_t short_run = 6;           ///< evaluations from a new beginning to the next one ...
+  std::int64_t most_short_runs = 2;     ///< ... and how many in a row are no swing for ever
   FarRules far;
   SpringRules springs;
 };
@@ -160,6 +162,9 @@ private:
   void choose_rows(BlockSystem &system, double balanced, bool is_near_rest, const IterationState &state);
   /// Blocks that rest stay where they are, on all ranks. Collective.
   void keep_resting(BlockSystem &system);
+  /// Takes note of where the motion begins anew.
+  /// @return it has done so again and again after a few evaluations
+  [[nodiscard]] bool swings(bool begins, IterationState &state) const;
   /// Unbalanced forces when this share of the load acts.
   void gather(const BlockSystem &system, double share);
   /// v.f. Collective.
