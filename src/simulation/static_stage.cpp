@@ -62,11 +62,12 @@ void leave_statics(RunState &run) {
   run.clock.state.iteration.is_left = 1;
   close_statics(run);
 }
-void leave_statics(RunState &run, const std::string &reason) {
+void leave_statics(RunState &run, const std::string &reason,
+                   const std::string &advice = "solver = \"dynamic\" in the stage says so from the start") {
   leave_statics(run);
   run.notes.push_back({Severity::info, run.clock.stage().where,
                        fmt::format("stage '{}' goes on with solver = \"dynamic\"", run.clock.stage().name),
-                       reason, "solver = \"dynamic\" in the stage says so from the start"});
+                       reason, advice});
 }
 
 // The damping of pseudo-time, and what holds the load back, take all that the forces do together. By the
@@ -400,7 +401,9 @@ void static_step(RunState &run) {
     book_static_work(run);
     move_and_evaluate(run);
     book_static_work(run);
-    leave_statics(run, "a joint would have closed by more than half of a block");
+    leave_statics(run, "a joint would have closed by more than half of a block",
+                  fmt::format("increments = {} in the stage lets the load in more slowly",
+                              4 * run.clock.stage().increments));
   } else {
     judge_statics(run);
   }
