@@ -36,7 +36,7 @@
 //   turned, and all regions keep all of k_t for that step (`hold_slip`). Where it has begun anew within
 //   `short_run` evaluations three times in a row they keep it until it goes on for longer: a region that
 //   slips, is driven back with all of k_t and slips again to the same side has not turned, and with its small
-//   share a slope of 95 blocks swung with a period of four evaluations for ever (151 with this rule).
+//   share a slope of 95 blocks swung with a period of four evaluations for ever (153 with this rule).
 // A kept spring also ends when its blocks are farther apart than `reach`, which both ranks of a border pair
 // know from exact copies.
 //
