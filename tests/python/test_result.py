@@ -7,6 +7,7 @@ import pytest
 
 import gcpdda
 from gcpdda.joints import strength_used
+from gcpdda.result import trial_folder
 
 
 def test_frames_and_tables(opening):
@@ -170,6 +171,9 @@ def test_results_are_read_while_a_run_goes_on(opening, tmp_path):
 def test_fos_and_ensemble(search, members):
     assert search.holds < search.factor < search.fails
     assert search.mechanism.verdict == "failed"
+    for trial in search.summary["trials"]:
+        assert search.trial(trial["factor"]).path.is_dir()
+    assert trial_folder(1.9498344959999998) == "F1.9498345", "as the program writes it"
     assert len(search.trials) == len(search.summary["trials"])
     assert search.blocks["moves"].sum() == len(search.summary["moving"])
     assert len(members.members) == 8 == members.summary["done"]

@@ -19,6 +19,11 @@ def read_csv(path):
     return pandas.read_csv(io.StringIO(text[: text.rfind("\n") + 1]), float_precision="round_trip")
 
 
+def trial_folder(factor):
+    """Name of the folder of a trial of `gcpdda fos`."""
+    return f"F{factor:.9g}"
+
+
 class Folder:
     """What result folders have in common."""
 
@@ -204,7 +209,10 @@ class Result(Folder):
         search = self.path.parent.parent / "fos.json"
         if self.path.parent.name != "trials" or not search.exists():
             return 1.0, []
-        return float(self.path.name.removeprefix("F")), json.loads(search.read_text())["families"] or self.joint_names
+        found = json.loads(search.read_text())
+        factor = next((trial["factor"] for trial in found["trials"] if trial_folder(trial["factor"]) == self.path.name),
+                      float(self.path.name.removeprefix("F")))
+        return factor, found["families"] or self.joint_names
 
     @functools.cached_property
     def _names(self):
@@ -267,7 +275,7 @@ class Safety(Folder):
 
     def trial(self, factor):
         """The run of the trial with that factor."""
-        return Result(self.path / "trials" / f"F{factor:.10g}")
+        return Result(self.path / "trials" / trial_folder(factor))
 
     @property
     def mechanism(self):
