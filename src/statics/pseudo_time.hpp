@@ -99,7 +99,7 @@ struct IterationRules {
   std::int64_t all_move_in_trial = 5;   ///< ... in a trial of gcpdda fos, ...
   std::int64_t all_move_near_rest = 10; ///< ... and near rest
   std::int64_t short_run = 6;           ///< evaluations from a new beginning to the next one ...
-  std::int64_t most_short_runs = 2;     ///< ... and how many in a row are no swing for ever
+  std::int64_t most_short_runs = 9;     ///< ... and how many in a row are no swing for ever
   FarRules far;
   SpringRules springs;
 };

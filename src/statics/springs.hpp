@@ -34,9 +34,9 @@
 //   its blocks would run into each other by the whole width of the joint.
 // - Where a motion begins anew (pseudo_time.hpp) it may go either way. A region that slips would stick if it
 //   turned, and all regions keep all of k_t for that step (`hold_slip`). Where it has begun anew within
-//   `short_run` evaluations three times in a row they keep it until it goes on for longer: a region that
+//   `short_run` evaluations ten times in a row they keep it until it goes on for longer: a region that
 //   slips, is driven back with all of k_t and slips again to the same side has not turned, and with its small
-//   share a slope of 95 blocks swung with a period of four evaluations for ever (153 with this rule).
+//   share a slope of 95 blocks swung with a period of four evaluations for ever (182 with this rule).
 // A kept spring also ends when its blocks are farther apart than `reach`, which both ranks of a border pair
 // know from exact copies.
 //
