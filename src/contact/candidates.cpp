@@ -306,9 +306,7 @@ void append_plain(const BlockSystem &system, const ChainFinder &finder, const Ed
 /// None yet, with room for so many pairs.
 Candidates with_room(std::size_t pairs, const JointLaws &joints) {
   Candidates candidates;
-  for (const JointLaw &law : joints.laws) {
-    candidates.laws.push_back(law.constants());
-  }
+  candidates.laws = joints.all_constants();
   candidates.pairs.reserve(pairs);
   candidates.plain.reserve(pairs);
   return candidates;

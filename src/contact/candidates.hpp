@@ -144,9 +144,7 @@ struct ContactParameters {
   double stiffness_damping = 0.0; ///< beta, s: dashpots of beta times the springs besides those of xi
 
   [[nodiscard]] bool has_dashpots() const { return damping_ratio > 0.0 || stiffness_damping > 0.0; }
-  [[nodiscard]] LawConstants constants(std::int32_t law) const {
-    return joints.laws[static_cast<std::size_t>(law)].constants();
-  }
+  [[nodiscard]] LawConstants constants(std::int32_t law) const { return joints.constants(law); }
 };
 
 /// The candidates of those pairs, but for pairs of convex rigid blocks that a line of one keeps apart, and

@@ -1,5 +1,6 @@
 #include "contact/contact_forces.hpp"
 
+#include "contact/laws/region_law.hpp"
 #include "contact/pair_motion.hpp"
 
 #include <algorithm>
@@ -67,17 +68,21 @@ void ContactForces::evaluate_plain_pairs(const BlockSystem &system, const Candid
   const PlainWork work{plain_.scene_of(system, candidates, history, velocity_gradients_, false), sums_,
                        resting_, history.plain, history.grips};
   for (const std::uint32_t entry : plain_.evaluate(work, first, last)) {
-    evaluate_birth(work, entry);
+    evaluate_choice(work, entry);
   }
 }
 
 // One region at most.
-void ContactForces::evaluate_birth(const PlainWork &work, std::uint32_t entry) {
+void ContactForces::evaluate_choice(const PlainWork &work, std::uint32_t entry) {
   const Candidates &candidates = work.scene.candidates;
   const std::uint32_t number = candidates.plain[entry].pair;
-  if (pairs_.evaluate(work.scene.system, candidates.pairs[number], number, {}) > 0) {
-    plain_.store_birth(work, entry, pairs_.regions(pairs_.first_of_pair(), 1).front(), pairs_.memory().back(),
-                       pairs_.dyads());
+  std::array<RegionMemory, 1> known;
+  std::size_t count = 0;
+  work.scene.history.for_pair(number, [&](const RegionMemory &memory) { known.at(count++) = memory; });
+  if (pairs_.evaluate(work.scene.system, candidates.pairs[number], number, std::span(known).first(count)) >
+      0) {
+    plain_.store_choice(work, entry, pairs_.regions(pairs_.first_of_pair(), 1).front(),
+                        pairs_.memory().back(), pairs_.dyads());
     pairs_.drop_last();
   }
 }
@@ -100,7 +105,11 @@ void ContactForces::evaluate_general_pairs(const BlockSystem &system, const Cand
                                            ContactHistory &history, std::span<const std::uint32_t> pairs) {
   for (const std::uint32_t k : pairs) {
     const CandidatePair &pair = candidates.pairs[k];
-    if (resting_.has(pair.lower.value) && resting_.has(pair.higher.value) && !history.is_opened(k)) {
+    const std::span<const RegionMemory> known = history.of_other(k);
+    const bool chooses = std::ranges::any_of(
+        known, [&](const RegionMemory &m) { return !m.is_bond() && chooses_law(pair, m); });
+    if (resting_.has(pair.lower.value) && resting_.has(pair.higher.value) && !history.is_opened(k) &&
+        !chooses) {
       keep_general_pair(system, candidates, k, history.of_other(k));
     } else if (system.motion[pair.lower.value].box.meets(system.motion[pair.higher.value].box) ||
                history.has_bonds(k) || history.is_opened(k)) {

@@ -155,8 +155,8 @@ public:
   }
 
 private:
-  /// Of an entry of Candidates::plain that has no region so far and must choose among laws.
-  void evaluate_birth(const PlainWork &work, std::uint32_t entry);
+  /// Of an entry of Candidates::plain whose region must choose among laws.
+  void evaluate_choice(const PlainWork &work, std::uint32_t entry);
   void evaluate_general_pairs(const BlockSystem &system, const Candidates &candidates,
                               ContactHistory &history, std::span<const std::uint32_t> pairs);
   void evaluate_general_pair(const BlockSystem &system, const Candidates &candidates, std::uint32_t number,

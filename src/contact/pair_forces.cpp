@@ -215,8 +215,8 @@ void PairForces::add_friction(const BlockSystem &system, const CandidatePair &pa
     take_middle(grip, memory, force);
     return;
   }
-  const JointLaw &law = parameters_->joints.laws[static_cast<std::size_t>(pair.law)];
-  const LawConstants constants = law.constants();
+  const JointLaw &law = parameters_->joints.strength(pair.law);
+  const LawConstants constants = parameters_->constants(pair.law);
   const double tan_friction =
       law.is_barton_bandis ? law.tan_friction_at(force.normal_force / extent) : constants.tan_friction;
   force.cap = force.normal_force * tan_friction + constants.cohesion * extent;
@@ -359,17 +359,29 @@ void PairForces::load_found(const BlockSystem &system, const CandidatePair &pair
     load_region(system, pair, region, share, memory, force);
     return;
   }
-  if (force.born) {
-    memory.law = law_at_birth(system, parameters_->joints, pair, overlap_.pieces(), region);
+  const bool chooses = force.born || chooses_law(pair, memory);
+  const std::int32_t before = memory.law;
+  if (chooses) {
+    choose_law(system, pair, region, memory);
   }
   load_region(system, constants_of(system, *parameters_, pair, memory.law), region, share, memory, force);
+  if (chooses) {
+    note_choice(pair, !force.born && memory.law != before, memory);
+  }
+}
+
+void PairForces::choose_law(const BlockSystem &system, const CandidatePair &pair, const Region &region,
+                            RegionMemory &memory) const {
+  const JointLaws &joints = parameters_->joints;
+  const std::int32_t edges = law_of_region(system, joints, pair, overlap_.pieces(), region);
+  memory.law = memory.law < 0 ? edges : joints.slid_to(memory.law, edges);
 }
 
 // With the opening that its law gives it in this evaluation.
 void PairForces::evaluate_opened(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
                                  const RegionMemory &known) {
   const CandidatePair constants = constants_of(system, *parameters_, pair, known.law);
-  const JointLaw &law = parameters_->joints.laws[static_cast<std::size_t>(constants.law)];
+  const JointLaw &law = parameters_->joints.strength(constants.law);
   const bool opens = law.dilates() && known.longest > 0.0 && known.slip < law.dilation_limit;
   RegionForce force;
   const Region *region = nullptr;
@@ -402,6 +414,10 @@ void PairForces::evaluate_opened(const BlockSystem &system, const CandidatePair 
   memory_.push_back(memory);
   const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, *region);
   load_region(system, constants, *region, share, memory_.back(), forces_[num_forces_ - 1]);
+  if (chooses_law(pair, known)) { // for what follows
+    choose_law(system, pair, *region, memory_.back());
+    note_choice(pair, false, memory_.back());
+  }
 }
 
 void PairForces::find_regions(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
@@ -457,7 +473,7 @@ void PairForces::load_region(const BlockSystem &system, const CandidatePair &pai
     const Vec2 opening_before = memory.opening;
     add_friction(system, pair, velocity, bonds, memory, force);
     if (memory.opening != opening_before) { // what slip opens does not part the surfaces that touch
-      const JointLaw &law = parameters_->joints.laws[static_cast<std::size_t>(pair.law)];
+      const JointLaw &law = parameters_->joints.strength(pair.law);
       const double sliding = dot(velocity.at(force.grip - force.origin), perp(force.normal));
       velocity.at_origin -= law.tan_dilation * std::abs(sliding) * force.normal;
     }

@@ -114,6 +114,9 @@ private:
                     std::span<RegionMemory> old);
   void load_found(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
                   const FoundRegion &found);
+  /// From the edges on which the region at hand lies.
+  void choose_law(const BlockSystem &system, const CandidatePair &pair, const Region &region,
+                  RegionMemory &memory) const;
   /// References to other regions hold until the next one is appended.
   RegionForce &append_force(const RegionForce &force = {});
   /// Regions of the pair at hand that carry something, each with its memory.

@@ -97,8 +97,8 @@ PlainResults PlainPairs::open_regions(const PlainWork &work, const PlainLanes &l
   for_bits(touching, [&](std::size_t i) {
     const PlainPair &plain = *lanes.pair[i];
     const bool is_born = lanes.memory[i] == &PlainLanes::no_memory;
-    if (is_born && plain.is_mixed) {
-      births_.push_back(static_cast<std::uint32_t>(entry_of(plain)));
+    if (plain.is_mixed && (is_born || chooses_law(candidates.pairs[plain.pair], *lanes.memory[i]))) {
+      choosing_.push_back(static_cast<std::uint32_t>(entry_of(plain)));
       return;
     }
     wanted |= 1U << i;
@@ -123,10 +123,14 @@ PlainResults PlainPairs::open_regions(const PlainWork &work, const PlainLanes &l
 void PlainPairs::store_alike(const PlainWork &work, const PlainLanes &lanes, unsigned touching,
                              PlainOverlap overlap) {
   const PlainResults results = open_regions(work, lanes, touching, overlap);
+  std::array<std::uint16_t, most_lanes> seen_at; // read before it is written over
+  for_bits(results.has_mixed ? results.wanted : 0U,
+           [&](std::size_t i) { seen_at[i] = lanes.memory[i]->seen_at; });
   const unsigned too_deep = batch_->store(results);
   for_bits(results.has_mixed ? results.wanted : 0U, [&](std::size_t i) {
     if (lanes.pair[i]->is_mixed) {
       results.memory[i]->law = lanes.constants[i]->law;
+      results.memory[i]->seen_at = seen_at[i];
     }
   });
   for_bits(too_deep, [&](std::size_t i) {
@@ -258,11 +262,13 @@ bool PlainPairs::keeps(const PlainWork &work, std::size_t entry) {
   const Candidates &candidates = work.scene.candidates;
   const std::uint32_t number = candidates.plain[entry].pair;
   const CandidatePair &pair = candidates.pairs[number];
-  if (!work.resting.has(pair.lower.value) || !work.resting.has(pair.higher.value)) {
+  const ContactHistory &history = work.scene.history;
+  const PlainOverlap overlap = history.overlaps[number];
+  const bool chooses = overlap != PlainOverlap::none && chooses_law(pair, history.plain[number]);
+  if (chooses || !work.resting.has(pair.lower.value) || !work.resting.has(pair.higher.value)) {
     work.sums.drop(number);
     return false;
   }
-  const PlainOverlap overlap = work.scene.history.overlaps[number];
   overlaps_[number] = overlap;
   if (overlap != PlainOverlap::none) {
     if (entry < candidates.num_interior_plain) {
@@ -281,15 +287,15 @@ bool PlainPairs::keeps(const PlainWork &work, std::size_t entry) {
 
 std::span<const std::uint32_t> PlainPairs::evaluate(const PlainWork &work, std::size_t first,
                                                     std::size_t last) {
-  births_.clear();
+  choosing_.clear();
   find_meeting(work, first, last);
   evaluate_known(work);
   evaluate_without_region(work);
-  return births_;
+  return choosing_;
 }
 
-void PlainPairs::store_birth(const PlainWork &work, std::uint32_t entry, const RegionForce &force,
-                             const RegionMemory &memory, std::span<const RegionDyads> dyads) {
+void PlainPairs::store_choice(const PlainWork &work, std::uint32_t entry, const RegionForce &force,
+                              const RegionMemory &memory, std::span<const RegionDyads> dyads) {
   const Candidates &candidates = work.scene.candidates;
   const std::uint32_t number = candidates.plain[entry].pair;
   overlaps_[number] = PlainOverlap::polygon;
@@ -298,8 +304,8 @@ void PlainPairs::store_birth(const PlainWork &work, std::uint32_t entry, const R
     work.grips[number] = memory.grip;
   }
   const bool is_at_border = entry >= candidates.num_interior_plain;
-  (is_at_border ? work.sums.open_border(candidates.border_place(entry), true)
-                : work.sums.open(number, true)) = force;
+  (is_at_border ? work.sums.open_border(candidates.border_place(entry), force.born)
+                : work.sums.open(number, force.born)) = force;
   if (!dyads.empty()) {
     (is_at_border ? work.sums.border_dyads() : work.sums.dyads(number)) = dyads.front();
   }

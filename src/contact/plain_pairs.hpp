@@ -49,10 +49,10 @@ public:
   /// No pair has been evaluated.
   void begin(const Candidates &candidates);
   /// Entries [first, last) of Candidates::plain, at most PlainPair::pairs_in_group.
-  /// @return those whose new region must choose among laws: they are evaluated by themselves, and stored
+  /// @return those whose region must choose among laws: they are evaluated by themselves, and stored
   std::span<const std::uint32_t> evaluate(const PlainWork &work, std::size_t first, std::size_t last);
-  void store_birth(const PlainWork &work, std::uint32_t entry, const RegionForce &force,
-                   const RegionMemory &memory, std::span<const RegionDyads> dyads);
+  void store_choice(const PlainWork &work, std::uint32_t entry, const RegionForce &force,
+                    const RegionMemory &memory, std::span<const RegionDyads> dyads);
   /// All pairs have been evaluated.
   /// @param overlaps  become those of this evaluation
   ForceReport finish(std::vector<PlainOverlap> &overlaps);
@@ -97,7 +97,7 @@ private:
   std::vector<std::uint32_t> polygons_;       ///< the overlap was some other polygon
   std::vector<std::uint32_t> remaining_;      ///< no longer an overlap of corners
   std::vector<std::uint32_t> without_region_; ///< the blocks did not touch
-  std::vector<std::uint32_t> births_;         ///< new ones that must choose among laws
+  std::vector<std::uint32_t> choosing_;       ///< their region must choose among laws
   std::array<CandidatePair, most_lanes> own_; ///< constants of mixed pairs at hand, by lane
   std::vector<PlainOverlap> overlaps_;        ///< what those of the history become; afterwards what they were
   ForceReport report_;                        ///< of what has been evaluated so far

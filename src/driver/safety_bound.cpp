@@ -30,7 +30,7 @@ struct OwnedBlock {
 LimitJoint joint_of(const Simulation &settled, const RegionForce &region, const RegionState &memory,
                     const CandidatePair &pair) {
   const Scene &scene = settled.scene();
-  const std::int32_t number = memory.law >= 0 ? memory.law : pair.law;
+  const std::int32_t number = scene.joints.named(memory.law >= 0 ? memory.law : pair.law);
   const JointLaw &law = scene.joints.laws[static_cast<std::size_t>(number)];
   const double length = region.extent_end - region.extent_begin;
   const Vec2 along = perp(region.normal);

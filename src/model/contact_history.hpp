@@ -22,8 +22,9 @@ struct RegionState {
   double shear = 0.0;    ///< F_t: along -t_r on the lower block, along t_r on the higher one, N/m
   double longest = 0.0;  ///< largest extent along t_r so far, m: the tangential stiffness never falls
   double slip = 0.0;     ///< accumulated sliding distance, m
-  std::int32_t law = -1; ///< that the region was born with; -1: the only one its pair can have
+  std::int32_t law = -1; ///< JointLaws::constants has it; -1: the only one its pair can have
   ContactState state = ContactState::stick;
+  std::uint16_t seen_at = 0; ///< where a choice among laws was made last (contact/laws/region_law.hpp)
 };
 
 /// A member of RegionMemory by name.
@@ -45,7 +46,8 @@ struct RegionMemory : RegionState {
   [[nodiscard]] bool is_bond() const { return lower_stretch < 0; }
   [[nodiscard]] bool is_opened() const { return opening != Vec2{}; }
 
-  /// Everything but blocks, stretches, state and law, with the names that checkpoints give it.
+  /// Everything but blocks, stretches, state, law and where it was chosen, with the names that checkpoints
+  /// give it.
   static constexpr auto fields() {
     return std::tuple{RegionField{"/region/shear", &RegionMemory::shear},
                       RegionField{"/region/longest", &RegionMemory::longest},

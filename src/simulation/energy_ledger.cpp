@@ -64,7 +64,7 @@ double mean_stiffness(const RunState &run, std::size_t number, const BlockView &
   double weights = 0.0;
   double weighted = 0.0;
   for (const Region &region : overlap.regions()) {
-    std::int32_t law = law_at_birth(run.blocks, parameters.joints, pair, overlap.pieces(), region);
+    std::int32_t law = law_of_region(run.blocks, parameters.joints, pair, overlap.pieces(), region);
     for (const RegionMemory &memory : known) {
       const bool same =
           memory.lower_stretch == region.faces.first && memory.higher_stretch == region.faces.second;
@@ -72,7 +72,7 @@ double mean_stiffness(const RunState &run, std::size_t number, const BlockView &
     }
     const double weight = energy_weight(overlap, region);
     weights += weight;
-    weighted += weight * 0.5 * parameters.joints.laws[static_cast<std::size_t>(law)].normal_stiffness;
+    weighted += weight * parameters.constants(law).half_stiffness;
   }
   return weights > 0.0 ? weighted / weights : parameters.constants(pair.law).half_stiffness;
 }
@@ -104,7 +104,7 @@ std::vector<double> normal_energies(const RunState &run) {
     }
     const double energy = of_group[place];
     const bool is_known = !std::isnan(energy) && !is_opened;
-    const bool has_plain = history.has_plain(k); // one region, whose law does not change
+    const bool has_plain = history.has_plain(k); // one region
     const std::int32_t law = has_plain && pair.is_mixed ? history.plain[k].law : pair.law;
     const bool has_one_law = has_plain || !pair.is_mixed;
     if (is_known && (has_one_law || energy == 0.0)) {

@@ -204,7 +204,7 @@ void SimulationContacts::append(std::int64_t first, std::int64_t last, std::vect
       row.lower = blocks.properties[pair.lower.value].id.value;
       row.higher = blocks.properties[pair.higher.value].id.value;
       row.position = position++;
-      row.joint = memory.law >= 0 ? memory.law : pair.law;
+      row.joint = simulation_.scene().joints.named(memory.law >= 0 ? memory.law : pair.law);
       row.state = static_cast<std::uint8_t>(memory.state);
       row.begin = force.point + force.extent_begin * tangent;
       row.end = force.point + force.extent_end * tangent;

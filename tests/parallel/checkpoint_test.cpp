@@ -194,6 +194,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
         record.memory.shear = static_cast<double>(count * a + b);
         record.memory.lower_stretch = static_cast<std::int32_t>(10 - k); // not in the order of their numbers
         record.memory.law = static_cast<std::int32_t>(k) - 1;
+        record.memory.seen_at = static_cast<std::uint16_t>(65535 - k);
         record.memory.opening = {static_cast<double>(a), static_cast<double>(k)};
       }
     }
@@ -234,6 +235,7 @@ TEST(CheckpointFile, GivesEachRankItsRowsAndAllTheirContacts) {
         EXPECT_EQ(record->memory.shear, static_cast<double>(count * a + b));
         EXPECT_EQ(record->memory.lower_stretch, 10 - k);
         EXPECT_EQ(record->memory.law, k - 1);
+        EXPECT_EQ(record->memory.seen_at, 65535 - k);
         EXPECT_EQ(record->memory.opening, (Vec2{static_cast<double>(a), static_cast<double>(k)}));
       }
     }
@@ -314,7 +316,7 @@ TEST_F(DamagedCheckpoint, IsFoundByItsSeal) {
     std::string bytes = good_;
     const std::size_t place = bytes.find('\n', bytes.find(word)) - 1;
     bytes[place] = static_cast<char>(bytes[place] == '1' ? '2' : '1');
-    expect_older(bytes, *word == 'v' ? "it has format version 11, this gcpdda reads version 16" : "it ");
+    expect_older(bytes, *word == 'v' ? "it has format version 11, this gcpdda reads version 17" : "it ");
   }
   std::string bytes = good_;
   bytes[500] = 'x';

@@ -141,6 +141,43 @@ struct JointLaws {
                        static_cast<std::size_t>(b)];
   }
 
+  // A contact that slides from edges of one law to edges of another keeps the stiffness of the one and takes
+  // the strength of the other (contact/laws/region_law.hpp). Where the two laws differ in stiffness, that has
+  // a number of its own, beyond those of the laws.
+
+  /// @param law  of a contact
+  /// @param edges  law of the edges to which it has slid
+  [[nodiscard]] std::int32_t slid_to(std::int32_t law, std::int32_t edges) const {
+    const JointLaw &before = stiffness(law);
+    const JointLaw &after = laws[static_cast<std::size_t>(edges)];
+    if (before.normal_stiffness == after.normal_stiffness &&
+        before.tangential_ratio == after.tangential_ratio) {
+      return edges;
+    }
+    return count() * (1 + static_cast<std::int32_t>(&before - laws.data())) + edges;
+  }
+  /// Which law gives a contact its strength.
+  [[nodiscard]] std::int32_t named(std::int32_t law) const { return law % count(); }
+  [[nodiscard]] const JointLaw &strength(std::int32_t law) const {
+    return laws[static_cast<std::size_t>(named(law))];
+  }
+  [[nodiscard]] const JointLaw &stiffness(std::int32_t law) const {
+    return laws[static_cast<std::size_t>(law < count() ? law : law / count() - 1)];
+  }
+  [[nodiscard]] LawConstants constants(std::int32_t law) const {
+    const LawConstants stiff = stiffness(law).constants();
+    const LawConstants strong = strength(law).constants();
+    return {stiff.half_stiffness, stiff.tangential_stiffness, strong.tan_friction, strong.cohesion};
+  }
+  /// Those of all contacts, by their laws.
+  [[nodiscard]] std::vector<LawConstants> all_constants() const {
+    std::vector<LawConstants> all;
+    for (std::int32_t law = 0; law < count() * (1 + count()); ++law) {
+      all.push_back(constants(law));
+    }
+    return all;
+  }
+
   /// The most that a law opens any joint, m.
   [[nodiscard]] double largest_opening() const {
     double largest = 0.0;
@@ -157,12 +194,15 @@ struct JointLaws {
     if (a < 0 || b < 0) {
       return a >= 0 ? a : b >= 0 ? b : by_materials;
     }
-    const auto strength = [&](std::int32_t law) {
+    const auto order = [&](std::int32_t law) {
       const JointLaw &of = laws[static_cast<std::size_t>(law)];
       return std::tuple(of.tan_friction, of.cohesion, law);
     };
-    return std::min(strength(a), strength(b)) == strength(a) ? a : b;
+    return std::min(order(a), order(b)) == order(a) ? a : b;
   }
+
+private:
+  [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(laws.size()); }
 };
 
 } // namespace gcpdda

@@ -51,8 +51,8 @@ PossibleLaws possible_laws(const BlockSystem &system, const JointLaws &joints, c
   return laws;
 }
 
-std::int32_t law_at_birth(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair,
-                          std::span<const Piece> pieces, const Region &region) {
+std::int32_t law_of_region(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair,
+                           std::span<const Piece> pieces, const Region &region) {
   const auto law_of = [&](std::uint32_t i) {
     const Piece &piece = pieces[i];
     const bool on_lower = i < region.middle;
@@ -77,7 +77,7 @@ std::int32_t law_at_birth(const BlockSystem &system, const JointLaws &joints, co
 
 void take_law(const BlockSystem &system, const ContactParameters &parameters, std::int32_t law,
               CandidatePair &pair) {
-  const JointLaw &values = parameters.joints.laws[static_cast<std::size_t>(law)];
+  const double stiffness = parameters.joints.stiffness(law).normal_stiffness;
   const BlockProperties &a = system.properties[pair.lower.value];
   const BlockProperties &b = system.properties[pair.higher.value];
   pair.law = law;
@@ -87,9 +87,8 @@ void take_law(const BlockSystem &system, const ContactParameters &parameters, st
   pair.mass = a_fixed ? b.mass : b_fixed ? a.mass : a.mass * b.mass / (a.mass + b.mass);
   const double smaller_area = a_fixed ? b.area : b_fixed ? a.area : std::min(a.area, b.area);
   // c' = 2 xi sqrt(k_n m_eff / L_ref) + beta k_n, half of it for each side's pieces.
-  pair.damping =
-      parameters.damping_ratio * std::sqrt(values.normal_stiffness * pair.mass / std::sqrt(smaller_area)) +
-      0.5 * parameters.stiffness_damping * values.normal_stiffness;
+  pair.damping = parameters.damping_ratio * std::sqrt(stiffness * pair.mass / std::sqrt(smaller_area)) +
+                 0.5 * parameters.stiffness_damping * stiffness;
 }
 
 } // namespace gcpdda

@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 /// Of the lists below and of the seal: it rises with every change of them.
-inline constexpr std::int64_t version = 16;
+inline constexpr std::int64_t version = 17;
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -238,9 +238,10 @@ inline constexpr auto region_fields =
     detail::of_all_regions(std::make_index_sequence<std::tuple_size_v<decltype(RegionMemory::fields())>>());
 inline constexpr const char *region_blocks = "/region/blocks"; ///< i64 (n, 2): lower, higher
 inline constexpr const char *region_stretches =
-    "/region/stretches";                                      ///< i32 (n, 2): of the lower, of the higher
-inline constexpr const char *region_states = "/region/state"; ///< u8
-inline constexpr const char *region_laws = "/region/law";     ///< i32
+    "/region/stretches";                                         ///< i32 (n, 2): of the lower, of the higher
+inline constexpr const char *region_states = "/region/state";    ///< u8
+inline constexpr const char *region_laws = "/region/law";        ///< i32
+inline constexpr const char *region_seen_at = "/region/seen_at"; ///< i32
 
 // A field that is added to the state must join one of the lists above, or the words over them.
 static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 8);

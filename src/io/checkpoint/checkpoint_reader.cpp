@@ -250,6 +250,7 @@ private:
     const auto stretches = input_.rows<std::int32_t>(checkpoint::region_stretches, range, 2);
     const auto states = input_.rows<std::uint8_t>(checkpoint::region_states, range);
     const auto laws = input_.rows<std::int32_t>(checkpoint::region_laws, range);
+    const auto seen_at = input_.rows<std::int32_t>(checkpoint::region_seen_at, range);
     std::vector<RegionRecord> records(states.size());
     bool sound = true;
     for (std::size_t k = 0; k < records.size(); ++k) {
@@ -260,6 +261,7 @@ private:
       record.memory.higher_stretch = stretches[2 * k + 1];
       record.memory.state = static_cast<ContactState>(states[k]);
       record.memory.law = laws[k];
+      record.memory.seen_at = static_cast<std::uint16_t>(seen_at[k]);
       sound = sound && 0 <= record.lower.value && record.lower < record.higher &&
               record.higher.value < found_.facts.scene.num_blocks;
     }
@@ -446,6 +448,7 @@ void expect_readable_checkpoint(const Communicator &communicator, const fs::path
   input.pass<std::int32_t>(checkpoint::region_stretches, num_regions, 2);
   input.pass<std::uint8_t>(checkpoint::region_states, num_regions);
   input.pass<std::int32_t>(checkpoint::region_laws, num_regions);
+  input.pass<std::int32_t>(checkpoint::region_seen_at, num_regions);
   fields(checkpoint::region_fields, num_regions);
   input.expect_whole();
 }

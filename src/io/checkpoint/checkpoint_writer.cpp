@@ -289,6 +289,7 @@ private:
     const auto stretches = column<std::int32_t>(checkpoint::region_stretches, slab.total, 2);
     const auto states = column<std::uint8_t>(checkpoint::region_states, slab.total);
     const auto laws = column<std::int32_t>(checkpoint::region_laws, slab.total);
+    const auto seen_at = column<std::int32_t>(checkpoint::region_seen_at, slab.total);
     const auto fields = columns_of(checkpoint::region_fields, slab.total);
     std::vector<RegionRecord> records; // that leave this rank for one strip of each
     const auto append = [&](IdRange ids, std::vector<RegionRoute::Row> &leaving) {
@@ -311,6 +312,8 @@ private:
         *to = static_cast<std::uint8_t>(records[index].memory.state);
       });
       write(laws, row, route, [&](std::size_t index, std::int32_t *to) { *to = records[index].memory.law; });
+      write(seen_at, row, route,
+            [&](std::size_t index, std::int32_t *to) { *to = records[index].memory.seen_at; });
       write(fields, row, route, checkpoint::region_fields, records);
       records.clear();
     });

@@ -117,8 +117,10 @@ void expect_all_ways(const ContactHistory &history, std::size_t most_edges) {
   }
 }
 
+constexpr double small_steps = 3e-4;
+
 void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = false,
-                      std::size_t most_edges = most_plain_edges) {
+                      std::size_t most_edges = most_plain_edges, double steps = small_steps) {
   std::mt19937 engine(91);
   constexpr int count = thinning > 1 ? 100 : 150;
   const double stiffness = 1e6;
@@ -135,7 +137,7 @@ void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = f
   int deforming = 0;
   std::set<std::int32_t> laws;
   for (int step = 0; step < 4; ++step) {
-    move_all(engine, 3e-4, ways.plain, ways.general);
+    move_all(engine, steps, ways.plain, ways.general);
     evaluate_and_finish(ways.plain, ways.general);
     EXPECT_EQ(ways.plain.report.evaluations, ways.general.report.evaluations);
     for (std::size_t k = 0; k < ways.plain.candidates.pairs.size(); ++k) {
@@ -178,6 +180,7 @@ void expect_agreement(bool (*is_deformable)(std::size_t), bool with_families = f
   EXPECT_GT(sliding, count / 20);
   EXPECT_EQ(deforming > count / 3, is_deformable(3));
   EXPECT_EQ(laws.size() > 2, with_families);
+  EXPECT_EQ(*laws.rbegin() > 2, steps > small_steps) << "some have slid to other edges";
 }
 
 TEST(PlainPairs, AgreeWithTheGeneralWay) {
@@ -202,6 +205,10 @@ TEST(PlainPairs, AgreeWhereCornersOverlap) {
 // Regions are born one by one, since they look at edges, and live in the lanes.
 TEST(PlainPairs, AgreeWhereEdgesHaveLawsOfTheirOwn) {
   expect_agreement(some_deform, true);
+}
+
+TEST(PlainPairs, AgreeWhereTheySlideToOtherEdges) {
+  expect_agreement(some_deform, true, most_plain_edges, 0.1);
 }
 
 // Their blocks do not wait: what is born joins its group, in the order of the other blocks' ids.

@@ -79,24 +79,80 @@ TEST(RegionLaw, OfTheEdgesThatCarryAndItsConstantsHold) {
   }
 }
 
-// It rolls over its edge without losing touch: the law stays until it has been away.
-TEST(RegionLaw, IsKeptAsLongAsTheRegionLives) {
+// It rolls over its edge without losing touch.
+TEST(RegionLaw, StrengthFollowsTheEdgesAndStiffnessStays) {
   const BlockSystem system = system_of({rectangle({-0.5, -0.5}, {0.5, 0.5})}, {plane});
-  ContactBench bench(with_edges(system, {{smooth, rough, -1, -1}, {}}), families());
+  const JointLaws joints = families();
+  ContactBench bench(with_edges(system, {{smooth, rough, -1, -1}, {}}), joints);
   const auto put = [&](double angle, double sunk) {
     bench.system.trial[0] = {{0.0, 0.5 * (std::abs(std::cos(angle)) + std::abs(std::sin(angle))) - sunk},
                              angle};
     bench.evaluate();
   };
-  for (int k = 0; k <= 20; ++k) { // clockwise, on to the right face
+  for (int k = 0; k <= 20; ++k) { // clockwise, on to the right face; on the corner at 10
     put(-0.025 * std::numbers::pi * k, 1e-3);
     ASSERT_EQ(testing::memories(bench.history).size(), 1U);
-    EXPECT_EQ(bench.memory().law, smooth) << k;
+    EXPECT_EQ(joints.stiffness(bench.memory().law).normal_stiffness, joints.laws[smooth].normal_stiffness)
+        << k;
+    if (k < 10 || k > 11) { // seen anew after a tenth of half the width, 0.05 m; a step slides by 0.08 m
+      EXPECT_EQ(joints.named(bench.memory().law), k < 10 ? smooth : rough) << k;
+    }
   }
+  EXPECT_NEAR(bench.seen.cap, joints.laws[rough].tan_friction * bench.seen.normal_force, 1e-9);
   put(-0.5 * std::numbers::pi, -1e-3);
   EXPECT_TRUE(testing::memories(bench.history).empty());
   put(-0.5 * std::numbers::pi, 1e-3);
-  EXPECT_EQ(bench.memory().law, rough);
+  EXPECT_EQ(bench.memory().law, rough) << "with both of it";
+}
+
+TEST(RegionLaw, ContactThatHasSlidToAnAlikeStiffLawIsOneOfThat) {
+  JointLaws joints = families();
+  EXPECT_EQ(joints.slid_to(smooth, smooth), smooth);
+  const std::int32_t mixed = joints.slid_to(smooth, rough);
+  EXPECT_EQ(joints.slid_to(mixed, smooth), smooth);
+  EXPECT_EQ(joints.slid_to(mixed, rough), mixed);
+  EXPECT_EQ(joints.slid_to(mixed, 0), joints.slid_to(smooth, 0));
+  EXPECT_EQ(joints.constants(mixed).half_stiffness, 0.5 * joints.laws[smooth].normal_stiffness);
+  EXPECT_EQ(joints.constants(mixed).tan_friction, joints.laws[rough].tan_friction);
+  EXPECT_EQ(joints.all_constants().at(static_cast<std::size_t>(mixed)).cohesion, joints.laws[rough].cohesion);
+  joints.laws[rough].normal_stiffness = joints.laws[smooth].normal_stiffness;
+  EXPECT_EQ(joints.slid_to(smooth, rough), rough);
+}
+
+// A block that slides out over the corner of another one is met there first by the upright joint between the
+// two, which is rough, and lies on a smooth base from then on. Convex and not, as these are evaluated in two
+// ways.
+TEST(RegionLaw, BlockThatSlidesOutOverACornerHasTheStrengthOfItsBase) {
+  const double sunk = 1e-3;
+  const std::vector<Vec2> below = rectangle({-1.0, -1.0}, {0.0, 0.0});
+  const std::vector<Vec2> brick = rectangle({-1e-4, -sunk}, {1.0, 1.0});
+  const std::vector<Vec2> with_a_notch{{-1e-4, -sunk}, {1.0, -sunk}, {1.0, 1.0}, {0.5, 0.5}, {-1e-4, 1.0}};
+  const std::vector<std::int32_t> on_below{-1, rough, smooth, -1};
+  for (const std::vector<Vec2> &above : {brick, with_a_notch}) {
+    std::vector<std::int32_t> on_above(above.size(), -1);
+    on_above.front() = smooth;
+    on_above.back() = rough;
+    ContactBench bench(with_edges(system_of({below, above}, {}), {on_below, on_above}), families());
+    EXPECT_EQ(bench.candidates.plain.size(), above.size() == 4 ? 1U : 0U);
+    ContactBench all_rough(
+        with_edges(system_of({below, above}, {}),
+                   {std::vector<std::int32_t>(4, rough), std::vector<std::int32_t>(above.size(), rough)}),
+        families());
+    for (int k = 0; k <= 100; ++k) {
+      bench.system.trial[1].u.x = -1e-3 * k;
+      all_rough.system.trial[1].u.x = -1e-3 * k;
+      bench.evaluate();
+      all_rough.evaluate();
+      const bool is_on_base = k > 10; // ten times as far as it has sunk
+      const double friction = families().laws[is_on_base ? smooth : rough].tan_friction;
+      // Depths are rounded in coordinates of a metre.
+      const double rounding = 1e-15 / sunk * 10.0 * all_rough.seen.normal_force;
+      EXPECT_NEAR(bench.seen.normal_force, all_rough.seen.normal_force, rounding) << k;
+      if (k == 0 || is_on_base) {
+        EXPECT_NEAR(bench.seen.cap, friction * all_rough.seen.normal_force, rounding) << k;
+      }
+    }
+  }
 }
 
 TEST(RegionLaw, PairsWhoseEdgesLeadToOneLawAreAsWithoutFamilies) {
