@@ -159,16 +159,42 @@ to = 1.6
 )";
 
 // Two regions slip, are driven back and slip again to the same side: with the small share of their tangential
-// stiffness that slipping regions have in K, the static solver swung between them for 1,500 evaluations.
-TEST(Fos, TrialThatSwingsComesToRest) {
+// stiffness that slipping regions have in K, the static solver swung between them for 1,500 evaluations and
+// left the trial to damped motion.
+TEST(Fos, StaticSolverGoesOnWhereATrialSwings) {
   const WorkFolder folder;
   folder.write("slope.toml", wet_slope_of_95_blocks);
   run_gcpdda(0, {"fos", "slope.toml", "--from", "1.2296", "--to", "1.23", "--tolerance", "0.05"}, folder);
   const std::vector<std::string> trials = lines_of(file_text(folder / "results/slope_fos/fos_trials.csv"));
-  ASSERT_EQ(trials.size(), 3U);
-  for (std::size_t k = 1; k < trials.size(); ++k) {
-    EXPECT_NE(trials[k].find(",settled,"), std::string::npos) << trials[k];
-    EXPECT_NE(trials[k].find("static solver"), std::string::npos) << trials[k];
+  ASSERT_EQ(trials.size(), 2U) << "the lower factor fails";
+  EXPECT_NE(trials[1].find(",failed,"), std::string::npos) << trials[1];
+  EXPECT_NE(trials[1].find(",static solver"), std::string::npos) << trials[1];
+}
+
+// Three blocks at the foot slide out over the corner of the block below them. It has the cross joint at its
+// back, which is not weakened: a contact that kept the law with which it was born there held them at 1.27, or
+// not, as the way there had it.
+TEST(Fos, FactorDoesNotHangOnTheWayToIt) {
+  const WorkFolder folder;
+  folder.write("slope.toml", wet_slope_of_95_blocks);
+  const std::vector<std::vector<std::string>> ways{{"stage.weight.increments=50"},
+                                                   {"stage.weight.increments=800"},
+                                                   {"stage.weight.solver=dynamic"},
+                                                   {"run.fidelity=deformable",
+                                                    "material.granite.youngs_modulus=40e9",
+                                                    "material.granite.poissons_ratio=0.25"}};
+  const fs::path report = folder / "results/slope_fos/fos.json";
+  std::string holds;
+  for (const std::vector<std::string> &way : ways) {
+    std::vector<std::string> call{"fos", "slope.toml", "--overwrite"};
+    for (const std::string &key : way) {
+      call.insert(call.end(), {"--set", key});
+    }
+    EXPECT_EQ(run_gcpdda(0, call, folder).exit_code, 0) << way.front();
+    holds = holds.empty() ? json_value(report, "holds") : holds;
+    EXPECT_EQ(json_value(report, "holds"), holds) << way.front();
+    // tan(38)/tan(31.11) of a dry block on bedding is 1.294; water lifts these.
+    EXPECT_LT(std::stod(json_value(report, "fails")), 1.294) << way.front();
   }
 }
 
