@@ -1,6 +1,7 @@
 // One rank and many write the same bytes. Each test also proves that there was something to get wrong: blocks
 // in contact across ranks, blocks that changed their rank, neighbourhoods made anew.
 
+#include "blockgen/region_cutter.hpp"
 #include "io/results/frame_reader.hpp"
 #include "io/results/run_comparison.hpp"
 #include "model/contact_history.hpp"
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <memory>
 #include <random>
 #include <set>
 
@@ -157,6 +159,58 @@ TEST(Identity, OfAWallThatTearsApart) {
     EXPECT_LE(at_end, at_start - 200);
     EXPECT_GE(at_end, 200);
     EXPECT_GE(num_dilated(runs.alone(), 1, 1), 20) << "when it is stopped";
+  }
+}
+
+// Rock slides out over the ends of its cross joints, which differ from its bedding in strength and stiffness:
+// contacts take over the strength of other edges.
+TEST(Identity, OfASlopeThatRunsOut) {
+  Scene scene = testing::scene_of(R"(
+[run]
+duration = 0.4
+fidelity = "rigid"
+[material.rock]
+density = 2600.0
+[joint.default]
+normal_stiffness = 2e8
+friction_angle_deg = 30.0
+[joint.bedding]
+friction_angle_deg = 5.0
+[joint.cross]
+normal_stiffness = 1e8
+friction_angle_deg = 40.0
+[region]
+material = "rock"
+fixed = ["bottom", "left", "right"]
+min_width = 0.2
+[region.slope]
+toe_length = 5.0
+crest_length = 15.0
+depth = 4.0
+bench = [{height = 20.0, face_angle_deg = 65.0}]
+[[joint_set]]
+joint = "bedding"
+dip_deg = 35.0
+spacing = 0.9
+[[joint_set]]
+joint = "cross"
+dip_deg = 110.0
+spacing = 1.1
+[output]
+interval = 0.1
+checkpoint_interval = 0.2
+)");
+  scene.region_blocks = std::make_shared<RegionCutter>(scene, 40);
+  const TwoRuns runs(scene);
+  EXPECT_GE(runs.counted("refreshes"), 1);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("migrations"), 1);
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+  if (runs.world().is_root()) {
+    constexpr double far = 0.1; // m: more than a tenth of half the width of any block but slivers
+    const ContactFrameContent contacts = read_contact_frame(runs.alone() / "frames" / "contacts_000004.hdf");
+    EXPECT_GE(std::ranges::count_if(contacts.slip, [](double slip) { return slip > far; }), 30);
   }
 }
 
