@@ -82,6 +82,12 @@ void expect_factor(const KnownLimit &limit, const Scene &scene) {
     add_row(limit, word, found);
     EXPECT_EQ(found.exit_code, exit_code::done) << name << ": " << found.message;
     EXPECT_TRUE(found.report.undecided.empty()) << name;
+    if (solver == Solver::statics) {
+      for (const StrengthTrial &trial : found.report.trials) {
+        EXPECT_TRUE(trial.decided_by.starts_with("static solver"))
+            << name << ": " << trial.factor << " was left to motion, which takes many times as long";
+      }
+    }
     ASSERT_TRUE(found.report.holds && found.report.fails) << name;
     EXPECT_LE(*found.report.holds, bound) << name;
     expect_value(name, limit.factor, 0.5 * (*found.report.holds + *found.report.fails), limit.tolerance);
