@@ -145,7 +145,9 @@ struct JointLaws {
   // the strength of the other (contact/laws/region_law.hpp). Where the two laws differ in stiffness, that has
   // a number of its own, beyond those of the laws.
 
-  /// @param law  of a contact
+  /// The law of a contact that has slid on.
+  ///
+  /// @param law  that it had
   /// @param edges  law of the edges to which it has slid
   [[nodiscard]] std::int32_t slid_to(std::int32_t law, std::int32_t edges) const {
     const JointLaw &before = stiffness(law);
@@ -158,12 +160,15 @@ struct JointLaws {
   }
   /// Which law gives a contact its strength.
   [[nodiscard]] std::int32_t named(std::int32_t law) const { return law % count(); }
+  /// That law.
   [[nodiscard]] const JointLaw &strength(std::int32_t law) const {
     return laws[static_cast<std::size_t>(named(law))];
   }
+  /// Which law gives it its stiffness.
   [[nodiscard]] const JointLaw &stiffness(std::int32_t law) const {
     return laws[static_cast<std::size_t>(law < count() ? law : law / count() - 1)];
   }
+  /// What a contact takes from both.
   [[nodiscard]] LawConstants constants(std::int32_t law) const {
     const LawConstants stiff = stiffness(law).constants();
     const LawConstants strong = strength(law).constants();
