@@ -12,8 +12,9 @@
 // the edges of the cross joint, and a moment later lies on bedding. The choice is therefore made anew when
 // the region has slid on by a tenth of half the narrowest width of its blocks, or has become twice as long:
 // friction, cohesion, bonds' residual strength, dilation and roughness are those of the edges that carry most
-// from there on. (Three blocks at the foot of a slope that did not got the cross joint's strength under more
-// and more of their base, 40 degrees in place of 31, and held at 1.27 where they slide at 1.21.)
+// from there on. (With the law of their birth three blocks at the foot of a slope had the cross joint's
+// strength under more and more of their base, 40 degrees in place of 31, and held at 1.27 where they slide at
+// 1.21.)
 //
 // Stiffness stays that of the birth. The pressure p = (k_n/2) d derives from the energy (k_n/2) int_S (d_A +
 // d_B) dA, which is single-valued only while k_n is a constant of the region: a k_n that changes at an
