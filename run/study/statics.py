@@ -120,7 +120,8 @@ def difference(reference, other):
 def facts(rest):
     summary = rest.summary
     return {"blocks": summary["blocks"], "verdict": rest.verdict, "loose": rest.loose, "evaluations": summary["steps"],
-            "pair_evaluations": sum(summary["evaluations_per_rank"]), "cpu_s": summary["cpu_s"]}
+            "pair_evaluations": sum(summary["evaluations_per_rank"]), "pairs": int(summary["counters"]["most_pairs"]),
+            "cpu_s": summary["cpu_s"]}
 
 
 def write_table(path, rows):

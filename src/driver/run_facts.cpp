@@ -25,6 +25,7 @@ void take_work(const Communicator &communicator, const Simulation &simulation, s
   const auto add = [&](const char *name, std::int64_t value) {
     summary.counters.emplace_back(name, static_cast<double>(value));
   };
+  add("most_pairs", total(communicator, counters.most_pairs));
   add("migrations", total(communicator, counters.migrations));
   add("refreshes", counters.refreshes);
   add("rebalances", counters.rebalances);

@@ -28,6 +28,7 @@ namespace gcpdda {
 /// Counts of this rank since the start.
 struct Counters {
   std::int64_t evaluations = 0;   ///< candidate pairs looked at closely
+  std::int64_t most_pairs = 0;    ///< largest number of them in one step
   std::int64_t block_steps = 0;   ///< owned blocks summed over steps
   std::int64_t contact_steps = 0; ///< touching pairs summed over steps; each pair on one rank only
   /// Largest number of touching pairs with a ghost in one step, and how many were formed in the run; each

@@ -41,6 +41,7 @@ double own_status(RunState &run, const AdvanceReport &advance) {
 
 void count_step(RunState &run, const AdvanceReport &advance) {
   run.counters.evaluations += run.force_report.evaluations;
+  run.counters.most_pairs = std::max(run.counters.most_pairs, run.force_report.evaluations);
   run.counters.block_steps += static_cast<std::int64_t>(run.blocks.num_owned);
   run.counters.normals_undefined += run.force_report.normals_undefined;
   run.counters.messages += run.neighbours.ghosts.messages_per_update();
