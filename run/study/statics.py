@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The static solver: its cost against that of damped motion, and its equilibrium against that of slow loading.
 
-    run/study/statics.py BUILD OUT_DIR [--quick] [--only PART ...]
+    run/study/statics.py BUILD OUT_DIR [--quick] [--only PART ...] [--seed FIRST]
     run/study/statics.py BUILD OUT_DIR --large
 
 PART is cost, paths, random or growth. Every run is on one rank. A count of evaluations is that of steps; pair evaluations
@@ -10,7 +10,7 @@ kinetic damping, local damping of 0.8, and slow loading: the load rises smoothly
 
 OUT_DIR/statics_cost.csv     evaluations and CPU time until the unbalanced ratio has fallen to a value
 OUT_DIR/statics_paths.csv    difference from slow loading over 16,000 steps, against cost
-OUT_DIR/statics_random.csv   the same of 30 random rock masses
+OUT_DIR/statics_random.csv   the same of 30 random rock masses, with seeds from FIRST (1) on
 OUT_DIR/statics_growth.csv   evaluations and CPU time of slopes and walls of up to 10^4 blocks; --large adds those of
                              10^5 and 10^6 under the static solver
 """
@@ -36,6 +36,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "python"))
 import gcpdda  # noqa: E402
 from gcpdda.joints import strength_used  # noqa: E402
 
+FAILED, UNDECIDED = 5, 7  # exit codes
 RATIOS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 AT_CAP = 0.95  # share of its strength from which on a contact counts as at the cap: beyond, the last swings decide
 FAR, APART = 0.04, 0.01  # targets: of displacements over the sag, and of normal forces
@@ -84,7 +85,7 @@ class Runner:
         sets = [word for setting in more for word in ("--set", setting)]
         done = subprocess.run([self.program, "run", case.file, "--out", folder, *case.arguments(keys, seconds), *sets],
                               capture_output=True, text=True)
-        if done.returncode not in (0, 7):
+        if done.returncode not in (0, FAILED, UNDECIDED):
             raise SystemExit(f"{case.file}, {keys}:\n{done.stderr}")
         return Rest(folder, done.stderr)
 
@@ -161,10 +162,10 @@ def paths(runner, quick):
     return rows
 
 
-def random_masses(runner, quick):
+def random_masses(runner, quick, first=1):
     """Ways to rest of random rock masses; one that fails under slow loading is replaced by the next."""
     count, most, increments = (2, 1000, [50]) if quick else (30, 16000, [50, 100, 200, 800])
-    rows, seed, taken = [], 0, 0
+    rows, seed, taken = [], first - 1, 0
     while taken < count:
         seed += 1
         case, row = scenes.rock_mass(runner.work, seed)
@@ -203,6 +204,13 @@ def reached(rest, first):
     return found
 
 
+def in_other_bits(case, count):
+    """Settings of so many runs of a case whose densities differ in their tenth digit: evaluations hang on last bits."""
+    materials = tomllib.loads(case.file.read_text())["material"]
+    return [[f"material.{name}.density={material['density'] * (1.0 + 1e-10 * k)!r}"
+             for name, material in materials.items()] for k in range(count)]
+
+
 def cost(runner, quick):
     """Evaluations and CPU time to an unbalanced ratio. CPU times are of alternating runs without histories. Numbers of
     evaluations hang on last bits: from round to round densities differ in their tenth digit."""
@@ -226,10 +234,7 @@ def cost(runner, quick):
             rest = runner.run(case, keys, seconds,
                               [f"output.interval={scenes.LIMIT}", f"output.history_interval={interval!r}"])
             counts[way] = reached(rest, loaded), rest
-        materials = tomllib.loads(case.file.read_text())["material"]
-        for k in range(rounds):
-            densities = [f"material.{name}.density={material['density'] * (1.0 + 1e-10 * k)!r}"
-                         for name, material in materials.items()]
+        for densities in in_other_bits(case, rounds):
             for way, (keys, seconds, _) in ways.items():
                 rest = runner.run(case, keys, seconds, densities)
                 cpu[way].append((rest.summary["cpu_s"], rest.summary["steps"]))
@@ -254,18 +259,25 @@ SMALL = [("slope", 1), ("slope", 2), ("slope", 5), ("wall", 16), ("wall", 50)]  
 LARGE = [("slope", 15), ("wall", 224), ("wall", 707)]
 
 
-def growth(runner, models, ways):
-    """Evaluations of slopes of more and more benches and walls of more and more rows, the blocks of the same size."""
+def growth(runner, models, ways, rounds=1):
+    """Evaluations of slopes of more and more benches and walls of more and more rows, the blocks of the same size. A row
+    of the static solver is the median of so many runs."""
     rows = []
     for model, size in models:
         starts = {"joints open": scenes.pile(runner.work, "wall", size)} if model == "wall" else {
             start: scenes.slope_of_benches(size, start) for start in ("in situ", "joints open")}
         for start, case in starts.items():
             for way in ways:
-                rest = runner.run(case, WAYS[way])
-                rows.append({"model": model, "size": size, "start": start, "way": way} | facts(rest))
+                found = []
+                for densities in in_other_bits(case, rounds if way == "static" else 1):
+                    rest = runner.run(case, WAYS[way], more=densities)
+                    found.append(facts(rest))
+                    runner.drop(rest)
+                found.sort(key=lambda run: run["pair_evaluations"])
+                rows.append({"model": model, "size": size, "start": start, "way": way} | found[len(found) // 2]
+                            | {"rounds": len(found), "least_pair_evaluations": found[0]["pair_evaluations"],
+                               "most_pair_evaluations": found[-1]["pair_evaluations"]})
                 tell(**rows[-1])
-                runner.drop(rest)
     return rows
 
 
@@ -284,10 +296,11 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", nargs="+", choices=["cost", "paths", "random", "growth"], metavar="PART")
     parser.add_argument("--large", action="store_true")
+    parser.add_argument("--seed", type=int, default=1, metavar="FIRST")
     asked = parser.parse_args()
     table = asked.out / "statics_growth.csv"
-    parts = {"cost": cost, "paths": paths, "random": random_masses,
-             "growth": lambda runner, quick: growth(runner, SMALL[:1] if quick else SMALL, [*WAYS])
+    parts = {"cost": cost, "paths": paths, "random": lambda runner, quick: random_masses(runner, quick, asked.seed),
+             "growth": lambda runner, quick: growth(runner, SMALL[:1] if quick else SMALL, [*WAYS], 1 if quick else 15)
              + known(table, large=True)}
     with tempfile.TemporaryDirectory() as work:
         runner = Runner(asked.build.resolve() / "gcpdda", Path(work))
