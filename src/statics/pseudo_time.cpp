@@ -138,8 +138,8 @@ double PseudoTime::power(const BlockSystem &system) const {
 void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                              const ContactForces &contacts, double overlap, double balanced,
                              bool is_near_rest, IterationState &state) {
-  rules_.springs.slides_fade = load_share(state.evaluations) >= 1.0;
-  springs_.update(system, candidates, history, contacts, rules_.springs);
+  springs_.update(system, candidates, history, contacts,
+                  load_share(state.evaluations) < 1.0 ? under_load(rules_.springs) : rules_.springs);
   if (may_pause(state)) { // all rows may move from here on
     springs_.set_moving({});
   }
@@ -154,7 +154,7 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   gather(system, load_share(state.evaluations));
   const bool begins = !(state.momentum > 0.0) || power(system) < 0.0;
   const bool loads = load_share(state.evaluations) < 1.0;
-  const double c = 2.0 * (loads ? rules_.damping_share : rules_.damping_of_slides) * std::sqrt(square);
+  const double c = loads ? rules_.damping_under_load : 2.0 * rules_.damping_share * std::sqrt(square);
   if (!loads && (swings(begins, state) || begins)) {
     springs_.hold_slip();
   }

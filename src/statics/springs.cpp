@@ -70,6 +70,12 @@ bool is_before(const SpringMemory &a, const SpringMemory &b) {
 
 } // namespace
 
+SpringRules under_load(SpringRules rules) {
+  rules.slides_fade = false;
+  rules.turn_memory = static_cast<std::uint8_t>(rules.turn_memory / 2);
+  return rules;
+}
+
 void ContactSprings::List::clear() {
   springs.clear();
   memories.clear();

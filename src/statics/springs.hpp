@@ -23,8 +23,7 @@
 //   none its blocks would run as far as their mass lets them. A mechanism near its limit slides on with a
 //   force that hardly changes, held back by these springs alone. Where a region has slipped to one side for
 //   `slide_memory` evaluations its share therefore fades, by `slide_fade` at each further one, to
-//   `slide_floor` of it. (With a tenth, walls that rock near their limit stall.) While loads come in, nothing
-//   fades: friction takes the path of slow loading.
+//   `slide_floor` of it. (With a tenth, walls that rock near their limit stall.)
 // - Where slip has turned from one cap to the other the region sticks on the way with all of k_t, many
 //   times what the first rule gives it, and would swing between its caps for ever. It keeps all of k_t for
 //   the next `turn_memory` evaluations.
@@ -37,8 +36,10 @@
 //   `short_run` evaluations ten times in a row they keep it until it goes on for longer: a region that
 //   slips, is driven back with all of k_t and slips again to the same side has not turned, and with its small
 //   share a slope of 95 blocks swung with a period of four evaluations for ever (182 with this rule).
-// A kept spring also ends when its blocks are farther apart than `reach`, which both ranks of a border pair
-// know from exact copies.
+// While loads come in friction takes the path of slow loading: no share fades, and a turn is remembered for
+// half as long, since a region that keeps all of k_t lags behind the load (`under_load`). A kept spring also
+// ends when its blocks are farther apart than `reach`, which both ranks of a border pair know from exact
+// copies.
 //
 // Elements of liners are springs of the same kind, with the middle of the element in the place of the region
 // (`links`): what they hold is as stiff as a joint, and between two blocks of which none is at rest.
@@ -101,6 +102,9 @@ struct SpringRules {
   std::uint8_t open_memory = 40;
   double reach = 0.0; ///< m
 };
+
+/// Rules for as long as loads come in.
+SpringRules under_load(SpringRules rules);
 
 class ContactSprings {
 public:

@@ -283,6 +283,28 @@ TEST(ContactSprings, ThatSlipHaveAllOfTheirStiffnessWhereTheMotionBeginsAnew) {
   EXPECT_LT(springs.springs()[0].tangential, 0.1 * whole) << "for one step";
 }
 
+// Under a load that grows friction takes the path of slow loading: a region keeps its share for as long as it
+// slips, and all of k_t for half as long where it has turned, so that blocks lag less.
+TEST(ContactSprings, UnderALoadThatGrowsDoNotFadeAndForgetATurnSooner) {
+  ContactBench bench = stacked_squares(0.1);
+  statics::ContactSprings springs;
+  const statics::SpringRules rules;
+  const auto slip = [&](double way) {
+    bench.move(0, {{way, 0.0}, 0.0});
+    springs.update(bench.system, bench.candidates, bench.history, bench.forces, under_load(rules));
+    return springs.springs()[0].tangential / (0.5 * k_n); // over k_t l
+  };
+  bench.evaluate();
+  bench.evaluate();
+  for (int k = 0; k < 2 * rules.slide_memory; ++k) {
+    EXPECT_NEAR(slip(1e-3), rules.slip_share, 1e-9) << k;
+  }
+  for (int k = 0; k < rules.turn_memory / 2; ++k) {
+    EXPECT_NEAR(slip(-3e-3), 1.0, 1e-9) << k;
+  }
+  EXPECT_NEAR(slip(-3e-3), rules.slip_share, 1e-9);
+}
+
 TEST(ContactSprings, OfARegionThatSlidesOnFadeToAFloor) {
   ContactBench bench = stacked_squares(0.1);
   statics::ContactSprings springs;
