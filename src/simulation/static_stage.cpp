@@ -193,11 +193,12 @@ double farthest_in_window(RunState &run) {
 
 // A trial that fails ends here: where that is an end of the bracket, the dynamic step goes on with it in a
 // stage of its own. What a watched part of the blocks does, the dynamic step says at once. Loose blocks do
-// not hold up a trial where each of them would move by less than a tenth of what fails if it went on as in
-// the last window for all windows ahead. A trial that does not come nearer to rest is left to the dynamic
-// step unless a block has yet to go far and slides on, by a hundredth of what fails in the last window: the
-// dynamic step takes many times as long to see where it comes to rest. (One of 100,290 blocks that came to
-// rest after 1,200 evaluations more was still undecided after 8,000 steps.)
+// not hold up a trial where each of them would move by less than half of what fails if it went on as in the
+// last window for all windows ahead, a tenth of how far a motion that fails has to go. A trial that does not
+// come nearer to rest is left to the dynamic step unless a block has yet to go far and slides on, by a
+// hundredth of what fails in the last window: the dynamic step takes many times as long to see where it comes
+// to rest. (One of 100,290 blocks that came to rest after 1,200 evaluations more was still undecided after
+// 8,000 steps.)
 void judge_static_trial(RunState &run) {
   constexpr double window = 50.0; // evaluations
   constexpr double windows_ahead = 60.0;
@@ -208,7 +209,7 @@ void judge_static_trial(RunState &run) {
   const StageLook &look = run.clock.state.memory.last;
   MotionWindows &windows = run.clock.state.memory.windows;
   const bool all_rest = run.clock.state.memory.settled_looks >= 2;
-  const bool stays_near = windows.farthest * windows_ahead <= 0.1 * run.clock.stage().failure_motion;
+  const bool stays_near = windows.farthest * windows_ahead <= 0.5 * run.clock.stage().failure_motion;
   if (run.clock.state.verdict == Verdict::settled && (all_rest || stays_near)) {
     if (!all_rest) {
       note_loose_blocks(run);
