@@ -80,6 +80,9 @@ std::vector<std::int64_t> loose_blocks(const RunState &run) {
 void note_loose_blocks(RunState &run) {
   const std::vector<std::int64_t> ids = loose_blocks(run);
   run.clock.state.memory.num_loose = std::ssize(ids);
+  if (ids.empty()) { // in this look; one in an earlier look
+    return;
+  }
   constexpr std::size_t most_named = 8;
   std::string names;
   for (std::size_t k = 0; k < std::min(ids.size(), most_named); ++k) {
