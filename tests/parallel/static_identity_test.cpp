@@ -1,5 +1,6 @@
 // One rank and many write the same bytes of stages with the static solver, as in identity_test.cpp.
 
+#include "support/cut_region.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"
 #include "two_runs.hpp"
@@ -118,6 +119,23 @@ TEST(Identity, OfAStaticStepThatIsTakenBack) {
         std::string::npos);
     EXPECT_EQ(summary_text(runs.together(), "stages"), summary_text(runs.alone(), "stages"));
   }
+}
+
+// With weaker bedding the foot of this slope slides out. From the 98th evaluation on the motion has begun
+// anew ten times in a row within few evaluations, which changes the stiffness of what slips; a checkpoint is
+// written after the ninth time. The stage ends while they slide.
+TEST(Identity, OfAStaticStageThatSwings) {
+  Scene scene = testing::scene_of(testing::walked_slope_toml() +
+                                      "[[stage]]\nkind = \"change\"\n"
+                                      "set = { \"joint.bedding.friction_angle_deg\" = 32.2 }\n"
+                                      "[[stage]]\nname = \"slide\"\nkind = \"settle\"\nlimit = 0.08\n",
+                                  {"output.checkpoint_interval=0.0475"});
+  testing::prepare_region(scene);
+  const TwoRuns runs(scene, exit_code::undecided);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 20);
+  }
+  expect_same_after_restart(runs, scene, exit_code::undecided);
 }
 
 // At most evaluations the static solver moves a block that falls and leaves out the wall beside it; rigid

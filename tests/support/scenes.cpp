@@ -55,6 +55,54 @@ Scene shipped_scene(const std::string &name, const std::vector<std::string> &set
   return checked(read_scene(shipped_toml(name), path_of_shipped(name), sets));
 }
 
+std::string walked_slope_toml() {
+  return R"([run]
+fidelity = "rigid"
+[material.granite]
+density = 2650.0
+[joint.default]
+normal_stiffness = 1e9
+friction_angle_deg = 45.0
+[joint.bedding]
+friction_angle_deg = 38.0
+[joint.cross]
+friction_angle_deg = 40.0
+[region]
+material = "granite"
+fixed = ["bottom", "left", "right"]
+azimuth = 90.0
+min_width = 0.5
+[region.slope]
+toe_length = 10.0
+crest_length = 25.0
+depth = 6.0
+[[region.slope.bench]]
+height = 20.0
+face_angle_deg = 65.0
+[[joint_set]]
+name = "bedding"
+joint = "bedding"
+dip = 32.0
+dip_direction = 255.0
+spacing = 2.5
+origin = [1.4, 3.0]
+[[joint_set]]
+name = "cross"
+joint = "cross"
+dip = 78.0
+dip_direction = 80.0
+spacing = 4.0
+[water.ground]
+phreatic = [[-10.0, -1.0], [0.0, 0.0], [6.0, 6.8], [34.0, 18.0]]
+[output]
+interval = 0.5
+[[stage]]
+name = "weight"
+kind = "settle"
+limit = 30.0
+)";
+}
+
 std::string block_toml(const std::string &name, const std::vector<Vec2> &vertices, const std::string &extra) {
   std::string points;
   for (const Vec2 v : vertices) {

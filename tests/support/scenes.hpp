@@ -11,10 +11,13 @@ namespace gcpdda::testing {
 /// The scene of a TOML text; throws with all diagnostics if it is bad.
 Scene scene_of(const std::string &toml, const std::vector<std::string> &sets = {});
 
-/// A scene that ships with the program, run/scenes/<name>.toml.
 /// The text of run/scenes/NAME.toml.
 std::string shipped_toml(const std::string &name);
+/// A scene that ships with the program, run/scenes/NAME.toml.
 Scene shipped_scene(const std::string &name, const std::vector<std::string> &sets = {});
+
+/// The slope of run/guide/walk_1_your_slope.md, 95 blocks with water, and its settle stage.
+std::string walked_slope_toml();
 
 /// All of a scene but its blocks: rigid rock with friction 30 degrees, one monitored block.
 std::string rock_toml(double duration, double interval, const std::string &monitored);
