@@ -80,7 +80,7 @@ std::vector<std::int64_t> loose_blocks(const RunState &run) {
 void note_loose_blocks(RunState &run) {
   const std::vector<std::int64_t> ids = loose_blocks(run);
   run.clock.state.memory.num_loose = std::ssize(ids);
-  if (ids.empty()) { // in this look; one in an earlier look
+  if (ids.empty()) { // those that were loose in a look before are at rest in this one
     return;
   }
   constexpr std::size_t most_named = 8;

@@ -56,7 +56,7 @@
 // f = c (K + rho D) v and is c/w^2 evaluations behind its equilibrium: regions that slip lag by most, and
 // slip under other forces than in slow loading, which asks for a small c. With c = c_share 2 w, however, what
 // slides is hardly held, runs past the place where it would rest and may fail: of 72 trials of a wet slope
-// 0.4 to 1.2 % below its limit, which differ in factor and last bits, 4 with c_share = 0.7 and 11 with 0.4,
+// 0.2 to 1 % below its limit, which differ in factor and last bits, 4 with c_share = 0.7 and 11 with 0.4,
 // none with c_load = 0.7. The equilibria of 60 random rock masses and of three slopes are as near to slow
 // loading with it as with the better of these two, or nearer. (A force of c times the mean momentum of some
 // evaluations, against the lag, leads four times as far away: blocks run past equilibrium.)
