@@ -57,9 +57,9 @@
 // slip under other forces than in slow loading, which asks for a small c. With c = c_share 2 w, however, what
 // slides is hardly held, runs past the place where it would rest and may fail: of 72 trials of a wet slope
 // 0.2 to 1 % below its limit, which differ in factor and last bits, 4 with c_share = 0.7 and 11 with 0.4,
-// none with c_load = 0.7. The equilibria of 60 random rock masses and of three slopes are as near to slow
-// loading with it as with the better of these two, or nearer. (A force of c times the mean momentum of some
-// evaluations, against the lag, leads four times as far away: blocks run past equilibrium.)
+// none with c_load = 0.7. The equilibria of 60 random rock masses and of three slopes are nearer to slow
+// loading with it than with c_share = 0.7, and about as near as with 0.4. (A force of c times the mean
+// momentum of some evaluations, against the lag, leads four times as far away: blocks run past equilibrium.)
 //
 // A block that nothing touches falls, under a force that does not change. It has no frequency, and in the
 // sums over v would say that nothing needs damping: they leave it out. Where it lands, it begins anew by
