@@ -149,6 +149,7 @@ void ContactForces::begin(BlockSystem &system, const Candidates &candidates) {
   next_.assign(candidates.general.empty() ? 0 : candidates.pairs.size(), {});
   if (resting_.is_used()) {
     ranges_before_ = ranges_;
+    groups_.begin(candidates);
   }
   ranges_.resize(next_.size());
   for (const std::uint32_t pair : candidates.general) {
@@ -160,7 +161,14 @@ void ContactForces::begin(BlockSystem &system, const Candidates &candidates) {
 void ContactForces::evaluate_group(const BlockSystem &system, const Candidates &candidates,
                                    ContactHistory &history, const PairGroup &group) {
   if (group.first < group.last) {
-    evaluate_plain_pairs(system, candidates, history, group.first, group.last);
+    if (!resting_.is_used()) {
+      evaluate_plain_pairs(system, candidates, history, group.first, group.last);
+    } else if (const auto &kept = groups_.rests(group.number, resting_)) {
+      plain_.keep_group(history, group.number, *kept);
+    } else {
+      evaluate_plain_pairs(system, candidates, history, group.first, group.last);
+      groups_.note(group.number, plain_.kept());
+    }
     sums_.close_group(system, candidates, group.number, plain_.batch());
   }
   if (group.is_last) {

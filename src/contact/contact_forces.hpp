@@ -11,6 +11,7 @@
 #include "contact/pair_forces.hpp"
 #include "contact/plain_pairs.hpp"
 #include "contact/region_sums.hpp"
+#include "contact/resting_groups.hpp"
 #include "contact/resting_rows.hpp"
 
 #include <algorithm>
@@ -90,6 +91,7 @@ public:
   /// Candidates or rows are others from here on.
   void forget_resting() {
     resting_.forget();
+    groups_.forget();
     sums_.drop_all();
   }
   /// visit(pair, number of its region, details) for all regions of a pair in the last evaluation.
@@ -182,6 +184,7 @@ private:
   PairForces pairs_; ///< those that are not plain
   BlockSums sums_;
   RestingRows resting_;
+  RestingGroups groups_;
   std::vector<RegionRange> ranges_;        ///< of the regions of pairs_, by pair that is not plain
   std::vector<RegionRange> ranges_before_; ///< the same at the evaluation before, where regions stay
   std::vector<RegionRange> next_;          ///< what ContactHistory::ranges becomes; afterwards what it was

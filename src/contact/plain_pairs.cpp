@@ -237,11 +237,17 @@ void PlainPairs::find_meeting(const PlainWork &work, std::size_t first, std::siz
     ends[i] = lists[i]->data();
   }
   const BlockMotion *motions = scene.system.motion.data();
+  std::size_t num_kept = 0;
+  RestingGroups::Kept kept;
   for (std::size_t k = first; k < last; ++k) {
-    if (some_rest && keeps(work, k)) {
-      continue;
-    }
     const PlainPair &plain = candidates.plain[k];
+    if (some_rest) {
+      if (keeps(work, k, kept)) {
+        ++num_kept;
+        continue;
+      }
+      overlaps_[plain.pair] = PlainOverlap::none; // a group kept as a whole may have said something else
+    }
     const PlainOverlap overlap = scene.history.overlaps[plain.pair];
     std::uint32_t *&end = ends[static_cast<std::size_t>(overlap)];
     *end = static_cast<std::uint32_t>(k);
@@ -256,9 +262,11 @@ void PlainPairs::find_meeting(const PlainWork &work, std::size_t first, std::siz
     lists[i]->resize(static_cast<std::size_t>(ends[i] - lists[i]->data()));
     report_.evaluations += std::ssize(*lists[i]);
   }
+  kept_.add(kept);
+  kept_here_ = num_kept == last - first ? std::optional(kept) : std::nullopt;
 }
 
-bool PlainPairs::keeps(const PlainWork &work, std::size_t entry) {
+bool PlainPairs::keeps(const PlainWork &work, std::size_t entry, RestingGroups::Kept &kept) {
   const Candidates &candidates = work.scene.candidates;
   const std::uint32_t number = candidates.plain[entry].pair;
   const CandidatePair &pair = candidates.pairs[number];
@@ -276,13 +284,18 @@ bool PlainPairs::keeps(const PlainWork &work, std::size_t entry) {
     } else {
       work.sums.keep_waiting_again(candidates.border_place(entry));
     }
-    if (details_[number].born) { // most are not, and to write them all would take long
-      details_[number].born = false;
-    }
-    kept_.normals_undefined += details_[number].normal_undefined ? 1 : 0;
-    kept_.max_overlap = std::max(kept_.max_overlap, details_[number].overlap);
+    kept.add({details_[number].normal_undefined ? 1 : 0, details_[number].overlap});
   }
   return true;
+}
+
+void PlainPairs::keep_group(const ContactHistory &history, std::uint32_t number,
+                            const RestingGroups::Kept &kept) {
+  const std::size_t first = std::size_t{number} * PlainPair::pairs_in_group;
+  const std::size_t count = std::min<std::size_t>(PlainPair::pairs_in_group, overlaps_.size() - first);
+  std::copy_n(history.overlaps.begin() + static_cast<std::ptrdiff_t>(first), count,
+              overlaps_.begin() + static_cast<std::ptrdiff_t>(first));
+  kept_.add(kept);
 }
 
 std::span<const std::uint32_t> PlainPairs::evaluate(const PlainWork &work, std::size_t first,

@@ -14,13 +14,14 @@
 #include "contact/force_report.hpp"
 #include "contact/lanes/plain_batch.hpp"
 #include "contact/region_sums.hpp"
-#include "contact/resting_rows.hpp"
+#include "contact/resting_groups.hpp"
 #include "model/contact_history.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,10 @@ public:
   std::span<const std::uint32_t> evaluate(const PlainWork &work, std::size_t first, std::size_t last);
   void store_choice(const PlainWork &work, std::uint32_t entry, const RegionForce &force,
                     const RegionMemory &memory, std::span<const RegionDyads> dyads);
+  /// A group of pairs of rows at rest, as RestingGroups::rests() says: they keep what they have.
+  void keep_group(const ContactHistory &history, std::uint32_t number, const RestingGroups::Kept &kept);
+  /// Of the last entries that were evaluated; none where not all of them kept what they had.
+  [[nodiscard]] const std::optional<RestingGroups::Kept> &kept() const { return kept_here_; }
   /// All pairs have been evaluated.
   /// @param overlaps  become those of this evaluation
   ForceReport finish(std::vector<PlainOverlap> &overlaps);
@@ -88,7 +93,7 @@ private:
   /// Entries [first, last) whose boxes meet, and what those at rest keep.
   void find_meeting(const PlainWork &work, std::size_t first, std::size_t last);
   /// Does an entry keep what the evaluation before has found? Then it is there.
-  bool keeps(const PlainWork &work, std::size_t entry);
+  bool keeps(const PlainWork &work, std::size_t entry, RestingGroups::Kept &kept);
 
   std::shared_ptr<const ContactParameters> parameters_;
   std::unique_ptr<PlainBatch> batch_;
@@ -101,9 +106,10 @@ private:
   std::array<CandidatePair, most_lanes> own_; ///< constants of mixed pairs at hand, by lane
   std::vector<PlainOverlap> overlaps_;        ///< what those of the history become; afterwards what they were
   ForceReport report_;                        ///< of what has been evaluated so far
-  PlainBatch::Extremes kept_;                 ///< of pairs that are left out
-  std::vector<RegionForce> again_;            ///< details of the group at hand
-  std::vector<std::uint32_t> places_;         ///< in again_, by pair of the group at hand
+  RestingGroups::Kept kept_;                  ///< of pairs that are left out
+  std::optional<RestingGroups::Kept> kept_here_;
+  std::vector<RegionForce> again_;    ///< details of the group at hand
+  std::vector<std::uint32_t> places_; ///< in again_, by pair of the group at hand
   bool keeps_details_ = false;
   std::vector<RegionDetails> details_; ///< by pair that touches, if they are kept
 };

@@ -72,30 +72,32 @@ inline BlockSystem with_edges(BlockSystem system, const std::vector<std::vector<
   return result;
 }
 
-/// All pairs of a small system and their forces, configuration by configuration.
+/// Pairs of a small system and their forces, configuration by configuration.
 struct ContactBench {
   BlockSystem system;
   ContactForces forces;
   ContactHistory history;
   Candidates candidates;
-  // Trial configurations at the last evaluation, of owned rows and by entry of BlockSystem::deformation.
+  // Trial configurations at the last evaluation, of mobile rows and by entry of BlockSystem::deformation.
   std::vector<RigidDof> moved_on;
   std::vector<Mat2> stretched_on;
 
+  /// @param reach  how far apart the boxes of a pair may be at first, m
   ContactBench(BlockSystem blocks, JointLaws joints, double damping_ratio = 0.0,
-               Instructions instructions = Instructions::widest)
+               Instructions instructions = Instructions::widest,
+               double reach = std::numeric_limits<double>::infinity())
       : system(std::move(blocks)),
         forces({std::move(joints), damping_ratio, PotentialKind::exact}, instructions) {
     std::vector<std::pair<BlockIndex, BlockIndex>> pairs;
     for (std::uint32_t i = 0; i < system.num_rows(); ++i) {
       for (std::uint32_t j = i + 1; j < system.num_rows(); ++j) {
-        if (i < system.num_owned) {
+        if (i < system.num_owned && system.motion[i].box.inflated(reach).meets(system.motion[j].box)) {
           pairs.emplace_back(BlockIndex{i}, BlockIndex{j});
         }
       }
     }
     candidates = make_candidates(system, pairs, forces.parameters(), {}, history, infinite_skin);
-    moved_on.resize(system.num_owned);
+    moved_on.resize(system.first_fixed());
     for (const Deformation &d : system.deformation) {
       stretched_on.push_back(d.trial);
     }
@@ -109,7 +111,7 @@ struct ContactBench {
   /// Forces at the present trial configuration; the last one becomes the previous one.
   const Seen &evaluate() {
     pose(system, 0, system.num_rows());
-    for (std::size_t row = 0; row < system.num_owned; ++row) {
+    for (std::size_t row = 0; row < system.first_fixed(); ++row) {
       const RigidDof trial = std::exchange(system.trial[row], moved_on[row]);
       Mat2 gradient;
       if (system.is_deformable(row)) {
@@ -120,7 +122,7 @@ struct ContactBench {
     }
     report = forces.evaluate(system, candidates, history);
     regions = Regions(system, candidates, history, forces);
-    for (std::size_t row = 0; row < system.num_owned; ++row) {
+    for (std::size_t row = 0; row < system.first_fixed(); ++row) {
       moved_on[row] = system.trial[row];
       if (system.is_deformable(row)) {
         stretched_on[system.deformation_begin[row]] = system.deformation_of(row).trial;

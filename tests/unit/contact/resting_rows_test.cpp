@@ -79,15 +79,19 @@ void expect_same(const ContactBench &a, const ContactBench &b) {
 }
 
 /// Some rows move for some evaluations, then others; two benches see the same, and one leaves out what rests.
-Totals move_some(const BlockSystem &system, const JointLaws &laws) {
-  ContactBench all(system, laws);
-  ContactBench some(system, laws);
+/// @param part  of all rows, which follow one another, of which ...
+/// @param one_in  ... every so many-th one moves
+Totals move_some(const BlockSystem &system, const JointLaws &laws, double part, std::size_t one_in) {
+  constexpr double reach = 0.1;
+  ContactBench all(system, laws, 0.0, Instructions::widest, reach);
+  ContactBench some(system, laws, 0.0, Instructions::widest, reach);
   std::mt19937 random(5);
   const auto number = [&](double size) {
     return size * (2.0 * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()) - 1.0);
   };
   Totals totals;
-  std::vector<std::uint8_t> moves(system.num_owned, 1);
+  const std::size_t num_mobile = system.first_fixed(); // ghosts too
+  std::vector<std::uint8_t> moves(num_mobile, 1);
   for (int k = 0; k < 60; ++k) {
     if (k == 5) {
       some.forces.leave_out_resting(true);
@@ -95,11 +99,16 @@ Totals move_some(const BlockSystem &system, const JointLaws &laws) {
       some.forces.forget_resting();
     }
     if (k % 6 == 3) {
-      for (std::uint8_t &row : moves) {
-        row = random() % 8 == 0 ? 1 : 0;
+      const auto count = static_cast<std::size_t>(part * static_cast<double>(num_mobile));
+      const std::size_t last_place = num_mobile - count;
+      const bool ghosts_alone = k > 50 && system.num_ghosts >= count;
+      const std::size_t first = ghosts_alone ? system.num_owned : random() % (last_place + 1);
+      for (std::size_t row = 0; row < num_mobile; ++row) {
+        const bool may_move = first <= row && row < first + count;
+        moves[row] = may_move && random() % one_in == 0 ? 1 : 0;
       }
     }
-    for (std::size_t row = 0; row < system.num_owned; ++row) {
+    for (std::size_t row = 0; row < num_mobile; ++row) {
       if (moves[row] != 0) {
         const RigidDof step{{number(2e-3), number(2e-3)}, number(5e-4)};
         all.system.trial[row] += step;
@@ -137,7 +146,7 @@ TEST(RestingRows, KeepWhatTheirPairsDid) {
     for (const Shape shape : {Shape::square, Shape::notched}) {
       for (const bool deforms : {false, true}) {
         for (const std::size_t num_ghosts : {0U, 10U}) {
-          const Totals totals = move_some(grid(8, shape, deforms, num_ghosts), laws);
+          const Totals totals = move_some(grid(8, shape, deforms, num_ghosts), laws, 1.0, 8);
           EXPECT_GT(totals.left_out, 1000);
           EXPECT_GT(totals.evaluated, 1000);
           EXPECT_GT(totals.slipped, 100);
@@ -147,10 +156,14 @@ TEST(RestingRows, KeepWhatTheirPairsDid) {
   }
 }
 
-// Several groups of pairs, and some of them wholly at rest.
+// Several groups of pairs, and some of them wholly at rest but for pairs with a ghost or a notch.
 TEST(RestingRows, KeepWhatWholeGroupsDid) {
-  const Totals totals = move_some(grid(30, Shape::square, false, 0), one_law(1e6, 0.3));
-  EXPECT_GT(totals.left_out, 10000);
+  for (const Shape shape : {Shape::square, Shape::notched}) {
+    for (const std::size_t num_ghosts : {0U, 100U}) {
+      const Totals totals = move_some(grid(30, shape, false, num_ghosts), one_law(1e6, 0.3), 0.05, 2);
+      EXPECT_GT(totals.left_out, 10000);
+    }
+  }
 }
 
 } // namespace
