@@ -197,13 +197,15 @@ template <class Visit> void CoarseGrid::for_parts_of(const ContactSpring &spring
 }
 
 template <class Visit>
-void CoarseGrid::for_parts(const BlockSystem &system, std::span<const ContactSpring> springs,
+void CoarseGrid::for_parts(const BlockSystem &system, const ContactSprings &springs,
                            const BlockMatrices &matrices, Visit &&visit) const {
-  for (const ContactSpring &spring : springs) {
-    if (counts_here(system, BlockIndex{spring.lower})) {
-      for_parts_of(spring, visit);
+  springs.for_lists([&](std::span<const ContactSpring> list) {
+    for (const ContactSpring &spring : list) {
+      if (counts_here(system, BlockIndex{spring.lower})) {
+        for_parts_of(spring, visit);
+      }
     }
-  }
+  });
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (has_cell(row)) {
       visit(std::int64_t{cell_of_[row]}, std::int64_t{cell_of_[row]}, on_cell(system, row, matrices));
@@ -211,22 +213,24 @@ void CoarseGrid::for_parts(const BlockSystem &system, std::span<const ContactSpr
   }
 }
 
-void CoarseGrid::find_pattern(std::span<const ContactSpring> springs) {
+void CoarseGrid::find_pattern(const ContactSprings &springs) {
   std::vector<std::int64_t> mine;
-  for (const ContactSpring &spring : springs) {
-    const std::int64_t a = cell_of_[spring.lower];
-    const std::int64_t b = cell_of_[spring.higher];
-    if (a >= 0 && b >= 0 && a != b) {
-      mine.push_back(key_of(std::max(a, b), std::min(a, b)));
+  springs.for_lists([&](std::span<const ContactSpring> list) {
+    for (const ContactSpring &spring : list) {
+      const std::int64_t a = cell_of_[spring.lower];
+      const std::int64_t b = cell_of_[spring.higher];
+      if (a >= 0 && b >= 0 && a != b) {
+        mine.push_back(key_of(std::max(a, b), std::min(a, b)));
+      }
     }
-  }
+  });
   for (std::int64_t cell = 0; cell < std::ssize(keys_); ++cell) {
     mine.push_back(key_of(cell, cell));
   }
   pattern_ = united(communicator_, std::move(mine));
 }
 
-void CoarseGrid::factorise(const BlockSystem &system, std::span<const ContactSpring> springs,
+void CoarseGrid::factorise(const BlockSystem &system, const ContactSprings &springs,
                            const BlockMatrices &matrices) {
   find_pattern(springs);
   double largest = 0.0;

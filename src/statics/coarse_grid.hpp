@@ -19,6 +19,7 @@
 
 #include "gcpdda/parallel/communicator.hpp"
 #include "statics/block_stiffness.hpp"
+#include "statics/springs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -44,8 +45,7 @@ public:
   void choose(const BlockSystem &system, std::span<const std::uint8_t> moves);
   /// Make and factorise K_c. Collective.
   /// @param matrices  M of owned rows
-  void factorise(const BlockSystem &system, std::span<const ContactSpring> springs,
-                 const BlockMatrices &matrices);
+  void factorise(const BlockSystem &system, const ContactSprings &springs, const BlockMatrices &matrices);
 
   // z += P K_c^-1 P^T r is found in three parts, so that the solver may take r and z as it passes their rows.
   /// The largest of these forces on cells. Collective.
@@ -113,10 +113,10 @@ private:
                         const std::array<Three, 3> &b, double sign);
   /// visit(higher cell, lower cell, its part of K_c) for what this rank counts.
   template <class Visit>
-  void for_parts(const BlockSystem &system, std::span<const ContactSpring> springs,
-                 const BlockMatrices &matrices, Visit &&visit) const;
+  void for_parts(const BlockSystem &system, const ContactSprings &springs, const BlockMatrices &matrices,
+                 Visit &&visit) const;
   template <class Visit> void for_parts_of(const ContactSpring &spring, Visit &&visit) const;
-  void find_pattern(std::span<const ContactSpring> springs);
+  void find_pattern(const ContactSprings &springs);
   void fill_matrix(double unit);
   [[nodiscard]] std::int64_t key_of(std::int64_t higher, std::int64_t lower) const {
     return higher * static_cast<std::int64_t>(keys_.size()) + lower;

@@ -109,10 +109,7 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
         held.of(row)[i] += holds_cells * mass_.of(row)[i];
       }
     });
-    std::vector<ContactSpring> all;
-    springs.for_lists(
-        [&](std::span<const ContactSpring> list) { all.insert(all.end(), list.begin(), list.end()); });
-    coarse_.factorise(system, all, held);
+    coarse_.factorise(system, springs, held);
   }
   springs.for_lists([&](std::span<const ContactSpring> list) { add_diagonal(system, list, diagonal_); });
   for_rows(moving_, [&](std::size_t row) {
