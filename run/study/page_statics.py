@@ -78,6 +78,17 @@ def exponents(rows):
     return table(["model", "start", "way", "blocks", "exponent of N"], found, source("statics", "statics_growth.csv"))
 
 
+def over_static_table(rows):
+    """CPU time of kinetic damping over that of the static solver, by model."""
+    lines = []
+    for kinetic in of(rows, way="kinetic damping"):
+        static = of(rows, way="static", model=kinetic["model"], start=kinetic["start"], blocks=kinetic["blocks"])[0]
+        lines.append([kinetic["model"], kinetic["start"], count(kinetic["blocks"]),
+                      number(float(kinetic["cpu_s"]) / float(static["cpu_s"]), 2)])
+    return table(["model", "start", "blocks", "CPU time of kinetic damping over static"], lines,
+                 source("statics", "statics_growth.csv"))
+
+
 def paths_table(rows):
     shown = {*(("static", n) for n in ("1", "50", "100", "200", "800")), ("kinetic damping", "1"), ("local damping", "1"),
              ("slow loading", "8000")}
@@ -136,6 +147,7 @@ def statics():
     far, still = beyond(default, "displacement_off"), beyond(finest, "displacement_off")
     return {
         "cost": cost_table(cost), "growth": growth_table(growth), "exponents": exponents(growth),
+        "over_static": over_static_table(growth),
         "paths": paths_table(paths), "random": random_table(compared), "masses": str(len(default)),
         "deformable": str(len(of(default, fidelity="deformable"))), "slopes": str(len(of(default, kind="slope"))),
         "replaced": str(len(random) - len(compared)),

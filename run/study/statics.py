@@ -2,7 +2,7 @@
 """The static solver: its cost against that of damped motion, and its equilibrium against that of slow loading.
 
     run/study/statics.py BUILD OUT_DIR [--quick] [--only PART ...] [--seed FIRST]
-    run/study/statics.py BUILD OUT_DIR --large
+    run/study/statics.py BUILD OUT_DIR --large [MODEL ...]
 
 PART is cost, paths, random or growth. Every run is on one rank. A count of evaluations is that of steps; pair evaluations
 count the pairs of blocks that were evaluated. The ways to rest are the static solver with 1 to 800 increments of the load,
@@ -12,7 +12,7 @@ OUT_DIR/statics_cost.csv     evaluations and CPU time until the unbalanced ratio
 OUT_DIR/statics_paths.csv    difference from slow loading over 16,000 steps, against cost
 OUT_DIR/statics_random.csv   the same of 30 random rock masses, with seeds from FIRST (1) on
 OUT_DIR/statics_growth.csv   evaluations and CPU time of slopes and walls of up to 10^4 blocks; --large adds those of
-                             10^5 and 10^6 under the static solver
+                             10^5 and 10^6, or some of them: slope15, wall224, wall707
 """
 
 import argparse
@@ -256,7 +256,7 @@ def cost(runner, quick):
 
 
 SMALL = [("slope", 1), ("slope", 2), ("slope", 5), ("wall", 16), ("wall", 50)]  # benches, rows of bricks
-LARGE = [("slope", 15), ("wall", 224), ("wall", 707)]
+LARGE = {("slope", 15): ["static", "kinetic damping"], ("wall", 224): ["static", "kinetic damping"], ("wall", 707): ["static"]}
 
 
 def growth(runner, models, ways, rounds=1):
@@ -281,12 +281,14 @@ def growth(runner, models, ways, rounds=1):
     return rows
 
 
-def known(path, large):
-    """Rows of the large models, or of the others, in the table of growth as it is."""
-    if not path.exists():
-        return []
-    with open(path, newline="") as file:
-        return [row for row in csv.DictReader(file) if ((row["model"], int(row["size"])) in LARGE) == large]
+def known(path):
+    """The rows of each model in the table of growth as it is."""
+    rows = {}
+    if path.exists():
+        with open(path, newline="") as file:
+            for row in csv.DictReader(file):
+                rows.setdefault((row["model"], int(row["size"])), []).append(row)
+    return rows
 
 
 def main():
@@ -295,17 +297,21 @@ def main():
     parser.add_argument("out", type=Path, metavar="OUT_DIR")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", nargs="+", choices=["cost", "paths", "random", "growth"], metavar="PART")
-    parser.add_argument("--large", action="store_true")
+    names = {f"{model}{size}": (model, size) for model, size in LARGE}
+    parser.add_argument("--large", nargs="*", choices=[*names], metavar="MODEL")
     parser.add_argument("--seed", type=int, default=1, metavar="FIRST")
     asked = parser.parse_args()
     table = asked.out / "statics_growth.csv"
     parts = {"cost": cost, "paths": paths, "random": lambda runner, quick: random_masses(runner, quick, asked.seed),
              "growth": lambda runner, quick: growth(runner, SMALL[:1] if quick else SMALL, [*WAYS], 1 if quick else 15)
-             + known(table, large=True)}
+             + [row for model in LARGE for row in known(table).get(model, [])]}
     with tempfile.TemporaryDirectory() as work:
         runner = Runner(asked.build.resolve() / "gcpdda", Path(work))
-        if asked.large:
-            write_table(table, known(table, large=False) + growth(runner, LARGE, ["static"]))
+        if asked.large is not None:
+            rows = known(table)
+            for name in asked.large or names:
+                rows[names[name]] = growth(runner, [names[name]], LARGE[names[name]])
+            write_table(table, [row for model in [*SMALL, *LARGE] for row in rows.get(model, [])])
             return
         for part in asked.only or parts:
             write_table(asked.out / f"statics_{part}.csv", parts[part](runner, asked.quick))
