@@ -26,6 +26,8 @@ void take_work(const Communicator &communicator, const Simulation &simulation, s
     summary.counters.emplace_back(name, static_cast<double>(value));
   };
   add("most_pairs", total(communicator, counters.most_pairs));
+  add("products", counters.products);
+  add("reductions", counters.reductions);
   add("migrations", total(communicator, counters.migrations));
   add("refreshes", counters.refreshes);
   add("rebalances", counters.rebalances);

@@ -86,6 +86,7 @@ void find_initial_state(RunState &run) {
   run.counters.contact_steps = 0;
   run.counters.messages = 0;
   run.counters.bytes = 0;
+  run.first_reduction = run.communicator.reductions();
 }
 
 } // namespace gcpdda

@@ -8,6 +8,7 @@ namespace gcpdda {
 RunState::RunState(const Communicator &world, Scene given)
     : communicator(world), scene(std::move(given)), neighbours(world), contacts(contact_parameters(scene)),
       loads(scene), scheme(make_scheme(scene.run.scheme, scene.run.spectral_radius, scene.run.contact_time)) {
+  first_reduction = communicator.reductions();
   clock.is_staged = !scene.stages.empty();
   clock.stages = std::move(scene.stages);
   if (!clock.is_staged) {

@@ -39,8 +39,10 @@ struct Counters {
   std::int64_t migrations = 0;    ///< blocks that left this rank, the first distribution not counted
   std::int64_t refreshes = 0;     ///< of the neighbourhood after the first
   std::int64_t rebalances = 0;    ///< new maps; each brings a refresh
+  std::int64_t products = 0;      ///< with the stiffness of contacts, by the static solver
   std::int64_t messages = 0;      ///< sent to ghosts by steps; refreshes and outputs send more
   std::int64_t bytes = 0;         ///< in these messages
+  std::int64_t reductions = 0;    ///< maxima and sums over all ranks, also of refreshes and outputs
   double max_overlap = 0.0;       ///< m
   double max_overlap_share = 0.0; ///< of the narrowest width
   double fastest_turn = 0.0;      ///< of a deformable block, rad per step
@@ -99,6 +101,7 @@ struct RunState {
   std::optional<Fault> local_fault;
   std::optional<Fault> fault; ///< why the run cannot go on; the same on all ranks
   Counters counters;
+  std::int64_t first_reduction = 0; ///< of the run, of all that its communicator has found
   PhaseTimes phases;
   Diagnostics notes;                   ///< warnings and remarks of the set-up, the same on all ranks
   std::optional<ContactDigest> digest; ///< of the last evaluation, once it has been asked for

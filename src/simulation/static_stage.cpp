@@ -98,8 +98,14 @@ void find_static_motion(RunState &run) {
   const bool was_local = run.statics->is_local();
   const bool is_near_rest =
       run.clock.state.memory.last.unbalanced_ratio <= near_rest * run.clock.stage().tolerance;
+  statics::IterationState &iteration = run.clock.state.iteration;
+  const std::int64_t products_before = iteration.products;
+  const statics::BorderExchange::Sent sent_before = run.statics->sent();
   run.statics->find_motion(run.blocks, run.neighbours.candidates, run.neighbours.history, run.contacts,
-                           overlap, balanced_force(run), is_near_rest, run.clock.state.iteration);
+                           overlap, balanced_force(run), is_near_rest, iteration);
+  run.counters.products += iteration.products - products_before;
+  run.counters.messages += run.statics->sent().messages - sent_before.messages;
+  run.counters.bytes += run.statics->sent().bytes - sent_before.bytes;
   run.contacts.leave_out_resting(run.statics->is_local());
   if (was_local && !run.statics->is_local()) { // blocks that were not let move have not shown that they rest
     LookMemory &memory = run.clock.state.memory;

@@ -46,6 +46,7 @@ void count_step(RunState &run, const AdvanceReport &advance) {
   run.counters.normals_undefined += run.force_report.normals_undefined;
   run.counters.messages += run.neighbours.ghosts.messages_per_update();
   run.counters.bytes += run.neighbours.ghosts.bytes_per_update();
+  run.counters.reductions = run.communicator.reductions() - run.first_reduction;
   run.counters.max_overlap = std::max(run.counters.max_overlap, run.force_report.max_overlap);
   run.counters.max_overlap_share =
       std::max(run.counters.max_overlap_share, run.force_report.max_overlap_share);

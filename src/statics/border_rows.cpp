@@ -26,6 +26,8 @@ template <class Number> void BorderExchange::copy(FieldOf<Number> &field) {
     received_[k].resize(rows_[k].receive.size() * bytes);
     if (!sent_[k].empty()) {
       leaving.push_back({rows_[k].rank, sent_[k]});
+      ++all_sent_.messages;
+      all_sent_.bytes += std::ssize(sent_[k]);
     }
     if (!received_[k].empty()) {
       arriving.push_back({rows_[k].rank, received_[k]});

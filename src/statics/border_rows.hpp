@@ -20,14 +20,21 @@ struct BorderRows {
 
 class BorderExchange {
 public:
+  struct Sent {
+    std::int64_t messages = 0;
+    std::int64_t bytes = 0;
+  };
   explicit BorderExchange(const Communicator &communicator) : communicator_(communicator) {}
   void take(std::vector<BorderRows> rows) { rows_ = std::move(rows); }
   /// Rows of the owners to their ghosts.
   template <class Number> void copy(FieldOf<Number> &field);
+  /// What this rank has sent so far.
+  [[nodiscard]] const Sent &sent() const { return all_sent_; }
 
 private:
   Communicator communicator_;
   std::vector<BorderRows> rows_;
+  Sent all_sent_;
   std::vector<std::vector<std::byte>> sent_;
   std::vector<std::vector<std::byte>> received_;
 };

@@ -140,6 +140,8 @@ public:
   /// @param any_deformable  on any rank
   void lay(BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
            std::vector<BorderRows> border);
+  /// What this rank has sent to others, but for reductions.
+  [[nodiscard]] const BorderExchange::Sent &sent() const { return solver_.sent(); }
   /// Owned rows that the next step moves; the others have no velocity.
   [[nodiscard]] std::span<const RowRun> moving() const { return moving_; }
   /// Some blocks stay where they are while others move.

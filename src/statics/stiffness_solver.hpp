@@ -66,6 +66,8 @@ public:
   void multiply(const BlockSystem &system, const ContactSprings &springs, LeanField &p, LeanField &y);
 
   [[nodiscard]] const BlockMatrices &mass() const { return mass_; }
+  /// What this rank has sent to others, but for reductions.
+  [[nodiscard]] const BorderExchange::Sent &sent() const { return border_.sent(); }
   double accuracy = 0.1;
   std::int64_t most_products = 200;
 

@@ -78,6 +78,20 @@ TEST(Communicator, ReductionsActOnEachEntry) {
   world.sum(std::span<std::int64_t>());
 }
 
+TEST(Communicator, ReductionsAreCountedForAllCopies) {
+  const Communicator world = Communicator::world();
+  const Communicator copy = world; // NOLINT(performance-unnecessary-copy-initialization)
+  const std::int64_t before = copy.reductions();
+  std::array<std::int64_t, 2> counts{1, 2};
+  world.sum(counts);
+  world.max(counts);
+  std::array<double, 3> values{};
+  copy.max(values);
+  EXPECT_EQ(copy.max(1.0), 1.0);
+  EXPECT_EQ(world.reductions() - before, 4);
+  EXPECT_EQ(Communicator::self().reductions(), 0);
+}
+
 TEST(Communicator, BroadcastReplacesWhatOthersHeld) {
   const Communicator world = Communicator::world();
   for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{70'000}}) {

@@ -48,6 +48,8 @@ public:
   void max(std::span<std::int64_t> values) const;
   /// In place; sum of each entry over all ranks, exact.
   void sum(std::span<std::int64_t> values) const;
+  /// How many maxima and sums over all ranks this communicator and its copies have found so far.
+  [[nodiscard]] std::int64_t reductions() const;
   /// Root's bytes to everybody.
   void broadcast(Bytes &bytes) const;
   /// Root's text to everybody.

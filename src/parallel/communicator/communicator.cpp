@@ -67,6 +67,7 @@ struct Communicator::Handle {
   MPI_Comm value = MPI_COMM_NULL;
   /// Kept between rounds so that a step does not allocate.
   std::vector<MPI_Request> requests;
+  std::int64_t reductions = 0;
 
   explicit Handle(MPI_Comm parent) {
     check(MPI_Comm_dup(parent, &value), "MPI_Comm_dup");
@@ -118,19 +119,26 @@ int Communicator::ranks_on_node() const {
   return count;
 }
 
+std::int64_t Communicator::reductions() const {
+  return handle_->reductions;
+}
+
 void Communicator::barrier() const {
   check(MPI_Barrier(handle_->value), "MPI_Barrier");
 }
 
 void Communicator::max(std::span<double> values) const {
+  ++handle_->reductions;
   reduce(values, MPI_DOUBLE, MPI_MAX, handle_->value);
 }
 
 void Communicator::max(std::span<std::int64_t> values) const {
+  ++handle_->reductions;
   reduce(values, MPI_INT64_T, MPI_MAX, handle_->value);
 }
 
 void Communicator::sum(std::span<std::int64_t> values) const {
+  ++handle_->reductions;
   reduce(values, MPI_INT64_T, MPI_SUM, handle_->value);
 }
 
@@ -204,6 +212,7 @@ const void *Communicator::native() const {
 // Over one rank it takes MPI microseconds, as long as the step of a few blocks.
 double Communicator::max(double value) const {
   double largest = value;
+  ++handle_->reductions;
   if (size_ > 1) {
     check(MPI_Allreduce(&value, &largest, 1, MPI_DOUBLE, MPI_MAX, handle_->value), "MPI_Allreduce");
   }
