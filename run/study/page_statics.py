@@ -89,6 +89,16 @@ def over_static_table(rows):
                  source("statics", "statics_growth.csv"))
 
 
+def ranks_table(rows):
+    lines = [[row["model"], count(row["blocks"]), row["way"], count(row["evaluations"]), number(row["work_ratio"], 4),
+              number(row["products"], 2), number(row["messages_per_rank"], 3), count(row["bytes_per_rank"]),
+              number(row["reductions"], 3),
+              "{} ({} to {})".format(*(number(row[f"efficiency{which}"], 2) for which in ("", "_least", "_most")))]
+             for row in rows]
+    return table(["model", "blocks", "way", "evaluations", "busiest rank's work over its share", "products", "messages a rank",
+                  "bytes a rank", "reductions", "efficiency"], lines, source("statics", "statics_ranks.csv"))
+
+
 def paths_table(rows):
     shown = {*(("static", n) for n in ("1", "50", "100", "200", "800")), ("kinetic damping", "1"), ("local damping", "1"),
              ("slow loading", "8000")}
@@ -122,7 +132,8 @@ def random_table(rows):
 
 
 def statics():
-    cost, paths, random, growth = (read(f"statics_{part}.csv") for part in ("cost", "paths", "random", "growth"))
+    cost, paths, random, growth, ranks = (read(f"statics_{part}.csv")
+                                          for part in ("cost", "paths", "random", "growth", "ranks"))
     compared = [row for row in random if row["normal_off"]]
     default = of(compared, way="static", parts="50")
     finest = of(compared, way="static", parts="800")
@@ -147,6 +158,7 @@ def statics():
     far, still = beyond(default, "displacement_off"), beyond(finest, "displacement_off")
     return {
         "cost": cost_table(cost), "growth": growth_table(growth), "exponents": exponents(growth),
+        "ranks": ranks_table(ranks),
         "over_static": over_static_table(growth),
         "paths": paths_table(paths), "random": random_table(compared), "masses": str(len(default)),
         "deformable": str(len(of(default, fidelity="deformable"))), "slopes": str(len(of(default, kind="slope"))),

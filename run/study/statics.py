@@ -4,7 +4,7 @@
     run/study/statics.py BUILD OUT_DIR [--quick] [--only PART ...] [--seed FIRST]
     run/study/statics.py BUILD OUT_DIR --large [MODEL ...]
 
-PART is cost, paths, random or growth. Every run is on one rank. A count of evaluations is that of steps; pair evaluations
+PART is cost, paths, random, growth or ranks. Every run is on one rank, but for those of the last part. A count of evaluations is that of steps; pair evaluations
 count the pairs of blocks that were evaluated. The ways to rest are the static solver with 1 to 800 increments of the load,
 kinetic damping, local damping of 0.8, and slow loading: the load rises smoothly over a number of steps under local damping.
 
@@ -13,12 +13,14 @@ OUT_DIR/statics_paths.csv    difference from slow loading over 16,000 steps, aga
 OUT_DIR/statics_random.csv   the same of 30 random rock masses, with seeds from FIRST (1) on
 OUT_DIR/statics_growth.csv   evaluations and CPU time of slopes and walls of up to 10^4 blocks; --large adds those of
                              10^5 and 10^6, or some of them: slope15, wall224, wall707
+OUT_DIR/statics_ranks.csv    wall time on two ranks, work, messages and reductions. Use a quiet machine.
 """
 
 import argparse
 import csv
 import json
 import math
+import os
 import re
 import shutil
 import statistics
@@ -78,13 +80,19 @@ class Runner:
     def __init__(self, program, work):
         self.program, self.work, self.count = program, work, 0
 
-    def run(self, case, keys, seconds=0.0, more=()):
-        """@param seconds  over which the load comes"""
+    def run(self, case, keys, seconds=0.0, more=(), ranks=None):
+        """@param seconds  over which the load comes
+        @param ranks  started by mpirun; none: one without it"""
         self.count += 1
         folder = self.work / f"run{self.count}"
         sets = [word for setting in more for word in ("--set", setting)]
-        done = subprocess.run([self.program, "run", case.file, "--out", folder, *case.arguments(keys, seconds), *sets],
-                              capture_output=True, text=True)
+        start = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none"] if ranks else []
+        # Starts of Open MPI that share a scratch folder disturb each other.
+        scratch = self.work / f"mpi{self.count}"
+        scratch.mkdir()
+        done = subprocess.run([*start, self.program, "run", case.file, "--out", folder, *case.arguments(keys, seconds),
+                               *sets], capture_output=True, text=True,
+                              env=os.environ | {"OMPI_MCA_orte_tmpdir_base": str(scratch)})
         if done.returncode not in (0, FAILED, UNDECIDED):
             raise SystemExit(f"{case.file}, {keys}:\n{done.stderr}")
         return Rest(folder, done.stderr)
@@ -281,6 +289,44 @@ def growth(runner, models, ways, rounds=1):
     return rows
 
 
+def ranks(runner, quick):
+    """Wall time of the step loop on one rank over twice that on two, in alternating runs: of stages of the static solver and
+    of steps of damped motion."""
+    rounds, steps, models = (1, 20, SMALL[:1]) if quick else (9, 300, [SMALL[2], SMALL[4]])
+    rows = []
+    for model, size in models:
+        case = scenes.pile(runner.work, "wall", size) if model == "wall" else scenes.slope_of_benches(size, "joints open")
+        limit = steps * runner.step(case, WAYS["local damping"])
+        few_steps = [f"stage.weight.limit={limit!r}", f"output.interval={limit!r}", f"output.history_interval={limit!r}"]
+        taken = {"static": [], "local damping": []}
+        last = {}
+        for _ in range(rounds):
+            for way, over in taken.items():
+                walls = []
+                for count in (1, 2):
+                    rest = runner.run(case, WAYS[way], more=few_steps if way == "local damping" else [], ranks=count)
+                    last[way, count] = rest.summary
+                    walls.append(rest.summary["wall_s"])
+                    runner.drop(rest)
+                over.append(walls[0] / (2.0 * walls[1]))
+        for way, over in taken.items():
+            one, two = last[way, 1], last[way, 2]
+            if one["steps"] != two["steps"]:
+                raise SystemExit(f"{model} {size}, {way}: {one['steps']} steps on one rank, {two['steps']} on two")
+            done = two["steps"]
+            rows.append({"model": model, "size": size, "way": way, "blocks": two["blocks"], "evaluations": done,
+                         "work_ratio": 2.0 * max(two["work_per_rank"]) / sum(one["work_per_rank"]),
+                         "ghosts_per_rank": sum(two["ghosts_per_rank"]) / 2.0,
+                         "products": two["counters"]["products"] / done,
+                         "messages_per_rank": two["messages_per_step"] / 2.0,
+                         "bytes_per_rank": two["bytes_sent_per_step"] / 2.0,
+                         "reductions": two["counters"]["reductions"] / done,
+                         "efficiency": statistics.median(over), "efficiency_least": min(over),
+                         "efficiency_most": max(over), "rounds": rounds})
+            tell(**rows[-1])
+    return rows
+
+
 def known(path):
     """The rows of each model in the table of growth as it is."""
     rows = {}
@@ -296,13 +342,13 @@ def main():
     parser.add_argument("build", type=Path, metavar="BUILD")
     parser.add_argument("out", type=Path, metavar="OUT_DIR")
     parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--only", nargs="+", choices=["cost", "paths", "random", "growth"], metavar="PART")
+    parser.add_argument("--only", nargs="+", choices=["cost", "paths", "random", "growth", "ranks"], metavar="PART")
     names = {f"{model}{size}": (model, size) for model, size in LARGE}
     parser.add_argument("--large", nargs="*", choices=[*names], metavar="MODEL")
     parser.add_argument("--seed", type=int, default=1, metavar="FIRST")
     asked = parser.parse_args()
     table = asked.out / "statics_growth.csv"
-    parts = {"cost": cost, "paths": paths, "random": lambda runner, quick: random_masses(runner, quick, asked.seed),
+    parts = {"cost": cost, "paths": paths, "ranks": ranks, "random": lambda runner, quick: random_masses(runner, quick, asked.seed),
              "growth": lambda runner, quick: growth(runner, SMALL[:1] if quick else SMALL, [*WAYS], 1 if quick else 15)
              + [row for model in LARGE for row in known(table).get(model, [])]}
     with tempfile.TemporaryDirectory() as work:

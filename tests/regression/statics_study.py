@@ -62,12 +62,24 @@ def check_growth(rows):
         assert evaluations * int(row["blocks"]) < int(row["pair_evaluations"]) <= evaluations * pairs, row
 
 
+def check_ranks(rows):
+    static, motion = (of(rows, way=way)[0] for way in ("static", "local damping"))
+    for row in (static, motion):
+        assert 1.0 <= float(row["work_ratio"]) < 1.5 and float(row["efficiency"]) > 0.0, row
+    # A product sends its rows to the neighbour and takes three reductions; a step sends one message.
+    assert float(motion["products"]) == 0.0 and float(motion["messages_per_rank"]) == 1.0, motion
+    assert float(static["products"]) > 1.0, static
+    assert float(static["messages_per_rank"]) >= 1.0 + float(static["products"]), static
+    assert float(static["reductions"]) > 3.0 * (float(static["products"]) - 1.0), static
+
+
 def main():
     build, folder = (Path(word) for word in sys.argv[1:3])
     folder.mkdir(parents=True, exist_ok=True)
     subprocess.run([STUDY / "statics.py", build, folder, "--quick"], check=True)
     subprocess.run([STUDY / "plot_statics.py", folder], check=True)
-    checks = {"cost": check_cost, "paths": check_paths, "random": check_random, "growth": check_growth}
+    checks = {"cost": check_cost, "paths": check_paths, "random": check_random, "growth": check_growth,
+              "ranks": check_ranks}
     for part, check in checks.items():
         with open(folder / f"statics_{part}.csv", newline="") as file:
             check(list(csv.DictReader(file)))
