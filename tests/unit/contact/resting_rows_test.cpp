@@ -159,9 +159,11 @@ TEST(RestingRows, KeepWhatTheirPairsDid) {
 // Several groups of pairs, and some of them wholly at rest but for pairs with a ghost or a notch.
 TEST(RestingRows, KeepWhatWholeGroupsDid) {
   for (const Shape shape : {Shape::square, Shape::notched}) {
-    for (const std::size_t num_ghosts : {0U, 100U}) {
-      const Totals totals = move_some(grid(30, shape, false, num_ghosts), one_law(1e6, 0.3), 0.05, 2);
-      EXPECT_GT(totals.left_out, 10000);
+    for (const bool deforms : {false, true}) {
+      for (const std::size_t num_ghosts : {0U, 100U}) {
+        const Totals totals = move_some(grid(30, shape, deforms, num_ghosts), one_law(1e6, 0.3), 0.05, 2);
+        EXPECT_GT(totals.left_out, 10000);
+      }
     }
   }
 }
