@@ -48,8 +48,6 @@ def pairs_a_block(row):
 def evaluations_of_all(row):
     """How often the pair evaluations of a run would have looked at every pair of its model; of runs in several last bits
     the median, least and most."""
-    if not row["pairs"]:
-        return "not counted"
     median, least, most = (count(float(row[f"{which}pair_evaluations"]) / float(row["pairs"]))
                            for which in ("", "least_", "most_"))
     return median if row["rounds"] == "1" else f"{median} ({least} to {most})"

@@ -58,9 +58,9 @@ def draw_growth(axes, rows):
         axes.plot([], [], line, color="k", label=f"{model}, {start}")
     for way, (colour, marker) in list(LOOKS.items())[:3]:
         axes.plot([], [], marker, color=colour, label=way)
-    axes.margins(y=0.12)
-    finish(axes, "number of blocks", "pair evaluations of a block", "Growth: slopes and walls", loc="upper left",
-           bbox_to_anchor=(0.45, 1.0))
+    finish(axes, "number of blocks", "pair evaluations of a block", "Growth: slopes and walls", loc="upper left")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, 100.0 * high)  # room for the legend
 
 
 def draw_increments(axes, rows, random, column, words):
