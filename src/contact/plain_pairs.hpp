@@ -107,9 +107,9 @@ private:
   std::vector<PlainOverlap> overlaps_;        ///< what those of the history become; afterwards what they were
   ForceReport report_;                        ///< of what has been evaluated so far
   RestingGroups::Kept kept_;                  ///< of pairs that are left out
-  std::optional<RestingGroups::Kept> kept_here_;
-  std::vector<RegionForce> again_;    ///< details of the group at hand
-  std::vector<std::uint32_t> places_; ///< in again_, by pair of the group at hand
+  std::optional<RestingGroups::Kept> kept_here_; ///< as kept() says
+  std::vector<RegionForce> again_;               ///< details of the group at hand
+  std::vector<std::uint32_t> places_;            ///< in again_, by pair of the group at hand
   bool keeps_details_ = false;
   std::vector<RegionDetails> details_; ///< by pair that touches, if they are kept
 };

@@ -1,7 +1,5 @@
 #include "contact/resting_groups.hpp"
 
-#include <array>
-
 namespace gcpdda {
 
 void RestingGroups::find_rows(const Candidates &candidates) {

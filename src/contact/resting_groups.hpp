@@ -1,7 +1,8 @@
 #pragma once
 
 // Groups of plain pairs whose rows are all at rest (resting_rows.hpp): where few blocks move these are most,
-// and to look at each of their pairs would take longer than to evaluate the others.
+// and to look at each of their pairs would take longer than to evaluate the others. Pairs with a ghost and
+// pairs that are not plain are asked one by one.
 
 #include "contact/candidates.hpp"
 #include "contact/resting_rows.hpp"
