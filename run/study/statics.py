@@ -264,7 +264,8 @@ def cost(runner, quick):
 
 
 SMALL = [("slope", 1), ("slope", 2), ("slope", 5), ("wall", 16), ("wall", 50)]  # benches, rows of bricks
-LARGE = {("slope", 15): ["static", "kinetic damping"], ("wall", 224): ["static", "kinetic damping"], ("wall", 707): ["static"]}
+LARGE = {("slope", 15): ["static", "kinetic damping"], ("wall", 224): ["static", "kinetic damping"],
+         ("wall", 707): ["static"]}
 
 
 def growth(runner, models, ways, rounds=1):
@@ -348,7 +349,8 @@ def main():
     parser.add_argument("--seed", type=int, default=1, metavar="FIRST")
     asked = parser.parse_args()
     table = asked.out / "statics_growth.csv"
-    parts = {"cost": cost, "paths": paths, "ranks": ranks, "random": lambda runner, quick: random_masses(runner, quick, asked.seed),
+    parts = {"cost": cost, "paths": paths, "ranks": ranks,
+             "random": lambda runner, quick: random_masses(runner, quick, asked.seed),
              "growth": lambda runner, quick: growth(runner, SMALL[:1] if quick else SMALL, [*WAYS], 1 if quick else 15)
              + [row for model in LARGE for row in known(table).get(model, [])]}
     with tempfile.TemporaryDirectory() as work:
