@@ -89,7 +89,7 @@ void CoarseGrid::choose(const BlockSystem &system, std::span<const std::uint8_t>
   cell_of_.assign(system.num_rows(), -1);
   arms_.assign(system.num_rows(), {});
   forces_.clear();
-  motions_.clear();
+  residual_.clear();
   if (!has_cells_) {
     return;
   }
@@ -102,7 +102,7 @@ void CoarseGrid::choose(const BlockSystem &system, std::span<const std::uint8_t>
   }
   keys_ = united(communicator_, std::move(mine));
   forces_.assign(3 * keys_.size(), 0);
-  motions_.assign(3 * keys_.size(), 0.0);
+  residual_.assign(3 * keys_.size(), 0.0);
   lean_motions_.assign(3 * keys_.size(), 0.0F);
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (moves[row] != 0) {
@@ -298,19 +298,33 @@ double CoarseGrid::largest(const BlockSystem &system, std::span<const RowRun> ro
   return largest;
 }
 
-void CoarseGrid::solve() {
-  if (motions_.empty()) {
-    return; // no block of any rank moves
+void CoarseGrid::sum_forces(std::span<std::int64_t> others) {
+  if (communicator_.size() == 1) {
+    return;
   }
-  if (communicator_.size() > 1) {
-    communicator_.sum(forces_);
+  const std::size_t num_forces = forces_.size();
+  forces_.insert(forces_.end(), others.begin(), others.end());
+  communicator_.sum(forces_);
+  std::copy_n(forces_.end() - std::ssize(others), others.size(), others.begin());
+  forces_.resize(num_forces);
+}
+
+double CoarseGrid::begin() {
+  std::fill(residual_.begin(), residual_.end(), 0.0);
+  return subtract(-1.0);
+}
+
+double CoarseGrid::subtract(double times) {
+  if (residual_.empty()) {
+    return 0.0; // no block of any rank moves
   }
-  std::transform(forces_.begin(), forces_.end(), motions_.begin(),
-                 [](std::int64_t sum) { return static_cast<double>(sum) / units; });
-  Eigen::Map<Eigen::VectorXd> motions(motions_.data(), std::ssize(motions_));
-  motions = factors_->ldlt.solve(motions).eval();
-  std::transform(motions_.begin(), motions_.end(), lean_motions_.begin(),
+  std::transform(residual_.begin(), residual_.end(), forces_.begin(), residual_.begin(),
+                 [&](double r, std::int64_t q) { return r - times * (static_cast<double>(q) / units); });
+  const Eigen::Map<const Eigen::VectorXd> residual(residual_.data(), std::ssize(residual_));
+  const Eigen::VectorXd motions = factors_->ldlt.solve(residual);
+  std::transform(motions.begin(), motions.end(), lean_motions_.begin(),
                  [](double motion) { return static_cast<float>(motion); });
+  return residual.dot(motions);
 }
 
 } // namespace gcpdda::statics

@@ -14,7 +14,7 @@
 // that it needs the same bits. Entries are therefore summed as integers in units of a power of two, 2^-40 of
 // the largest contribution of all ranks: the sum of integers does not depend on their order. A preconditioner
 // forgives the rounding of its entries. Forces on cells have one unit for all iterations of an inner solve,
-// 2^-36 of the size that they begin with, and are cut where they have grown to 2^12 times that. The pattern
+// 2^-36 of the size that they begin with, and those of a block are cut at 2^12 times that. The pattern
 // of K_c follows from the springs of all ranks, because the order of elimination follows from the pattern.
 
 #include "gcpdda/parallel/communicator.hpp"
@@ -47,20 +47,25 @@ public:
   /// @param matrices  M of owned rows
   void factorise(const BlockSystem &system, const ContactSprings &springs, const BlockMatrices &matrices);
 
-  // z += P K_c^-1 P^T r is found in three parts, so that the solver may take r and z as it passes their rows.
+  // P K_c^-1 P^T r is found in parts, so that the solver may take its fields as it passes their rows.
   /// The largest of these forces on cells. Collective.
   [[nodiscard]] double largest(const BlockSystem &system, std::span<const RowRun> rows,
                                const Field &forces) const;
   void clear_forces() { std::fill(forces_.begin(), forces_.end(), 0); }
-  /// To P^T r, the part of a row that moves; r of about one.
-  void add_forces(std::size_t row, bool is_deformable, const float *r) {
+  /// To P^T q, the part of a row that moves; q of about one.
+  void add_forces(std::size_t row, bool is_deformable, const float *q) {
     std::int64_t *to = forces_.data() + first_unknown(row);
-    for (const float value : to_cell(row, is_deformable, r)) {
+    for (const float value : to_cell(row, is_deformable, q)) {
       *to++ += std::llrint(std::clamp(value * units, -most_units, most_units));
     }
   }
-  /// K_c^-1 of the forces of all ranks. Collective.
-  void solve();
+  /// P^T q of all ranks, and these numbers of all ranks, in one reduction. Collective.
+  void sum_forces(std::span<std::int64_t> others);
+  /// r is q, and its motions are found.
+  /// @return (P^T r)^T K_c^-1 P^T r
+  double begin();
+  /// r is less q by so many times; the rest as above.
+  double subtract(double times);
   /// To z, the part of a row that moves.
   void add_motion(std::size_t row, bool is_deformable, float *z) const {
     const float *const motion = lean_motions_.data() + first_unknown(row);
@@ -133,9 +138,9 @@ private:
   std::vector<Arm> arms_;             ///< by row: of the centroid from the middle of the cell, over the side
   std::vector<std::int64_t> pattern_; ///< key_of() of the blocks of K_c, ascending
   std::vector<std::int64_t> sums_;    ///< entries of K_c, in units
-  std::vector<std::int64_t> forces_;  ///< P^T r, in units
-  std::vector<double> motions_;       ///< of cells
-  std::vector<float> lean_motions_;   ///< the same, as it is added to z
+  std::vector<std::int64_t> forces_;  ///< P^T q, in units
+  std::vector<double> residual_;      ///< P^T r
+  std::vector<float> lean_motions_;   ///< of cells, as they are added to z
   std::unique_ptr<Factors> factors_;
 };
 

@@ -57,9 +57,8 @@ void take_columns(const BlockMatrices &from, std::size_t row, LeanField &to) {
   }
 }
 
-struct NoSum {
-  void add(double) {}
-};
+/// Of products whose rows are not added up.
+template <int places> void leave(std::size_t, const LeanRow<places> &, const LeanRow<places> &) {}
 
 } // namespace
 
@@ -75,7 +74,7 @@ void StiffnessSolver::lay(const BlockSystem &system, std::vector<RowRun> moving,
   for (LeanField *matrices : {&own_, &inverse_}) {
     *matrices = LeanField(system.num_owned, places * mass_.width());
   }
-  for (LeanField *field : {&x_, &r_, &z_, &p_, &q_}) {
+  for (LeanField *field : {&x_, &w_, &p_, &q_}) {
     *field = LeanField(system.num_rows(), places);
   }
 }
@@ -125,8 +124,7 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
     copy_row(system.pseudo[row].velocity.data(), width, p_.of(row));
   });
   springs_.take(springs, SlipSprings::none_tangential, width);
-  NoSum none;
-  width == 3 ? multiply_by<4>(system, p_, q_, none) : multiply_by<8>(system, p_, q_, none);
+  width == 3 ? multiply_by<4>(system, p_, q_, leave<4>) : multiply_by<8>(system, p_, q_, leave<8>);
   ExactSum strained;
   for_rows(moving_, [&](std::size_t row) {
     const double *const v = system.pseudo[row].velocity.data();
@@ -148,8 +146,8 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
   });
 }
 
-template <int places, class Sum>
-void StiffnessSolver::multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Sum &sum) {
+template <int places, class Visit>
+void StiffnessSolver::multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Visit &&visit) {
   border_.copy(p);
   for_places(moving_, places, [&](std::size_t i) { y.values()[i] = 0.0F; });
   springs_.add(system, p, y);
@@ -157,29 +155,14 @@ void StiffnessSolver::multiply_by(const BlockSystem &system, LeanField &p, LeanF
     const LeanRow<places> of_row = row_of<places>(p, row);
     const LeanRow<places> product = row_of<places>(y, row) + product_of<places>(own_, row, of_row);
     row_of<places>(y, row) = product;
-    sum.add(dot_product<places>(of_row, product));
+    visit(row, of_row, product);
   });
 }
 
 void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &springs, LeanField &p,
                                LeanField &y) {
-  NoSum none;
   springs_.take(springs, SlipSprings::all, mass_.width());
-  mass_.width() == 3 ? multiply_by<4>(system, p, y, none) : multiply_by<8>(system, p, y, none);
-}
-
-template <int places>
-void StiffnessSolver::begin_preconditioning(const BlockSystem &system, std::size_t row) {
-  row_of<places>(z_, row) = product_of<places>(inverse_, row, row_of<places>(r_, row));
-  coarse_.add_forces(row, deforms<places>(system, row), r_.of(row));
-}
-
-template <int places, class Sum> void StiffnessSolver::precondition(const BlockSystem &system, Sum &sum) {
-  coarse_.solve();
-  for_rows(moving_, [&](std::size_t row) {
-    coarse_.add_motion(row, deforms<places>(system, row), z_.of(row));
-    sum.add(dot_product<places>(row_of<places>(r_, row), row_of<places>(z_, row)));
-  });
+  mass_.width() == 3 ? multiply_by<4>(system, p, y, leave<4>) : multiply_by<8>(system, p, y, leave<8>);
 }
 
 template <int places>
@@ -188,42 +171,62 @@ std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const Field &f
   const double largest = coarse_.largest(system, moving_, force);
   const double scale = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
   coarse_.clear_forces();
+  ExactSum begun;
   for_rows(moving_, [&](std::size_t row) {
+    LeanRow<places> r = LeanRow<places>::Zero();
     for (std::size_t i = 0; i < width; ++i) {
       x_.of(row)[i] = 0.0F;
-      r_.of(row)[i] = static_cast<float>(scale * force.of(row)[i]);
+      r[static_cast<Eigen::Index>(i)] = static_cast<float>(scale * force.of(row)[i]);
     }
-    begin_preconditioning<places>(system, row);
+    const LeanRow<places> w = product_of<places>(inverse_, row, r);
+    row_of<places>(w_, row) = w;
+    coarse_.add_forces(row, deforms<places>(system, row), r.data());
+    begun.add(dot_product<places>(r, w));
   });
-  ExactSum first;
-  precondition<places>(system, first);
-  communicator_.sum(first.limbs());
-  double size = first.value();
-  for_rows(moving_, [&](std::size_t row) { row_of<places>(p_, row) = row_of<places>(z_, row); });
+  coarse_.sum_forces(begun.limbs());
+  double in_rows = begun.value(); // r^T w
+  double size = in_rows + coarse_.begin();
+  for_rows(moving_, [&](std::size_t row) {
+    row_of<places>(p_, row) = row_of<places>(w_, row);
+    coarse_.add_motion(row, deforms<places>(system, row), p_.of(row));
+  });
   const double enough = accuracy * accuracy * size;
   std::int64_t products = 0;
   while (size > enough && products < most_products) {
-    SumInUnits along_p(size);
-    multiply_by<places>(system, p_, q_, along_p);
+    std::array<SumInUnits, 3> sums{SumInUnits(size), SumInUnits(size), SumInUnits(size)};
+    auto &[along_p, along_w, along_u] = sums;
+    coarse_.clear_forces();
+    multiply_by<places>(system, p_, q_,
+                        [&](std::size_t row, const LeanRow<places> &p, const LeanRow<places> &q) {
+                          const LeanRow<places> u = product_of<places>(inverse_, row, q);
+                          along_p.add(dot_product<places>(p, q));
+                          along_w.add(dot_product<places>(row_of<places>(w_, row), q));
+                          along_u.add(dot_product<places>(u, q));
+                          coarse_.add_forces(row, deforms<places>(system, row), q.data());
+                          row_of<places>(q_, row) = u;
+                        });
     ++products;
-    const double curvature = along_p.over(communicator_);
+    std::array<std::int64_t, 3> units{along_p.units(), along_w.units(), along_u.units()};
+    coarse_.sum_forces(units);
+    const double curvature = along_p.value(units[0]);
     if (!(curvature > 0.0)) {
       break;
     }
     const auto step = static_cast<float>(size / curvature);
-    coarse_.clear_forces();
-    for_rows(moving_, [&](std::size_t row) {
-      const auto p = row_of<places>(p_, row);
-      row_of<places>(x_, row) += step * p;
-      row_of<places>(r_, row) -= step * row_of<places>(q_, row);
-      begin_preconditioning<places>(system, row);
-    });
-    SumInUnits along_z(size);
-    precondition<places>(system, along_z);
-    const double before = std::exchange(size, along_z.over(communicator_));
+    const double exact_step = step;
+    in_rows += exact_step * (exact_step * along_u.value(units[2]) - 2.0 * along_w.value(units[1]));
+    const double before = std::exchange(size, in_rows + coarse_.subtract(exact_step));
     const auto share = static_cast<float>(size / before);
+    const bool goes_on = size > enough;
     for_rows(moving_, [&](std::size_t row) {
-      row_of<places>(p_, row) = row_of<places>(z_, row) + share * row_of<places>(p_, row);
+      const LeanRow<places> p = row_of<places>(p_, row);
+      row_of<places>(x_, row) += step * p;
+      if (goes_on) {
+        const LeanRow<places> w = row_of<places>(w_, row) - step * row_of<places>(q_, row);
+        row_of<places>(w_, row) = w;
+        row_of<places>(p_, row) = w + share * p;
+        coarse_.add_motion(row, deforms<places>(system, row), p_.of(row));
+      }
     });
   }
   for_rows(moving_, [&](std::size_t row) {

@@ -11,13 +11,21 @@
 // blocks (coarse_grid.hpp). The iteration ends when r^T z has fallen to `accuracy` squared of what it began
 // with: g is a direction of a motion in pseudo-time and need not be exact.
 //
-// Same bits on any number of ranks: a block sums its springs in the order of its partners' ids, border
-// springs are on both ranks, search directions of ghosts are copies of their owners', and the two inner
-// products of an iteration are sums of one number a block, as integers in units of 2^-44 of the product
-// before (`SumInUnits`): one word a reduction, and a rounding far below what the iteration leaves.
+// An iteration has one reduction. All that it adds over the ranks is known with q = (K + rho D) p: p^T q,
+// P^T q on the coarse grid, and with w = B^-1 r and u = B^-1 q also w^T q and u^T q. Then a = r^T z/p^T q,
+// and
+//     x + a p,   w - a u,   P^T r - a P^T q,   r^T w - 2 a w^T q + a^2 u^T q
+// follow without another one, as well as the coarse motions g = K_c^-1 P^T r, which every rank finds,
+// r^T z = r^T w + (P^T r)^T g and the next p = w + P g + b p. r itself is not kept. Nothing in r^T w cancels
+// but what the iteration takes away: its error is that of single precision, of the largest r^T w so far.
 //
-// Large models read their fields from main memory. An iteration passes over them three times: K p and p^T K
-// p; the new x and r, with B^-1 r and P^T r; and z with r^T z.
+// Same bits on any number of ranks: a block sums its springs in the order of its partners' ids, border
+// springs are on both ranks, search directions of ghosts are copies of their owners', and inner products are
+// sums of one number a block, as integers in units of 2^-44 of r^T z (`SumInUnits`): one word each, and a
+// rounding far below what the iteration leaves.
+//
+// Large models read their fields from main memory. An iteration passes over them twice: q with all sums, and
+// the new x, w and p.
 
 #include "statics/block_stiffness.hpp"
 #include "statics/border_rows.hpp"
@@ -74,13 +82,9 @@ public:
 private:
   /// For rows of so many places.
   template <int places> std::int64_t solve_by(const BlockSystem &system, const Field &force, Field &solution);
-  /// y = (K + rho D) p with the springs at hand. sum.add(p.y) of every row.
-  template <int places, class Sum>
-  void multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Sum &sum);
-  /// B^-1 r to z, and P^T r to the coarse grid.
-  template <int places> void begin_preconditioning(const BlockSystem &system, std::size_t row);
-  /// The rest of z. sum.add(r.z) of every row. Collective.
-  template <int places, class Sum> void precondition(const BlockSystem &system, Sum &sum);
+  /// y = (K + rho D) p with the springs at hand. visit(row, its p, its y). Collective.
+  template <int places, class Visit>
+  void multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Visit &&visit);
 
   Communicator communicator_;
   CoarseGrid coarse_;
@@ -94,14 +98,13 @@ private:
   LeanField own_;          ///< rho D and own springs, a column of `lean_width` places for each freedom
   LeanField inverse_;      ///< B^-1, the same
   LeanField x_;
-  LeanField r_;
-  LeanField z_;
+  LeanField w_;
   LeanField p_;
-  LeanField q_;
+  LeanField q_; ///< and u, once q has been added up
 };
 
-/// A sum over the rows of all ranks in units of 2^-44 of a number of its size, which is positive and the same
-/// on all ranks. What a row adds is at most 2^18 times that.
+/// A sum over rows in units of 2^-44 of a number of its size, which is positive and the same on all ranks.
+/// What a row adds is at most 2^18 times that. Units of several ranks are added as integers.
 class SumInUnits {
 public:
   explicit SumInUnits(double size)
@@ -110,11 +113,9 @@ public:
     constexpr double most = 0x1p62;
     sum_ += static_cast<std::uint64_t>(std::llrint(std::clamp(value * per_unit_, -most, most)));
   }
-  /// Collective.
-  [[nodiscard]] double over(const Communicator &communicator) const {
-    auto sum = static_cast<std::int64_t>(sum_);
-    communicator.sum(std::span(&sum, 1));
-    return std::ldexp(static_cast<double>(sum), exponent_);
+  [[nodiscard]] std::int64_t units() const { return static_cast<std::int64_t>(sum_); }
+  [[nodiscard]] double value(std::int64_t units) const {
+    return std::ldexp(static_cast<double>(units), exponent_);
   }
 
 private:
