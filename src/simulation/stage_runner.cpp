@@ -107,7 +107,9 @@ StageLook look_at_blocks(RunState &run) {
   acting = std::max(acting, run.contacts.sums().largest_force());
   overlap = run.force_report.max_overlap;
   run.communicator.max(largest);
-  run.communicator.sum(kinetic.limbs());
+  if (!is_static(run)) { // which has no velocities
+    run.communicator.sum(kinetic.limbs());
+  }
   return {acting > 0.0 ? unbalanced / acting : 0.0,
           motion,
           overlap,

@@ -93,7 +93,6 @@ double balanced_force(const RunState &run) {
 void find_static_motion(RunState &run) {
   constexpr double near_rest = 100.0; // times the unbalanced ratio at rest
   const auto scope = run.phases.measure(Phase::update);
-  const double overlap = run.communicator.max(run.force_report.max_overlap);
   run.statics->springs().set_links(run.bolts.liner_springs(run.blocks));
   const bool was_local = run.statics->is_local();
   const bool is_near_rest =
@@ -102,7 +101,7 @@ void find_static_motion(RunState &run) {
   const std::int64_t products_before = iteration.products;
   const statics::BorderExchange::Sent sent_before = run.statics->sent();
   run.statics->find_motion(run.blocks, run.neighbours.candidates, run.neighbours.history, run.contacts,
-                           overlap, balanced_force(run), is_near_rest, iteration);
+                           run.force_report.max_overlap, balanced_force(run), is_near_rest, iteration);
   run.counters.products += iteration.products - products_before;
   run.counters.messages += run.statics->sent().messages - sent_before.messages;
   run.counters.bytes += run.statics->sent().bytes - sent_before.bytes;

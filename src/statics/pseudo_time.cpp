@@ -62,22 +62,23 @@ void PseudoTime::keep_resting(BlockSystem &system) {
   springs_.set_moving(is_local_ ? std::move(moves) : std::vector<std::uint8_t>());
 }
 
-void PseudoTime::choose_rows(BlockSystem &system, double balanced, bool is_near_rest,
+bool PseudoTime::choose_rows(BlockSystem &system, double balanced, bool is_near_rest,
                              const IterationState &state) {
   if (!may_pause(state) || load_share(state.evaluations) < 1.0) {
-    return;
+    return false;
   }
   const bool all_move =
       state.evaluations % rules_.window < (is_near_rest ? rules_.all_move_near_rest : rules_.all_move);
   const auto chosen = all_move ? std::nullopt : far_.find(system, balanced);
   const bool was_local = std::exchange(is_local_, chosen.has_value());
   if (!is_local_ && !was_local) {
-    return;
+    return false;
   }
   const std::span<PseudoMotion> pseudo = pseudo_rows(system);
   for_rows(far_.mobile(),
            [&](std::size_t row) { pseudo[row].rests = chosen && (*chosen)[row] == 0 ? 1.0 : 0.0; });
   keep_resting(system);
+  return true;
 }
 
 void PseudoTime::hold(BlockSystem &system) {
@@ -109,6 +110,16 @@ double row_product(const std::array<double, 6> &v, const double *f, std::size_t 
   return product;
 }
 
+/// Two sums of all ranks in one reduction. Collective.
+void sum_both(const Communicator &communicator, ExactSum &a, ExactSum &b) {
+  std::array<std::int64_t, 2 * std::size_t{ExactSum::num_limbs}> limbs{};
+  const auto half = std::copy(a.limbs().begin(), a.limbs().end(), limbs.begin());
+  std::copy(b.limbs().begin(), b.limbs().end(), half);
+  communicator.sum(limbs);
+  std::copy(limbs.begin(), half, a.limbs().begin());
+  std::copy(half, limbs.end(), b.limbs().begin());
+}
+
 } // namespace
 
 double mass_share(std::int64_t num_blocks) {
@@ -138,22 +149,28 @@ double PseudoTime::power(const BlockSystem &system) const {
 void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
                              const ContactForces &contacts, double overlap, double balanced,
                              bool is_near_rest, IterationState &state) {
+  const double share = load_share(state.evaluations);
   springs_.update(system, candidates, history, contacts,
-                  load_share(state.evaluations) < 1.0 ? under_load(rules_.springs) : rules_.springs);
+                  share < 1.0 ? under_load(rules_.springs) : rules_.springs);
   if (may_pause(state)) { // all rows may move from here on
     springs_.set_moving({});
   }
   find_standing(system);
-  gather(system, load_share(state.evaluations));
+  gather(system, share);
   const double power_behind = power(system);
   const double square =
       state.momentum > 0.0 ? std::clamp((state.power_before - power_behind) / state.momentum, 0.0, 3.9) : 0.0;
-  choose_rows(system, balanced, is_near_rest, state);
+  const bool others_move = choose_rows(system, balanced, is_near_rest, state);
   const bool is_coarse_due = may_pause(state);
   ++state.evaluations;
-  gather(system, load_share(state.evaluations));
-  const bool begins = !(state.momentum > 0.0) || power(system) < 0.0;
-  const bool loads = load_share(state.evaluations) < 1.0;
+  const double next_share = load_share(state.evaluations);
+  const bool loads = next_share < 1.0;
+  double power_ahead = power_behind;
+  if (others_move || next_share != share) {
+    gather(system, next_share);
+    power_ahead = power(system);
+  }
+  const bool begins = !(state.momentum > 0.0) || power_ahead < 0.0;
   const double c = loads ? rules_.damping_under_load : 2.0 * rules_.damping_share * std::sqrt(square);
   if (!loads && (swings(begins, state) || begins)) {
     springs_.hold_slip();
@@ -210,8 +227,7 @@ double PseudoTime::longest_step(double overlap, IterationState &state) const {
     const double stiffness = solver_.mass().of(row)[0];
     most = stiffness > 0.0 ? std::max(most, norm(Vec2{f[0], f[1]}) / stiffness) : most;
   });
-  communicator_.max(std::span(&most, 1));
-  state.longest = std::max({state.longest, overlap, most});
+  state.longest = std::max(state.longest, communicator_.max(std::max(overlap, most)));
   return rules_.steps_of_overlap * state.longest;
 }
 
@@ -240,8 +256,7 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
       momentum.add(row_product(motion.velocity, motion.momentum.data(), width_));
     }
   });
-  communicator_.sum(ahead.limbs());
-  communicator_.sum(momentum.limbs());
+  sum_both(communicator_, ahead, momentum);
   state.power_before = ahead.value();
   state.momentum = momentum.value();
 }

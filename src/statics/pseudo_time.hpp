@@ -149,7 +149,7 @@ public:
   /// What is out of balance is held from here on. The forces are those of the last evaluation.
   void hold(BlockSystem &system);
   /// From the forces of an evaluation to the motion of the next step, in PseudoMotion::velocity. Collective.
-  /// @param overlap  largest one of all ranks, m
+  /// @param overlap  largest one of this rank, m
   /// @param balanced  N/m: what may be left on a block that is balanced
   /// @param is_near_rest  the largest force that is left is not much more than a verdict asks for
   void find_motion(BlockSystem &system, const Candidates &candidates, const ContactHistory &history,
@@ -170,7 +170,9 @@ private:
   /// From the springs that are closed. Rows that land are stopped.
   void find_standing(BlockSystem &system);
   /// Which blocks move from here on, where that is asked. Collective.
-  void choose_rows(BlockSystem &system, double balanced, bool is_near_rest, const IterationState &state);
+  /// @return others than before may
+  [[nodiscard]] bool choose_rows(BlockSystem &system, double balanced, bool is_near_rest,
+                                 const IterationState &state);
   /// Blocks that rest stay where they are, on all ranks. Collective.
   void keep_resting(BlockSystem &system);
   /// Takes note of where the motion begins anew.
