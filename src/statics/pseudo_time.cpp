@@ -161,7 +161,8 @@ void PseudoTime::find_motion(BlockSystem &system, const Candidates &candidates, 
   const double square =
       state.momentum > 0.0 ? std::clamp((state.power_before - power_behind) / state.momentum, 0.0, 3.9) : 0.0;
   const bool others_move = choose_rows(system, balanced, is_near_rest, state);
-  const bool is_coarse_due = may_pause(state);
+  const bool is_coarse_due =
+      may_pause(state) || state.evaluations < rules_.coarse_every; // joints still close
   ++state.evaluations;
   const double next_share = load_share(state.evaluations);
   const bool loads = next_share < 1.0;

@@ -65,6 +65,10 @@
 // sums over v would say that nothing needs damping: they leave it out. Where it lands, it begins anew by
 // itself, with b = 1/2, and is left out once more, so that a pebble does not stop the pile.
 //
+// The coarse matrix is made anew at every `coarse_every`th evaluation, and at each of the first ones: joints
+// that begin open close in them, and with a matrix that has not seen their springs a solution takes 66 to 200
+// products in place of 10.
+//
 // The step of a block is at most `steps_of_overlap` of the largest overlap, the length by which contacts
 // carry what they carry, and at most `step_of_width` of its narrowest width: a block that has lost its
 // contacts neither flies through its neighbours nor hits them deeper than a joint may close.
@@ -99,7 +103,7 @@ struct IterationRules {
   double damping_share = 0.5;           ///< c_share once all of the load acts
   double damping_under_load = 0.7;      ///< c_load
   std::int64_t increments = 50;         ///< of the load
-  std::int64_t coarse_every = 5;        ///< evaluations between two coarse matrices
+  std::int64_t coarse_every = 5;        ///< evaluations between two coarse matrices, once there were so many
   double steps_of_overlap = 10.0;       ///< largest step of a block
   double step_of_width = 0.05;          ///< largest step of a block over its narrowest width
   std::int64_t stall_window = 300;      ///< evaluations in which the least ratio has to fall by half
