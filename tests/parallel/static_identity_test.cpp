@@ -63,6 +63,9 @@ TEST(Identity, OfStagesWithTheStaticSolver) {
   if (runs.world().is_root()) {
     EXPECT_EQ(testing::file_text(runs.alone() / "run.log").find("goes on with solver"), std::string::npos);
     EXPECT_EQ(summary_text(runs.together(), "stages"), summary_text(runs.alone(), "stages"));
+    // A product asks the other ranks once. So does a solution where it begins, and the coarse matrix.
+    EXPECT_LE(runs.counted("reductions") - summary_number(runs.alone(), "reductions"),
+              runs.counted("products") + 2.0 * runs.counted("steps"));
   }
   expect_same_after_restart(runs, scene);
 }
