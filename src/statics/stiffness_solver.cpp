@@ -166,12 +166,10 @@ void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &
 }
 
 template <int places>
-std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const Field &force, Field &solution) {
+double StiffnessSolver::begin(const BlockSystem &system, const Field &force, double scale) {
   const std::size_t width = mass_.width();
-  const double largest = coarse_.largest(system, moving_, force);
-  const double scale = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
   coarse_.clear_forces();
-  ExactSum begun;
+  ExactSum sum;
   for_rows(moving_, [&](std::size_t row) {
     LeanRow<places> r = LeanRow<places>::Zero();
     for (std::size_t i = 0; i < width; ++i) {
@@ -181,56 +179,76 @@ std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const Field &f
     const LeanRow<places> w = product_of<places>(inverse_, row, r);
     row_of<places>(w_, row) = w;
     coarse_.add_forces(row, deforms<places>(system, row), r.data());
-    begun.add(dot_product<places>(r, w));
+    sum.add(dot_product<places>(r, w));
   });
-  coarse_.sum_forces(begun.limbs());
-  double in_rows = begun.value(); // r^T w
-  double size = in_rows + coarse_.begin();
+  coarse_.sum_forces(sum.limbs());
+  return sum.value();
+}
+
+template <int places> void StiffnessSolver::find_first_p(const BlockSystem &system) {
   for_rows(moving_, [&](std::size_t row) {
     row_of<places>(p_, row) = row_of<places>(w_, row);
     coarse_.add_motion(row, deforms<places>(system, row), p_.of(row));
   });
+}
+
+template <int places>
+StiffnessSolver::AlongQ StiffnessSolver::find_q_and_u(const BlockSystem &system, double size) {
+  SumInUnits along_p(size);
+  SumInUnits along_w(size);
+  SumInUnits along_u(size);
+  coarse_.clear_forces();
+  multiply_by<places>(system, p_, q_,
+                      [&](std::size_t row, const LeanRow<places> &p, const LeanRow<places> &q) {
+                        const LeanRow<places> u = product_of<places>(inverse_, row, q);
+                        along_p.add(dot_product<places>(p, q));
+                        along_w.add(dot_product<places>(row_of<places>(w_, row), q));
+                        along_u.add(dot_product<places>(u, q));
+                        coarse_.add_forces(row, deforms<places>(system, row), q.data());
+                        row_of<places>(q_, row) = u;
+                      });
+  std::array<std::int64_t, 3> units{along_p.units(), along_w.units(), along_u.units()};
+  coarse_.sum_forces(units);
+  return {along_p.value(units[0]), along_w.value(units[1]), along_u.value(units[2])};
+}
+
+template <int places>
+void StiffnessSolver::advance(const BlockSystem &system, float step, float share, bool goes_on) {
+  for_rows(moving_, [&](std::size_t row) {
+    const LeanRow<places> p = row_of<places>(p_, row);
+    row_of<places>(x_, row) += step * p;
+    if (goes_on) {
+      const LeanRow<places> w = row_of<places>(w_, row) - step * row_of<places>(q_, row);
+      row_of<places>(w_, row) = w;
+      row_of<places>(p_, row) = w + share * p;
+      coarse_.add_motion(row, deforms<places>(system, row), p_.of(row));
+    }
+  });
+}
+
+template <int places>
+std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const Field &force, Field &solution) {
+  const double largest = coarse_.largest(system, moving_, force);
+  const double scale = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
+  double in_rows = begin<places>(system, force, scale); // r^T w
+  double size = in_rows + coarse_.begin();              // r^T z
+  find_first_p<places>(system);
   const double enough = accuracy * accuracy * size;
   std::int64_t products = 0;
   while (size > enough && products < most_products) {
-    std::array<SumInUnits, 3> sums{SumInUnits(size), SumInUnits(size), SumInUnits(size)};
-    auto &[along_p, along_w, along_u] = sums;
-    coarse_.clear_forces();
-    multiply_by<places>(system, p_, q_,
-                        [&](std::size_t row, const LeanRow<places> &p, const LeanRow<places> &q) {
-                          const LeanRow<places> u = product_of<places>(inverse_, row, q);
-                          along_p.add(dot_product<places>(p, q));
-                          along_w.add(dot_product<places>(row_of<places>(w_, row), q));
-                          along_u.add(dot_product<places>(u, q));
-                          coarse_.add_forces(row, deforms<places>(system, row), q.data());
-                          row_of<places>(q_, row) = u;
-                        });
+    const AlongQ q = find_q_and_u<places>(system, size);
     ++products;
-    std::array<std::int64_t, 3> units{along_p.units(), along_w.units(), along_u.units()};
-    coarse_.sum_forces(units);
-    const double curvature = along_p.value(units[0]);
-    if (!(curvature > 0.0)) {
+    if (!(q.p > 0.0)) {
       break;
     }
-    const auto step = static_cast<float>(size / curvature);
+    const auto step = static_cast<float>(size / q.p);
     const double exact_step = step;
-    in_rows += exact_step * (exact_step * along_u.value(units[2]) - 2.0 * along_w.value(units[1]));
+    in_rows += exact_step * (exact_step * q.u - 2.0 * q.w);
     const double before = std::exchange(size, in_rows + coarse_.subtract(exact_step));
-    const auto share = static_cast<float>(size / before);
-    const bool goes_on = size > enough;
-    for_rows(moving_, [&](std::size_t row) {
-      const LeanRow<places> p = row_of<places>(p_, row);
-      row_of<places>(x_, row) += step * p;
-      if (goes_on) {
-        const LeanRow<places> w = row_of<places>(w_, row) - step * row_of<places>(q_, row);
-        row_of<places>(w_, row) = w;
-        row_of<places>(p_, row) = w + share * p;
-        coarse_.add_motion(row, deforms<places>(system, row), p_.of(row));
-      }
-    });
+    advance<places>(system, step, static_cast<float>(size / before), size > enough);
   }
   for_rows(moving_, [&](std::size_t row) {
-    for (std::size_t i = 0; i < width; ++i) {
+    for (std::size_t i = 0; i < mass_.width(); ++i) {
       solution.of(row)[i] = static_cast<double>(x_.of(row)[i]) / scale;
     }
   });

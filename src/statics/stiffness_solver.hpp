@@ -82,6 +82,21 @@ public:
 private:
   /// For rows of so many places.
   template <int places> std::int64_t solve_by(const BlockSystem &system, const Field &force, Field &solution);
+  /// What q is multiplied by in an iteration: p^T q, w^T q and u^T q.
+  struct AlongQ {
+    double p = 0.0;
+    double w = 0.0;
+    double u = 0.0;
+  };
+  /// x = 0, w, and P^T r on the coarse grid. Collective.
+  /// @return r^T w
+  template <int places> double begin(const BlockSystem &system, const Field &force, double scale);
+  template <int places> void find_first_p(const BlockSystem &system);
+  /// And P^T q on the coarse grid. Collective.
+  /// @param size  r^T z
+  template <int places> AlongQ find_q_and_u(const BlockSystem &system, double size);
+  /// x + a p, and where the iteration goes on w - a u and the next p.
+  template <int places> void advance(const BlockSystem &system, float step, float share, bool goes_on);
   /// y = (K + rho D) p with the springs at hand. visit(row, its p, its y). Collective.
   template <int places, class Visit>
   void multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Visit &&visit);

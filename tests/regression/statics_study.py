@@ -66,11 +66,11 @@ def check_ranks(rows):
     static, motion = (of(rows, way=way)[0] for way in ("static", "local damping"))
     for row in (static, motion):
         assert 1.0 <= float(row["work_ratio"]) < 1.5 and float(row["efficiency"]) > 0.0, row
-    # A product sends its rows to the neighbour and takes three reductions; a step sends one message.
+    # A product sends its rows to the neighbour and takes one reduction; a step sends one message.
     assert float(motion["products"]) == 0.0 and float(motion["messages_per_rank"]) == 1.0, motion
     assert float(static["products"]) > 1.0, static
     assert float(static["messages_per_rank"]) >= 1.0 + float(static["products"]), static
-    assert float(static["reductions"]) > 3.0 * (float(static["products"]) - 1.0), static
+    assert 1.0 < float(static["reductions"]) / float(static["products"]) < 3.0, static
 
 
 def main():
