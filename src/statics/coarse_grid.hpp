@@ -66,7 +66,7 @@ public:
   double begin();
   /// r is less q by so many times; the rest as above.
   double subtract(double times);
-  /// To z, the part of a row that moves.
+  /// To a row that moves, its part of these motions.
   void add_motion(std::size_t row, bool is_deformable, float *z) const {
     const float *const motion = lean_motions_.data() + first_unknown(row);
     const float turn = motion[2] * static_cast<float>(per_side_);
@@ -140,7 +140,7 @@ private:
   std::vector<std::int64_t> sums_;    ///< entries of K_c, in units
   std::vector<std::int64_t> forces_;  ///< P^T q, in units
   std::vector<double> residual_;      ///< P^T r
-  std::vector<float> lean_motions_;   ///< of cells, as they are added to z
+  std::vector<float> lean_motions_;   ///< of cells, as they are added to rows
   std::unique_ptr<Factors> factors_;
 };
 
