@@ -91,8 +91,9 @@ private:
   /// x = 0, w, and P^T r on the coarse grid. Collective.
   /// @return r^T w
   template <int places> double begin(const BlockSystem &system, const Field &force, double scale);
+  /// p = w + P g
   template <int places> void find_first_p(const BlockSystem &system);
-  /// And P^T q on the coarse grid. Collective.
+  /// Finds q, u in its place, P^T q on the coarse grid, and what q is multiplied by. Collective.
   /// @param size  r^T z
   template <int places> AlongQ find_q_and_u(const BlockSystem &system, double size);
   /// x + a p, and where the iteration goes on w - a u and the next p.

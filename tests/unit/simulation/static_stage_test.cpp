@@ -68,8 +68,9 @@ TEST(StaticStage, AStackSettlesAtItsOverlaps) {
   }
 }
 
-// Joints of a high pile that begin open close in the first evaluations. What these solve for takes no more
-// products than what the next ones do, since the coarse level sees the joints that have closed.
+// Joints of a high pile that begin open close in the first evaluations. What these solve for takes at most
+// twice the products of the next ones, since the coarse level sees the joints that have closed. A
+// coarse level without them asks for more.
 TEST(StaticStage, AJointThatClosesAtFirstIsNoHarderThanLater) {
   Simulation simulation(
       Communicator::self(),
