@@ -61,12 +61,14 @@ constexpr std::size_t many_vertices = 64;
 class WidthAtVertex {
 public:
   /// @param tree  of the polygon, null for one of few vertices
-  WidthAtVertex(std::span<const Vec2> vertices, const EdgeTree *tree, std::size_t vertex)
-      : vertices_(vertices), tree_(tree), vertex_(vertex), v_(vertices[vertex]),
+  /// @param area  of the polygon
+  WidthAtVertex(std::span<const Vec2> vertices, const EdgeTree *tree, std::size_t vertex, double area)
+      : vertices_(vertices), tree_(tree), vertex_(vertex), area_(area), v_(vertices[vertex]),
         in_(v_ - vertices[before(vertex)]), out_(vertices[after(vertex)] - v_) {}
 
   /// Smallest distance through the interior to an edge that does not start or end at the vertex, if it is
-  /// below this one. The foot of a step's riser lies in the cone's border: material is not narrow there.
+  /// below this one. The foot of a step's riser lies in the cone's border: material is not narrow there. Nor
+  /// is it where the way cuts off a nib: a step of millimetres whose riser leans does so.
   [[nodiscard]] double narrower_than(double narrowest) const {
     const auto look_at = [&](std::size_t edge) {
       if (is_own(edge)) {
@@ -77,7 +79,8 @@ public:
       const double share = std::clamp(dot(v_ - a, along) / dot(along, along), 0.0, 1.0);
       const Vec2 foot = a + share * along;
       const double width = norm(foot - v_);
-      if (width < narrowest && is_in_cone(foot - v_, width) && !is_blocked(foot)) {
+      if (width < narrowest && is_in_cone(foot - v_, width) && !is_blocked(foot) &&
+          !is_nib(edge, foot, width)) {
         narrowest = width;
       }
     };
@@ -147,9 +150,21 @@ private:
     return false;
   }
 
+  /// Whether the way to this place on an edge cuts off next to nothing, no longer than it is wide.
+  [[nodiscard]] bool is_nib(std::size_t edge, Vec2 foot, double width) const {
+    constexpr double share_of_nib = 1e-3;
+    double twice = 0.0;
+    for (std::size_t i = after(vertex_); i != edge; i = after(i)) {
+      twice += cross(vertices_[i] - v_, vertices_[after(i)] - v_);
+    }
+    const double part = 0.5 * std::abs(twice + cross(vertices_[edge] - v_, foot - v_));
+    return std::min(part, area_ - part) < std::min(share_of_nib * area_, width * width);
+  }
+
   std::span<const Vec2> vertices_;
   const EdgeTree *tree_;
   std::size_t vertex_;
+  double area_;
   Vec2 v_;
   Vec2 in_;
   Vec2 out_;
@@ -324,9 +339,10 @@ double narrowest_width(std::span<const Vec2> vertices) {
     return narrowest;
   }
   const std::optional<EdgeTree> tree = are_many ? std::optional<EdgeTree>(vertices) : std::nullopt;
+  const double area = std::abs(signed_area(vertices));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (reentrant[i]) {
-      narrowest = WidthAtVertex(vertices, tree ? &*tree : nullptr, i).narrower_than(narrowest);
+      narrowest = WidthAtVertex(vertices, tree ? &*tree : nullptr, i, area).narrower_than(narrowest);
     }
   }
   return narrowest;

@@ -43,7 +43,8 @@ std::vector<Vec2> convex_hull(std::span<const Vec2> points);
 
 /// How thin a polygon is (m). Convex: the smallest distance between two parallel lines that enclose it, one
 /// of them flush with an edge. Otherwise that of the convex hull, or the distance from a re-entrant vertex
-/// through the interior to another edge where that is smaller (the leg of an L, the prong of a U).
+/// through the interior to another edge where that is smaller (the leg of an L, the prong of a U). What is
+/// no longer than wide and has less than a thousandth of the area is a nib, and no leg.
 /// O(n log n) for common outlines.
 double narrowest_width(std::span<const Vec2> vertices);
 

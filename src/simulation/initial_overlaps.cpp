@@ -49,7 +49,8 @@ Diagnostic fault_of(const Scene &scene, const InitialOverlap &overlap) {
   }
   return {Severity::error, where, fmt::format("{} overlap by {:.3g} m", names, overlap.depth),
           fmt::format("more than 5 % of the narrower block's width {:.3g} m", overlap.width),
-          "move or trim one of them"};
+          scene.in_situ.present ? "a stiffer joint, which the in-situ stress closes by less"
+                                : "move or trim one of them"};
 }
 
 /// @param all  of all ranks: those with a fault and the deepest of the others

@@ -87,5 +87,53 @@ TEST(InSituRun, IsTheSameOnAnyNumberOfRanksAndThroughARestart) {
   EXPECT_NE(changed.err.find("a restart cannot change [in_situ]"), std::string::npos) << changed.err;
 }
 
+// Cut blocks have steps of millimetres, where a joint ends just beside another one. They are no legs: the
+// stress may close joints by more than 5 % of such a step.
+TEST(InSituRun, BeginsThoughABlockHasAStepOfMillimetres) {
+  WorkFolder folder;
+  folder.write("step.toml", R"([run]
+fidelity = "rigid"
+duration = 1e-3
+[material.rock]
+density = 2600
+[joint.default]
+normal_stiffness = 2e10
+friction_angle_deg = 35
+[in_situ]
+level = 150
+k0 = 0.6
+[[block]]
+name = "stepped"
+material = "rock"
+vertices = [[0, 0], [1, 0], [0.9999, 0.0023], [3, 1.4], [3, 2], [0, 2]]
+[[block]]
+name = "wedge"
+material = "rock"
+vertices = [[1, 0], [3, 0], [3, 1.4], [0.9999, 0.0023]]
+[[block]]
+name = "floor"
+material = "rock"
+fixed = true
+vertices = [[-1, -1], [4, -1], [4, 0], [-1, 0]]
+[[block]]
+name = "left"
+material = "rock"
+fixed = true
+vertices = [[-1, 0], [0, 0], [0, 2], [-1, 2]]
+[[block]]
+name = "right"
+material = "rock"
+fixed = true
+vertices = [[3, 0], [4, 0], [4, 2], [3, 2]]
+[[block]]
+name = "lid"
+material = "rock"
+fixed = true
+vertices = [[-1, 2], [4, 2], [4, 3], [-1, 3]]
+)");
+  const Outcome outcome = run_gcpdda(1, {"run", "step.toml", "--out", "step"}, folder);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
 } // namespace
 } // namespace gcpdda::in_situ_test

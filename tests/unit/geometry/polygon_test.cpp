@@ -256,6 +256,13 @@ TEST(NarrowestWidth, OfAConcaveShapeMindsTheInteriorOnly) {
   EXPECT_NEAR(narrowest_width(dented), 2.0, rounding);
   const Polygon stepped{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {2.0, 4.0}, {2.0, 3.99}, {0.0, 3.99}};
   EXPECT_NEAR(narrowest_width(stepped), 2.0, rounding);
+  // The riser leans, so that the way to the edge beyond it is inside: it cuts off a nib of its corner.
+  Polygon leaning{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {2.0, 4.0}, {2.0001, 3.99}, {0.0, 3.99}};
+  EXPECT_NEAR(narrowest_width(leaning), 1.9999, rounding) << "from the step to the wall";
+  for (int k = 1; k < 100; ++k) {
+    leaning.insert(leaning.begin() + k, Vec2{0.04 * k, 0.0});
+  }
+  EXPECT_NEAR(narrowest_width(leaning), 1.9999, rounding) << "of many vertices";
   const Polygon slit{{0.0, 0.0},  {4.0, 0.0},  {4.0, 4.0},  {2.01, 4.0},
                      {2.01, 2.5}, {1.99, 2.5}, {1.99, 4.0}, {0.0, 4.0}};
   EXPECT_NEAR(narrowest_width(slit), 1.99, rounding);
