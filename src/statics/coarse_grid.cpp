@@ -125,7 +125,13 @@ std::array<CoarseGrid::Three, 3> CoarseGrid::forces_on_cell(std::size_t row, Vec
 }
 
 CoarseGrid::Square CoarseGrid::on_cell(const BlockSystem &system, std::size_t row,
-                                       const BlockMatrices &matrices) const {
+                                       const BlockMatrices &matrices, const BlockMatrices &mass) const {
+  constexpr double holds_cells = 1e-4;
+  const std::size_t width = matrices.width();
+  std::array<double, 36> held;
+  for (std::size_t i = 0; i < width * width; ++i) {
+    held[i] = matrices.of(row)[i] + holds_cells * mass.of(row)[i];
+  }
   const bool is_deformable = system.is_deformable(row);
   const Arm arm = arms_[row];
   std::array<std::array<double, 6>, 3> motions{};
@@ -142,8 +148,7 @@ CoarseGrid::Square CoarseGrid::on_cell(const BlockSystem &system, std::size_t ro
   Square square{};
   for (std::size_t j = 0; j < 3; ++j) {
     std::array<double, 6> forces{};
-    add_block_product(matrices.of(row), num_freedoms(system, row), matrices.width(), motions[j].data(),
-                      forces.data());
+    add_block_product(held.data(), num_freedoms(system, row), width, motions[j].data(), forces.data());
     const Three column = to_cell(row, is_deformable, forces.data());
     for (std::size_t i = 0; i < 3; ++i) {
       square[i][j] = column[i];
@@ -169,6 +174,9 @@ CoarseGrid::Square CoarseGrid::product(const ContactSpring &spring, const std::a
 template <class Visit> void CoarseGrid::for_parts_of(const ContactSpring &spring, Visit &&visit) const {
   const std::int64_t lower = cell_of_[spring.lower];
   const std::int64_t higher = cell_of_[spring.higher];
+  if (lower < 0 && higher < 0) { // an element of a liner between blocks that rest
+    return;
+  }
   const auto forces_on = [&](std::int64_t cell, std::size_t row, Vec2 arm) {
     return cell >= 0 ? forces_on_cell(row, arm, spring.normal) : std::array<Three, 3>{};
   };
@@ -198,7 +206,7 @@ template <class Visit> void CoarseGrid::for_parts_of(const ContactSpring &spring
 
 template <class Visit>
 void CoarseGrid::for_parts(const BlockSystem &system, const ContactSprings &springs,
-                           const BlockMatrices &matrices, Visit &&visit) const {
+                           const BlockMatrices &matrices, const BlockMatrices &mass, Visit &&visit) const {
   springs.for_lists([&](std::span<const ContactSpring> list) {
     for (const ContactSpring &spring : list) {
       if (counts_here(system, BlockIndex{spring.lower})) {
@@ -208,7 +216,7 @@ void CoarseGrid::for_parts(const BlockSystem &system, const ContactSprings &spri
   });
   for (std::size_t row = 0; row < system.num_owned; ++row) {
     if (has_cell(row)) {
-      visit(std::int64_t{cell_of_[row]}, std::int64_t{cell_of_[row]}, on_cell(system, row, matrices));
+      visit(std::int64_t{cell_of_[row]}, std::int64_t{cell_of_[row]}, on_cell(system, row, matrices, mass));
     }
   }
 }
@@ -220,7 +228,10 @@ void CoarseGrid::find_pattern(const ContactSprings &springs) {
       const std::int64_t a = cell_of_[spring.lower];
       const std::int64_t b = cell_of_[spring.higher];
       if (a >= 0 && b >= 0 && a != b) {
-        mine.push_back(key_of(std::max(a, b), std::min(a, b)));
+        const std::int64_t key = key_of(std::max(a, b), std::min(a, b));
+        if (mine.empty() || mine.back() != key) {
+          mine.push_back(key);
+        }
       }
     }
   });
@@ -228,13 +239,19 @@ void CoarseGrid::find_pattern(const ContactSprings &springs) {
     mine.push_back(key_of(cell, cell));
   }
   pattern_ = united(communicator_, std::move(mine));
+  first_of_cell_.clear();
+  for (std::size_t place = 0; place < pattern_.size(); ++place) {
+    if (pattern_[place] / std::ssize(keys_) == std::ssize(first_of_cell_)) { // each cell has its own block
+      first_of_cell_.push_back(place);
+    }
+  }
 }
 
 void CoarseGrid::factorise(const BlockSystem &system, const ContactSprings &springs,
-                           const BlockMatrices &matrices) {
+                           const BlockMatrices &matrices, const BlockMatrices &mass) {
   find_pattern(springs);
   double largest = 0.0;
-  for_parts(system, springs, matrices, [&](std::int64_t, std::int64_t, const Square &square) {
+  for_parts(system, springs, matrices, mass, [&](std::int64_t, std::int64_t, const Square &square) {
     for (const Three &line : square) {
       for (const double value : line) {
         largest = std::max(largest, std::abs(value));
@@ -245,15 +262,15 @@ void CoarseGrid::factorise(const BlockSystem &system, const ContactSprings &spri
   const double unit = unit_of(largest, 40);
   const double per_one = 1.0 / unit;
   sums_.assign(9 * pattern_.size(), 0);
-  for_parts(system, springs, matrices, [&](std::int64_t higher, std::int64_t lower, const Square &square) {
-    const auto place = std::lower_bound(pattern_.begin(), pattern_.end(), key_of(higher, lower));
-    std::int64_t *to = sums_.data() + 9 * (place - pattern_.begin());
-    for (const Three &line : square) {
-      for (const double value : line) {
-        *to++ += std::llrint(value * per_one);
-      }
-    }
-  });
+  for_parts(system, springs, matrices, mass,
+            [&](std::int64_t higher, std::int64_t lower, const Square &square) {
+              std::int64_t *to = sums_.data() + 9 * place_in_pattern(higher, lower);
+              for (const Three &line : square) {
+                for (const double value : line) {
+                  *to++ += std::llrint(value * per_one);
+                }
+              }
+            });
   if (communicator_.size() > 1) {
     communicator_.sum(sums_);
   }

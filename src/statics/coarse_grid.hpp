@@ -45,7 +45,9 @@ public:
   void choose(const BlockSystem &system, std::span<const std::uint8_t> moves);
   /// Make and factorise K_c. Collective.
   /// @param matrices  M of owned rows
-  void factorise(const BlockSystem &system, const ContactSprings &springs, const BlockMatrices &matrices);
+  /// @param mass  D of owned rows, of which a small share holds cells that nothing else does
+  void factorise(const BlockSystem &system, const ContactSprings &springs, const BlockMatrices &matrices,
+                 const BlockMatrices &mass);
 
   // P K_c^-1 P^T r is found in parts, so that the solver may take its fields as it passes their rows.
   /// The largest of these forces on cells. Collective.
@@ -112,16 +114,24 @@ private:
   }
   /// The unit force of one of a spring's three springs on the freedoms of the cell of a row.
   [[nodiscard]] std::array<Three, 3> forces_on_cell(std::size_t row, Vec2 arm, Vec2 normal) const;
-  [[nodiscard]] Square on_cell(const BlockSystem &system, std::size_t row,
-                               const BlockMatrices &matrices) const;
+  [[nodiscard]] Square on_cell(const BlockSystem &system, std::size_t row, const BlockMatrices &matrices,
+                               const BlockMatrices &mass) const;
   static Square product(const ContactSpring &spring, const std::array<Three, 3> &a,
                         const std::array<Three, 3> &b, double sign);
   /// visit(higher cell, lower cell, its part of K_c) for what this rank counts.
   template <class Visit>
   void for_parts(const BlockSystem &system, const ContactSprings &springs, const BlockMatrices &matrices,
-                 Visit &&visit) const;
+                 const BlockMatrices &mass, Visit &&visit) const;
   template <class Visit> void for_parts_of(const ContactSpring &spring, Visit &&visit) const;
   void find_pattern(const ContactSprings &springs);
+  /// Of a block of K_c in the pattern: each cell has a few.
+  [[nodiscard]] std::size_t place_in_pattern(std::int64_t higher, std::int64_t lower) const {
+    std::size_t place = first_of_cell_[static_cast<std::size_t>(higher)];
+    while (pattern_[place] != key_of(higher, lower)) {
+      ++place;
+    }
+    return place;
+  }
   void fill_matrix(double unit);
   [[nodiscard]] std::int64_t key_of(std::int64_t higher, std::int64_t lower) const {
     return higher * static_cast<std::int64_t>(keys_.size()) + lower;
@@ -137,10 +147,11 @@ private:
   std::vector<std::int32_t> cell_of_; ///< by row; -1: the row does not move
   std::vector<Arm> arms_;             ///< by row: of the centroid from the middle of the cell, over the side
   std::vector<std::int64_t> pattern_; ///< key_of() of the blocks of K_c, ascending
-  std::vector<std::int64_t> sums_;    ///< entries of K_c, in units
-  std::vector<std::int64_t> forces_;  ///< P^T q, in units
-  std::vector<double> residual_;      ///< P^T r
-  std::vector<float> lean_motions_;   ///< of cells, as they are added to rows
+  std::vector<std::size_t> first_of_cell_; ///< in pattern_, by higher cell
+  std::vector<std::int64_t> sums_;         ///< entries of K_c, in units
+  std::vector<std::int64_t> forces_;       ///< P^T q, in units
+  std::vector<double> residual_;           ///< P^T r
+  std::vector<float> lean_motions_;        ///< of cells, as they are added to rows
   std::unique_ptr<Factors> factors_;
 };
 

@@ -101,14 +101,7 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
     take_columns(diagonal_, row, own_);
   });
   if (with_coarse) {
-    constexpr double holds_cells = 1e-4;
-    BlockMatrices held = diagonal_;
-    for_rows(moving_, [&](std::size_t row) {
-      for (std::size_t i = 0; i < width * width; ++i) {
-        held.of(row)[i] += holds_cells * mass_.of(row)[i];
-      }
-    });
-    coarse_.factorise(system, springs, held);
+    coarse_.factorise(system, springs, diagonal_, mass_);
   }
   springs.for_lists([&](std::span<const ContactSpring> list) { add_diagonal(system, list, diagonal_); });
   for_rows(moving_, [&](std::size_t row) {
