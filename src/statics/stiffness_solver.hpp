@@ -9,7 +9,10 @@
 //     z = B^-1 r + P K_c^-1 P^T r,
 // with B the blocks on the diagonal of K + rho D and K_c the coarse matrix of rigid motions of cells of
 // blocks (coarse_grid.hpp). The iteration ends when r^T z has fallen to `accuracy` squared of what it began
-// with: g is a direction of a motion in pseudo-time and need not be exact.
+// with: g is a direction of a motion in pseudo-time and need not be exact. A tenth is as far as that goes:
+// with a fifth a slope of 10,883 blocks still rests after as many evaluations, but of 60 trials of a wet
+// slope 0.2 to 1 % below its limit 7 run past the place where they would rest and fail, and none with a
+// tenth.
 //
 // An iteration has one reduction. All that it adds over the ranks is known with q = (K + rho D) p: p^T q,
 // P^T q on the coarse grid, and with w = B^-1 r and u = B^-1 q also w^T q and u^T q. Then a = r^T z/p^T q,
