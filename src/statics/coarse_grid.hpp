@@ -124,7 +124,7 @@ private:
                  const BlockMatrices &mass, Visit &&visit) const;
   template <class Visit> void for_parts_of(const ContactSpring &spring, Visit &&visit) const;
   void find_pattern(const ContactSprings &springs);
-  /// Of a block of K_c in the pattern: each cell has a few.
+  /// Where pattern_ holds a block of K_c; it must. Each cell has a few blocks.
   [[nodiscard]] std::size_t place_in_pattern(std::int64_t higher, std::int64_t lower) const {
     std::size_t place = first_of_cell_[static_cast<std::size_t>(higher)];
     while (pattern_[place] != key_of(higher, lower)) {
