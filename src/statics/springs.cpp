@@ -55,13 +55,19 @@ SpringMemory moved_on(SpringMemory memory, const RegionState &state, double cap,
   return memory;
 }
 
+/// What is left after `count` evaluations of a share that fades to a floor.
+double faded(double share, int count, double fade, double floor) {
+  for (int k = 0; k < count && share > floor; ++k) {
+    share *= fade;
+  }
+  return std::max(share, floor);
+}
+
 /// Of k_t, where a region slips.
 double share_of_slipping(const SpringMemory &memory, const SpringRules &rules) {
-  double fading = 1.0;
-  for (int k = rules.slide_memory; k < memory.slid_for && fading > rules.slide_floor; ++k) {
-    fading *= rules.slide_fade;
-  }
-  return rules.slip_share * std::max(fading, rules.slide_floor);
+  const double slid = faded(1.0, memory.slid_for - rules.slide_memory, rules.slide_fade, rules.slide_floor);
+  return rules.slip_share *
+         faded(slid, memory.slid_for - rules.long_slide, rules.long_slide_fade, rules.long_slide_floor);
 }
 
 bool is_before(const SpringMemory &a, const SpringMemory &b) {
