@@ -27,7 +27,8 @@
 //   side for `long_slide` evaluations the share fades further, by `long_slide_fade` to `long_slide_floor`:
 //   what rocks has turned by then. (A few blocks of a bench that slide to their rest just below the limit of
 //   a slope of 10,883 see a stiffness of 1e-4 of K with the first floor, and its trials took 620 to 1,500
-//   evaluations, without an order in the factor; with the second one 390 to 550.)
+//   evaluations, without an order in the factor; with the second one 390 to 550. They rest where they did, by
+//   the scatter of last bits.)
 // - Where slip has turned from one cap to the other the region sticks on the way with all of k_t, many
 //   times what the first rule gives it, and would swing between its caps for ever. It keeps all of k_t for
 //   the next `turn_memory` evaluations.
