@@ -37,6 +37,14 @@ ContactSpring spring_of(const BlockSystem &system, const CandidatePair &pair, co
   return spring;
 }
 
+/// The normal spring of a region whose slip opens its joint, and with it the tangential one.
+void lean_to_slip(ContactSpring &spring, const RegionState &state, const JointLaw &law) {
+  const double lean = state.shear < 0.0 ? law.tan_dilation : -law.tan_dilation;
+  const double square = 1.0 + lean * lean;
+  spring.normal = (1.0 / std::sqrt(square)) * (spring.normal + lean * perp(spring.normal));
+  spring.normal_stiffness *= square;
+}
+
 /// Side and turns of a region that has been evaluated.
 SpringMemory moved_on(SpringMemory memory, const RegionState &state, double cap, const SpringRules &rules) {
   memory.open_for = 0;
@@ -159,6 +167,10 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
     const SpringMemory memory = moved_on(before, state, force.cap, rules);
     const std::int32_t law = state.law >= 0 ? state.law : pair.law;
     ContactSpring spring = spring_of(system, pair, force, state, contacts.parameters().constants(law));
+    const JointLaw &strength = contacts.parameters().joints.strength(law);
+    if (state.state == ContactState::slip && state.slip < strength.dilation_limit) {
+      lean_to_slip(spring, state, strength);
+    }
     if (state.state == ContactState::slip && memory.turned == 0) {
       spring.tangential *= share_of_slipping(memory, rules);
     }

@@ -211,12 +211,15 @@ TEST(ContactSprings, OfRigidBlocksHaveTheSameProductFourAtATime) {
 }
 
 /// Two unit squares, the higher one sunk into the lower one, which is fixed.
-ContactBench stacked_squares(double tan_friction) {
+ContactBench stacked_squares(const JointLaws &joints) {
   ContactBench bench(system_of({{{0.0, 0.999}, {1.0, 0.999}, {1.0, 1.999}, {0.0, 1.999}}},
                                {{{-1.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {-1.0, 1.0}}}),
-                     one_law(k_n, tan_friction));
+                     joints);
   bench.forces.keep_details(true);
   return bench;
+}
+ContactBench stacked_squares(double tan_friction) {
+  return stacked_squares(one_law(k_n, tan_friction));
 }
 
 TEST(ContactSprings, SlipTakesMostOfTheTangentialStiffness) {
@@ -326,6 +329,37 @@ TEST(ContactSprings, OfARegionThatSlidesOnFadeToTwoFloors) {
   bench.move(0, {{-1e-5, 0.0}, 0.0}); // back a little, it sticks
   springs.update(bench.system, bench.candidates, bench.history, bench.forces, rules);
   EXPECT_NEAR(slide(1e-3), 1.0, 1e-12);
+}
+
+// The square rides up on its joint: its pressure stays what it is, in the spring as in the forces.
+TEST(ContactSprings, OfARegionThatDilatesLeanToItsSlip) {
+  constexpr double psi = 0.1; // tangent
+  JointLaws joints = one_law(k_n, 0.5);
+  joints.laws[0].tan_dilation = psi;
+  joints.laws[0].dilation_limit = 0.02;
+  for (const double side : {1.0, -1.0}) {
+    ContactBench bench = stacked_squares(joints);
+    statics::ContactSprings springs;
+    bench.evaluate();
+    const auto ride = [&](double distance, double rise) {
+      const double force = bench.move(0, {{side * distance, rise}, 0.0}).force.y;
+      springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
+      return force;
+    };
+    for (int k = 0; k < 6; ++k) {
+      ride(1e-3, psi * 1e-3);
+    }
+    const double before = ride(1e-4, psi * 1e-4);
+    const Vec2 leaning = springs.springs()[0].normal;
+    EXPECT_NEAR(leaning.x, -side * psi * leaning.y, 1e-12);
+    EXPECT_NEAR(norm(leaning), 1.0, 1e-12);
+    EXPECT_NEAR(springs.springs()[0].normal_stiffness, k_n * (1.0 + psi * psi), 1e-9 * k_n);
+    EXPECT_NEAR(ride(1e-4, psi * 1e-4), before, 1e-6 * before);
+    EXPECT_GT(ride(1e-4, 0.0), before + 0.8 * k_n * psi * 1e-4) << "it does not rise";
+    ride(0.02, 0.002); // it opens no further
+    ride(1e-3, 0.0);
+    EXPECT_NEAR(springs.springs()[0].normal.x, 0.0, 1e-12);
+  }
 }
 
 // Turned onto its corner the square touches over millimetres; its spring falls no faster than one that opens.
