@@ -43,10 +43,12 @@ std::int64_t FarRows::square_of(const BlockSystem &system, std::size_t row) cons
          static_cast<std::int64_t>(std::floor(x.x));
 }
 
-std::optional<std::vector<std::uint8_t>> FarRows::find(const BlockSystem &system, double balanced) const {
+std::optional<std::vector<std::uint8_t>> FarRows::find(const BlockSystem &system,
+                                                       const BlockMatrices &boundary, double balanced) const {
   double largest = 0.0;
   for_rows(mobile_, [&](std::size_t row) { largest = std::max(largest, far_from_balance(system, row)); });
-  const double level = std::max(balanced, rules_.share_of_largest * communicator_.max(largest));
+  largest = communicator_.max(largest);
+  const double level = std::max(balanced, rules_.share_of_largest * largest);
   std::int64_t num_far = 0;
   std::vector<std::int64_t> squares;
   for_rows(mobile_, [&](std::size_t row) {
@@ -69,7 +71,8 @@ std::optional<std::vector<std::uint8_t>> FarRows::find(const BlockSystem &system
   std::vector<std::uint8_t> around(system.num_owned, 0);
   std::int64_t num_around = 0;
   for_rows(mobile_, [&](std::size_t row) {
-    if (std::binary_search(squares.begin(), squares.end(), square_of(system, row))) {
+    if (boundary.of(row)[0] * length_of_step(system, row) > largest ||
+        std::binary_search(squares.begin(), squares.end(), square_of(system, row))) {
       around[row] = 1;
       ++num_around;
     }

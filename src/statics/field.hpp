@@ -13,6 +13,8 @@
 
 #include "model/block_system.hpp"
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -104,6 +106,13 @@ template <class Visit> void for_places(std::span<const RowRun> runs, std::size_t
 /// Number of freedoms of a row.
 inline std::size_t num_freedoms(const BlockSystem &system, std::size_t row) {
   return system.is_deformable(row) ? 6 : 3;
+}
+
+/// Largest distance that a point of an owned row moves by the motion of its next step, m.
+inline double length_of_step(const BlockSystem &system, std::size_t row) {
+  const std::array<double, 6> &v = system.pseudo[row].velocity;
+  const double turning = system.is_deformable(row) ? norm(Mat2{v[2], v[3], v[4], v[5]}) : std::abs(v[2]);
+  return norm(Vec2{v[0], v[1]}) + system.properties[row].radius * turning;
 }
 
 template <class Number> PointMap motion_at(const Number *freedoms, bool is_deformable) {

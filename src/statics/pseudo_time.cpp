@@ -69,7 +69,7 @@ bool PseudoTime::choose_rows(BlockSystem &system, double balanced, bool is_near_
   }
   const bool all_move =
       state.evaluations % rules_.window < (is_near_rest ? rules_.all_move_near_rest : rules_.all_move);
-  const auto chosen = all_move ? std::nullopt : far_.find(system, balanced);
+  const auto chosen = all_move ? std::nullopt : far_.find(system, solver_.mass(), balanced);
   const bool was_local = std::exchange(is_local_, chosen.has_value());
   if (!is_local_ && !was_local) {
     return false;
@@ -127,12 +127,6 @@ double mass_share(std::int64_t num_blocks) {
   constexpr double few_blocks = 2000.0;
   return share *
          std::sqrt(std::min(1.0, few_blocks / static_cast<double>(std::max<std::int64_t>(1, num_blocks))));
-}
-
-double length_of_step(const BlockSystem &system, std::size_t row) {
-  const std::array<double, 6> &v = system.pseudo[row].velocity;
-  const double turning = system.is_deformable(row) ? norm(Mat2{v[2], v[3], v[4], v[5]}) : std::abs(v[2]);
-  return norm(Vec2{v[0], v[1]}) + system.properties[row].radius * turning;
 }
 
 double PseudoTime::power(const BlockSystem &system) const {

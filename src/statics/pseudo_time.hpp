@@ -204,7 +204,4 @@ private:
   Field direction_;
 };
 
-/// Largest distance that a point of an owned row moves by the motion of its next step, m.
-double length_of_step(const BlockSystem &system, std::size_t row);
-
 } // namespace gcpdda::statics

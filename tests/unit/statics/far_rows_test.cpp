@@ -14,6 +14,7 @@ namespace {
 
 constexpr int side = 30;
 constexpr int cell = 6; // blocks a side of what is moved together
+constexpr double stiffness = 1e3;
 
 class FarBlocks : public ::testing::Test {
 protected:
@@ -28,23 +29,29 @@ protected:
     }
     system_ = system_of(squares, {});
     rows_.lay(system_, statics::moving_rows(system_));
+    system_.pseudo.resize(system_.num_rows());
+    boundary_ = statics::BlockMatrices(system_.num_owned, 3);
+    for (std::size_t row = 0; row < system_.num_owned; ++row) {
+      boundary_.of(row)[0] = stiffness;
+    }
   }
 
   RigidDof &force_at(int column, int line) {
     return system_.contact[static_cast<std::size_t>(line * side + column)].force;
   }
   [[nodiscard]] int num_found(double balanced = 0.0) const {
-    const auto found = rows_.find(system_, balanced);
+    const auto found = rows_.find(system_, boundary_, balanced);
     return found ? std::accumulate(found->begin(), found->end(), 0) : 0;
   }
 
   BlockSystem system_;
   statics::FarRows rows_;
+  statics::BlockMatrices boundary_;
 };
 
 TEST_F(FarBlocks, MoveWithTheNineSquaresAroundThem) {
   force_at(14, 20).u.x = 1.0;
-  const auto found = rows_.find(system_, 0.0);
+  const auto found = rows_.find(system_, boundary_, 0.0);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->size(), system_.num_owned);
   for (int line = 0; line < side; ++line) {
@@ -78,6 +85,21 @@ TEST_F(FarBlocks, AreThereOnlyBeyondWhatIsBalanced) {
   force_at(3, 3).u.x = 1.0;
   EXPECT_EQ(num_found(1.0), 0);
   EXPECT_GT(num_found(0.99), 0);
+}
+
+// By more than the largest force of 1, with a point on the circumference of the block.
+TEST_F(FarBlocks, LetThoseGoOnWhoseStopWouldBeFelt) {
+  force_at(0, 0).u.x = 1.0;
+  system_.pseudo[side * side - 1].velocity = {0.0, 0.9e-3, 0.0};
+  EXPECT_EQ(num_found(), 4 * cell * cell);
+  system_.pseudo[side * side - 1].velocity = {0.0, 1.1e-3, 0.0};
+  EXPECT_EQ(num_found(), 4 * cell * cell + 1);
+  system_.pseudo[side * side - 1].velocity = {0.0, 0.0, -1.1e-3 / system_.properties.back().radius};
+  EXPECT_EQ(num_found(), 4 * cell * cell + 1) << "it turns";
+  for (std::size_t row = 0; row < system_.num_owned; ++row) {
+    system_.pseudo[row].velocity = {1.1e-3, 0.0, 0.0};
+  }
+  EXPECT_EQ(num_found(), 0) << "all of them";
 }
 
 // Where many are out of balance or what surrounds them is most of the model, all move.
