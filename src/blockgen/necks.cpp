@@ -47,7 +47,7 @@ std::vector<std::size_t> edges_at(const Ring &ring, const EdgeTree &tree, std::s
 }
 
 /// The two parts of a ring with a vertex on an edge.
-std::optional<std::array<Ring, 2>> parted(const Ring &ring, double rounding) {
+std::optional<std::array<Ring, 2>> parted(const Ring &ring, double rounding, std::vector<NeckCut> &cuts) {
   const std::size_t n = ring.size();
   const EdgeTree tree(ring);
   for (std::size_t i = 0; i < n; ++i) {
@@ -57,6 +57,7 @@ std::optional<std::array<Ring, 2>> parted(const Ring &ring, double rounding) {
         parts[behind <= k ? 0 : 1].push_back(ring[(i + behind) % n]);
       }
       if (has_area(parts[0], rounding) && has_area(parts[1], rounding)) {
+        cuts.push_back({ring[(i + k) % n], ring[(i + k + 1) % n], ring[i]});
         return parts;
       }
     }
@@ -66,13 +67,13 @@ std::optional<std::array<Ring, 2>> parted(const Ring &ring, double rounding) {
 
 } // namespace
 
-std::vector<Ring> without_necks(const Ring &ring, double rounding) {
+std::vector<Ring> without_necks(const Ring &ring, double rounding, std::vector<NeckCut> &cuts) {
   std::vector<Ring> whole;
   std::vector<Ring> rest{ring};
   while (!rest.empty()) {
     const Ring next = std::move(rest.back());
     rest.pop_back();
-    if (auto parts = parted(next, rounding)) {
+    if (auto parts = parted(next, rounding, cuts)) {
       rest.insert(rest.end(), parts->begin(), parts->end());
     } else {
       whole.push_back(next);
@@ -85,6 +86,25 @@ std::vector<Ring> without_necks(const Ring &ring, double rounding) {
                 part.end());
   }
   return whole;
+}
+
+void share_vertices(std::span<const NeckCut> cuts, std::vector<PlaneFace> &faces) {
+  const auto share = [&](const NeckCut &cut, Ring &ring) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      if (ring[k] == cut.to && ring[(k + 1) % ring.size()] == cut.from) {
+        ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(k) + 1, cut.vertex);
+        return;
+      }
+    }
+  };
+  for (const NeckCut &cut : cuts) {
+    for (PlaneFace &face : faces) {
+      share(cut, face.outer);
+      for (Ring &hole : face.holes) {
+        share(cut, hole);
+      }
+    }
+  }
 }
 
 } // namespace gcpdda::blockgen

@@ -227,15 +227,17 @@ std::vector<Trace> TileCutter::traces_in(const Aabb &box) const {
 
 std::vector<RockFace> TileCutter::rock_in(const std::vector<Trace> &traces) const {
   std::vector<PlaneFace> shapes;
+  std::vector<NeckCut> cuts;
   for (PlaneFace &shape : graph_.faces(traces)) {
     if (!shape.holes.empty()) {
       shapes.push_back(std::move(shape));
       continue;
     }
-    for (Ring &part : without_necks(shape.outer, rounding_)) {
+    for (Ring &part : without_necks(shape.outer, rounding_, cuts)) {
       shapes.push_back({std::move(part), {}});
     }
   }
+  share_vertices(cuts, shapes);
   std::vector<RockFace> faces;
   for (PlaneFace &shape : shapes) {
     const Vec2 inside = graph_.point_inside(shape) + origin_;
