@@ -5,14 +5,12 @@
 #include "geometry/holds_point.hpp"
 #include "geometry/polygon.hpp"
 #include "support/regions.hpp"
-#include "support/scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <string>
 
 namespace gcpdda::blockgen_test {
 namespace {
@@ -81,87 +79,6 @@ TEST(RegionCutter, JointsOnTheOutlineCutNothing) {
   EXPECT_EQ(blocks.size(), 80U);
   for (const SceneBlock &block : blocks) {
     EXPECT_NEAR(signed_area(block.vertices), 1.0, 1e-13);
-  }
-}
-
-/// How often the outlines of blocks come to the origin, at most: with a vertex or with an edge through it.
-int most_visits_to_origin(const std::vector<SceneBlock> &blocks) {
-  int most = 0;
-  for (const SceneBlock &block : blocks) {
-    const std::size_t n = block.vertices.size();
-    int visits = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      const Vec2 from = block.vertices[k];
-      const Vec2 along = block.vertices[(k + 1) % n] - from;
-      const double at = dot(-from, along) / dot(along, along);
-      const bool passes =
-          at > 1e-6 && at < 1.0 - 1e-6 && std::abs(cross(along, from)) < rounding * norm(along);
-      visits += passes || norm(from) < rounding ? 1 : 0;
-    }
-    most = std::max(most, visits);
-  }
-  return most;
-}
-
-// A joint through a re-entrant corner, as bedding through the toe of a slope, ends both blocks there: which
-// side rounding takes it to is not seen.
-TEST(RegionCutter, JointsThroughACornerLeaveNoNeck) {
-  for (int dip = 5; dip < 60; dip += 6) {
-    SCOPED_TRACE(dip);
-    const double face = 72.0 * per_degree;
-    const Vec2 crest{10.0 / std::tan(face), 10.0};
-    Scene scene = region_scene({{-9.0, -8.0}, {20.0, -8.0}, {20.0, 10.0}, crest, {0.0, 0.0}, {-9.0, 0.0}});
-    scene.region.joint_sets = {through_going(dip, 0.84, 1), through_going(85.0, 1.1, 2, {0.3, 0.2})};
-    const std::vector<SceneBlock> blocks = all_blocks(scene);
-    expect_sound(blocks);
-    EXPECT_EQ(most_visits_to_origin(blocks), 1) << "a block that touches itself";
-  }
-}
-
-// A flat joint through the toe leaves wedges below the floor that become part of the rock on its other side,
-// and nothing is left of the joint between them. With these seeds rounding takes it beside the toe.
-TEST(RegionCutter, SliversAtACornerLeaveNoSlit) {
-  for (const int seed : {1, 2, 3}) {
-    SCOPED_TRACE(seed);
-    const std::vector<SceneBlock> blocks = all_blocks(testing::scene_of(R"(
-[run]
-duration = 1.0
-fidelity = "rigid"
-[material.rock]
-density = 2600.0
-[joint.default]
-normal_stiffness = 1e9
-[region]
-material = "rock"
-min_width = 0.194
-[region.slope]
-toe_length = 14.6
-crest_length = 26.2
-depth = 10.2
-[[region.slope.bench]]
-height = 14.55
-face_angle_deg = 52.9
-width = 6.6
-[[region.slope.bench]]
-height = 14.55
-face_angle_deg = 55.6
-[[joint_set]]
-name = "flat"
-dip_deg = 2.9
-spacing = 1.62
-spacing_scatter = {kind = "lognormal", deviation = 0.324}
-seed = )" + std::to_string(seed) + R"(
-[[joint_set]]
-name = "steep"
-dip_deg = 69.3
-dip_scatter = {kind = "normal", deviation_deg = 3.0}
-spacing = 1.61
-trace_length = 12.04
-gap = 0.85
-seed = 1048
-)"));
-    expect_sound(blocks);
-    EXPECT_EQ(most_visits_to_origin(blocks), 1) << "a block with a slit";
   }
 }
 
