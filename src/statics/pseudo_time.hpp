@@ -75,11 +75,11 @@
 //
 // Once all of the load acts, all blocks move in `all_move` of `window` evaluations (in `all_move_near_rest`
 // where the unbalanced ratio is near the tolerance), and in the others those far from balance with what
-// surrounds them (far_rows.hpp). The others stay where they are, without velocity: contacts and springs of
-// two of them are as they were, to the same bits, and their rows are left out of the solution with K. Forces
-// on them are known at each evaluation, and which blocks move is asked anew each time that the coarse matrix
-// is made. All equations above are those of the blocks that move; the quotient of a step is found from those
-// that took it.
+// surrounds them, and those too fast to be stopped (far_rows.hpp). The others stay where they are, without
+// velocity: contacts and springs of two of them are as they were, to the same bits, and their rows are left
+// out of the solution with K. Forces on them are known at each evaluation, and which blocks move is asked
+// anew each time that the coarse matrix is made. All equations above are those of the blocks that move; the
+// quotient of a step is found from those that took it.
 //
 // An evaluation of all costs three of the few. Where a slope slides to its rest or fails, 5 of 30 take about
 // as many evaluations as 10 of 30 and a tenth less time each (trials of gcpdda fos with 100,290 blocks);
