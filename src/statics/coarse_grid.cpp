@@ -4,8 +4,6 @@
 #include "contact/block_sums.hpp"
 #include "statics/cells.hpp"
 
-#include <Eigen/Sparse>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,8 +11,6 @@
 namespace gcpdda::statics {
 
 namespace {
-
-using Sparse = Eigen::SparseMatrix<double>;
 
 /// The power of two of which the largest contribution is about 2^bits.
 double unit_of(double largest, int bits) {
@@ -26,19 +22,6 @@ bool moves(const BlockSystem &system, std::size_t row) {
 }
 
 } // namespace
-
-struct CoarseGrid::Factors {
-  Sparse matrix;
-  Eigen::SimplicialLDLT<Sparse, Eigen::Lower> ldlt;
-  std::vector<std::int64_t> pattern; ///< for which the order of elimination has been found
-  std::vector<Eigen::Triplet<double>> entries;
-};
-
-CoarseGrid::CoarseGrid(const Communicator &communicator)
-    : communicator_(communicator), factors_(std::make_unique<Factors>()) {}
-CoarseGrid::~CoarseGrid() = default;
-CoarseGrid::CoarseGrid(CoarseGrid &&) noexcept = default;
-CoarseGrid &CoarseGrid::operator=(CoarseGrid &&) noexcept = default;
 
 // The least centroid of all ranks, the mean size of a block, and how many columns there are.
 bool CoarseGrid::lay_cells(const BlockSystem &system) {
@@ -274,33 +257,24 @@ void CoarseGrid::factorise(const BlockSystem &system, const ContactSprings &spri
   if (communicator_.size() > 1) {
     communicator_.sum(sums_);
   }
-  fill_matrix(unit);
+  factorise_sums(unit);
 }
 
-void CoarseGrid::fill_matrix(double unit) {
-  Factors &f = *factors_;
-  const auto num_cells = std::ssize(keys_);
-  f.entries.clear();
-  const std::int64_t *from = sums_.data();
-  for (const std::int64_t key : pattern_) {
-    const auto higher = static_cast<int>(3 * (key / num_cells));
-    const auto lower = static_cast<int>(3 * (key % num_cells));
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        const double value = unit * static_cast<double>(*from++);
-        if (higher + i >= lower + j) {
-          f.entries.emplace_back(higher + i, lower + j, value);
-        }
-      }
+void CoarseGrid::factorise_sums(double unit) {
+  if (analysed_ != pattern_) {
+    const auto num_cells = std::ssize(keys_);
+    std::vector<CoarseFactors::Place> places;
+    for (const std::int64_t key : pattern_) {
+      places.push_back(
+          {static_cast<std::int32_t>(key / num_cells), static_cast<std::int32_t>(key % num_cells)});
     }
+    factors_.analyse(keys_.size(), places);
+    analysed_ = pattern_;
   }
-  f.matrix.resize(3 * num_cells, 3 * num_cells);
-  f.matrix.setFromTriplets(f.entries.begin(), f.entries.end());
-  if (f.pattern != pattern_) {
-    f.ldlt.analyzePattern(f.matrix);
-    f.pattern = pattern_;
-  }
-  f.ldlt.factorize(f.matrix);
+  std::vector<double> blocks(sums_.size());
+  std::transform(sums_.begin(), sums_.end(), blocks.begin(),
+                 [&](std::int64_t sum) { return unit * static_cast<double>(sum); });
+  factors_.factorise(blocks);
 }
 
 double CoarseGrid::largest(const BlockSystem &system, std::span<const RowRun> rows,
@@ -337,11 +311,7 @@ double CoarseGrid::subtract(double times) {
   }
   std::transform(residual_.begin(), residual_.end(), forces_.begin(), residual_.begin(),
                  [&](double r, std::int64_t q) { return r - times * (static_cast<double>(q) / units); });
-  const Eigen::Map<const Eigen::VectorXd> residual(residual_.data(), std::ssize(residual_));
-  const Eigen::VectorXd motions = factors_->ldlt.solve(residual);
-  std::transform(motions.begin(), motions.end(), lean_motions_.begin(),
-                 [](double motion) { return static_cast<float>(motion); });
-  return residual.dot(motions);
+  return factors_.solve(residual_, lean_motions_);
 }
 
 } // namespace gcpdda::statics

@@ -19,13 +19,13 @@
 
 #include "gcpdda/parallel/communicator.hpp"
 #include "statics/block_stiffness.hpp"
+#include "statics/coarse_factors.hpp"
 #include "statics/springs.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,10 +33,7 @@ namespace gcpdda::statics {
 
 class CoarseGrid {
 public:
-  explicit CoarseGrid(const Communicator &communicator);
-  ~CoarseGrid();
-  CoarseGrid(CoarseGrid &&) noexcept;
-  CoarseGrid &operator=(CoarseGrid &&) noexcept;
+  explicit CoarseGrid(const Communicator &communicator) : communicator_(communicator) {}
 
   /// Cells of the rows of a neighbourhood. Collective.
   void lay(const BlockSystem &system);
@@ -95,7 +92,6 @@ private:
   template <class Number> using ThreeOf = std::array<Number, 3>;
   using Three = ThreeOf<double>;
   using Square = std::array<Three, 3>;
-  struct Factors;
 
   [[nodiscard]] bool has_cell(std::size_t row) const { return cell_of_[row] >= 0; }
   [[nodiscard]] std::ptrdiff_t first_unknown(std::size_t row) const {
@@ -132,7 +128,7 @@ private:
     }
     return place;
   }
-  void fill_matrix(double unit);
+  void factorise_sums(double unit);
   [[nodiscard]] std::int64_t key_of(std::int64_t higher, std::int64_t lower) const {
     return higher * static_cast<std::int64_t>(keys_.size()) + lower;
   }
@@ -152,7 +148,8 @@ private:
   std::vector<std::int64_t> forces_;       ///< P^T q, in units
   std::vector<double> residual_;           ///< P^T r
   std::vector<float> lean_motions_;        ///< of cells, as they are added to rows
-  std::unique_ptr<Factors> factors_;
+  std::vector<std::int64_t> analysed_;     ///< pattern of the factors
+  CoarseFactors factors_;
 };
 
 } // namespace gcpdda::statics
