@@ -1,6 +1,7 @@
 #include "driver/safety_bound.hpp"
 
 #include "contact/contact_sums.hpp"
+#include "contact/laws/region_law.hpp"
 #include "driver/safety_search.hpp"
 #include "limit_analysis/limit_analysis.hpp"
 #include "simulation/evaluation.hpp"
@@ -15,11 +16,12 @@ namespace gcpdda {
 
 namespace {
 
-/// A region and what it does to its blocks; ids of blocks in place of their numbers.
+/// A joint and what it does to its blocks as they lie; ids of blocks in place of their numbers.
 struct LimitRegion {
   LimitJoint joint;
-  std::array<Vec2, 2> force;
-  std::array<double, 2> torque;
+  double cohesion = 0.0; ///< Pa
+  std::array<Vec2, 2> force{};
+  std::array<double, 2> torque{};
 };
 
 struct OwnedBlock {
@@ -27,15 +29,16 @@ struct OwnedBlock {
   LimitBlock block;
 };
 
-LimitJoint joint_of(const Simulation &settled, const RegionForce &region, const RegionState &memory,
-                    const CandidatePair &pair) {
+LimitRegion closed_joint(const Simulation &settled, const RegionForce &region, const RegionState &memory,
+                         const CandidatePair &pair) {
   const Scene &scene = settled.scene();
   const std::int32_t number = scene.joints.named(memory.law >= 0 ? memory.law : pair.law);
   const JointLaw &law = scene.joints.laws[static_cast<std::size_t>(number)];
   const double length = region.extent_end - region.extent_begin;
   const Vec2 along = perp(region.normal);
   const bool is_residual = law.has_bonds && !region.bonded;
-  LimitJoint joint;
+  LimitRegion found;
+  LimitJoint &joint = found.joint;
   joint.begin = region.point + region.extent_begin * along;
   joint.end = region.point + region.extent_end * along;
   joint.normal =
@@ -44,35 +47,119 @@ LimitJoint joint_of(const Simulation &settled, const RegionForce &region, const 
                            ? law.tan_friction_at(std::abs(region.normal_force) / std::max(length, 1e-300))
                        : is_residual ? law.residual_tan_friction
                                      : law.tan_friction;
-  joint.cohesion = length * (is_residual ? law.residual_cohesion : law.cohesion);
   joint.tension = region.bonded ? length * law.tension : 0.0;
   joint.is_weakened = is_weakened(scene.reduction, static_cast<std::size_t>(number));
-  return joint;
+  found.cohesion = is_residual ? law.residual_cohesion : law.cohesion;
+  return found;
+}
+
+/// A joint that is open and may close at a point.
+LimitRegion open_joint(const Simulation &settled, std::int32_t law_number, Vec2 normal, Vec2 point) {
+  const Scene &scene = settled.scene();
+  const std::int32_t number = scene.joints.named(law_number);
+  const JointLaw &law = scene.joints.laws[static_cast<std::size_t>(number)];
+  LimitRegion found;
+  found.joint.begin = point;
+  found.joint.end = point;
+  found.joint.normal = normal;
+  found.joint.tan_friction = law.is_barton_bandis ? law.tan_friction_at(0.0)
+                             : law.has_bonds      ? law.residual_tan_friction
+                                                  : law.tan_friction;
+  found.joint.is_weakened = is_weakened(scene.reduction, static_cast<std::size_t>(number));
+  found.cohesion = law.has_bonds ? law.residual_cohesion : law.cohesion;
+  return found;
+}
+
+/// Let a joint reach along its line to where a point lies beside it.
+void extend(LimitJoint &joint, Vec2 point) {
+  const Vec2 along = perp(joint.normal);
+  Vec2 &low = dot(joint.end - joint.begin, along) >= 0.0 ? joint.begin : joint.end;
+  Vec2 &high = &low == &joint.begin ? joint.end : joint.begin;
+  const double before = dot(point - low, along);
+  const double behind = dot(point - high, along);
+  if (before < 0.0) {
+    low = low + before * along;
+  } else if (behind > 0.0) {
+    high = high + behind * along;
+  }
+}
+
+/// Where corners of the blocks of a pair stand before edges of each other, their joint may close.
+/// @param reach  the farthest of them, m
+/// @param joints  of the pair, those that are closed at first
+void add_open_joints(const Simulation &settled, const CandidatePair &pair, double reach,
+                     std::vector<LimitRegion> &joints) {
+  constexpr double same_line = 0.98; // cosine
+  const BlockSystem &blocks = settled.blocks();
+  const std::array<TrialOutline, 2> outlines{TrialOutline(blocks, pair.lower.value),
+                                             TrialOutline(blocks, pair.higher.value)};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const TrialOutline &corners = outlines[side];
+    const TrialOutline &edges = outlines[1 - side];
+    for (std::size_t k = 0; k < edges.vertex.size(); ++k) {
+      const Vec2 out = edges.normal[k];
+      const Vec2 normal = side == 0 ? out : -1.0 * out; // of pressure on the lower block
+      for (std::size_t corner = 0; corner < corners.vertex.size(); ++corner) {
+        const Vec2 from_edge = corners.vertex[corner] - edges.vertex[k];
+        const double gap = dot(from_edge, out);
+        const double place = dot(from_edge, perp(out));
+        if (gap <= 0.0 || gap > reach || place < 0.0 || place > edges.length[k]) {
+          continue;
+        }
+        const auto known = std::find_if(joints.begin(), joints.end(), [&](const LimitRegion &joint) {
+          return dot(joint.joint.normal, normal) > same_line;
+        });
+        if (known != joints.end()) {
+          extend(known->joint, corners.vertex[corner]);
+          continue;
+        }
+        const auto edge = static_cast<std::int32_t>(k);
+        const auto other = static_cast<std::int32_t>(corner);
+        const std::int32_t law = pair.is_mixed
+                                     ? law_of_edges(blocks, settled.scene().joints, pair,
+                                                    side == 0 ? other : edge, side == 0 ? edge : other)
+                                     : pair.law;
+        joints.push_back(open_joint(settled, law, normal, corners.vertex[corner]));
+      }
+    }
+  }
 }
 
 std::vector<LimitRegion> regions_of(Simulation &settled) {
-  std::vector<LimitRegion> found;
+  std::vector<std::vector<LimitRegion>> of_pair(settled.candidates().pairs.size());
   const BlockSystem &blocks = settled.blocks();
   const auto add = [&](std::uint32_t number, std::span<const RegionForce> regions) {
     const CandidatePair &pair = settled.candidates().pairs[number];
-    if (!settled.counts_here(pair)) {
-      return;
-    }
     const std::array<std::size_t, 2> rows{pair.lower.value, pair.higher.value};
     for (std::size_t k = 0; k < regions.size(); ++k) {
-      LimitRegion region{joint_of(settled, regions[k], settled.history().state(number, k), pair), {}, {}};
+      LimitRegion region = closed_joint(settled, regions[k], settled.history().state(number, k), pair);
       for (std::size_t side = 0; side < 2; ++side) {
-        const BlockProperties &block = blocks.properties[rows[side]];
-        (side == 0 ? region.joint.first : region.joint.second) =
-            block.keeps_its_velocity() ? -1 : block.id.value;
         const ContactPart part = contact_part(regions[k], side == 0, blocks.motion[rows[side]].centroid);
         region.force[side] = part.force;
         region.torque[side] = part.dyad.xy - part.dyad.yx;
       }
-      found.push_back(region);
+      of_pair[number].push_back(region);
     }
   };
   for_regions(settled.state(), 0, settled.candidates().pairs.size(), add);
+  std::vector<LimitRegion> found;
+  for (std::size_t number = 0; number < of_pair.size(); ++number) {
+    const CandidatePair &pair = settled.candidates().pairs[number];
+    if (!settled.counts_here(pair)) {
+      continue;
+    }
+    add_open_joints(settled, pair, settled.state().neighbours.base_skin, of_pair[number]);
+    const auto id_of = [&](BlockIndex row) {
+      const BlockProperties &block = blocks.properties[row.value];
+      return block.keeps_its_velocity() ? std::int64_t{-1} : std::int64_t{block.id.value};
+    };
+    for (LimitRegion &region : of_pair[number]) {
+      region.joint.first = id_of(pair.lower);
+      region.joint.second = id_of(pair.higher);
+      region.joint.cohesion = region.cohesion * norm(region.joint.end - region.joint.begin);
+      found.push_back(region);
+    }
+  }
   return found;
 }
 

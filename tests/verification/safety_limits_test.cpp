@@ -33,6 +33,28 @@ TEST(SafetyLimits, InclinesAtFiveAngles) {
   }
 }
 
+// A block that slides on over a gap and finds hold before it has moved by a tenth of its size has not failed,
+// whatever its friction is, and no bound may say so. Over a wider gap the limit is that of the plane.
+TEST(SafetyLimits, ABlockThatFindsHoldHasNoBound) {
+  const auto before_a_stop = [&](double gap) {
+    return scene_of(
+        without_duration(head({.gravity = gravity_on(30.0 * degree), .friction_deg = 37.0}) + long_plane +
+                         block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0})) +
+                         block_toml("stop", rectangle({2.0 + gap, 0.0}, {3.0 + gap, 1.0}), "fixed = true")) +
+        "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n");
+  };
+  for (const double gap : {1e-4, 0.05}) {
+    const Scene scene = before_a_stop(gap);
+    EXPECT_EQ(search_quietly(scene).report.holds, scene.reduction.to) << gap;
+    EXPECT_FALSE(search_quietly(scene, true).report.bound) << gap;
+  }
+  const double limit = std::tan(37.0 * degree) / std::tan(30.0 * degree);
+  const SafetyOutcome far = search_quietly(before_a_stop(0.5));
+  ASSERT_TRUE(far.report.holds && far.report.fails);
+  EXPECT_NEAR(0.5 * (*far.report.holds + *far.report.fails), limit, 0.01 * limit);
+  EXPECT_NEAR(search_quietly(before_a_stop(0.5), true).report.bound.value_or(0.0), limit, 3e-3 * limit);
+}
+
 // One of more than a thousand blocks is few enough for a static trial not to wait for it (0.1 %) if it stays
 // near. Here it slides on: the motion of single blocks or else the step that confirms the trial sees it.
 TEST(SafetyLimits, ASlidingBlockAmongAThousandAtRest) {
