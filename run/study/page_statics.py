@@ -88,13 +88,13 @@ def over_static_table(rows):
 
 
 def ranks_table(rows):
-    lines = [[row["model"], count(row["blocks"]), row["way"], count(row["evaluations"]), number(row["work_ratio"], 4),
-              number(row["products"], 2), number(row["messages_per_rank"], 3), count(row["bytes_per_rank"]),
+    lines = [[row["model"], row["start"], count(row["blocks"]), row["way"], count(row["evaluations"]),
+              number(row["work_ratio"], 4), number(row["products"], 2), number(row["messages_per_rank"], 3), count(row["bytes_per_rank"]),
               number(row["reductions"], 3),
               "{} ({} to {})".format(*(number(row[f"efficiency{which}"], 2) for which in ("", "_least", "_most")))]
              for row in rows]
-    return table(["model", "blocks", "way", "evaluations", "busiest rank's work over its share", "products", "messages a rank",
-                  "bytes a rank", "reductions", "efficiency"], lines, source("statics", "statics_ranks.csv"))
+    return table(["model", "start", "blocks", "way", "evaluations", "busiest rank's work over its share", "products",
+                  "messages a rank", "bytes a rank", "reductions", "efficiency"], lines, source("statics", "statics_ranks.csv"))
 
 
 def paths_table(rows):

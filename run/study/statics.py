@@ -293,10 +293,11 @@ def growth(runner, models, ways, rounds=1):
 def ranks(runner, quick):
     """Wall time of the step loop on one rank over twice that on two, in alternating runs: of stages of the static solver and
     of steps of damped motion."""
-    rounds, steps, models = (1, 20, SMALL[:1]) if quick else (9, 300, [SMALL[2], SMALL[4]])
+    models = [("slope", 1, "joints open", 1, 20)] if quick else \
+        [("slope", 5, "joints open", 9, 300), ("slope", 15, "in situ", 3, 100), ("wall", 50, "joints open", 9, 300)]
     rows = []
-    for model, size in models:
-        case = scenes.pile(runner.work, "wall", size) if model == "wall" else scenes.slope_of_benches(size, "joints open")
+    for model, size, start, rounds, steps in models:
+        case = scenes.pile(runner.work, "wall", size) if model == "wall" else scenes.slope_of_benches(size, start)
         limit = steps * runner.step(case, WAYS["local damping"])
         few_steps = [f"stage.weight.limit={limit!r}", f"output.interval={limit!r}", f"output.history_interval={limit!r}"]
         taken = {"static": [], "local damping": []}
@@ -315,8 +316,8 @@ def ranks(runner, quick):
             if one["steps"] != two["steps"]:
                 raise SystemExit(f"{model} {size}, {way}: {one['steps']} steps on one rank, {two['steps']} on two")
             done = two["steps"]
-            rows.append({"model": model, "size": size, "way": way, "blocks": two["blocks"], "evaluations": done,
-                         "work_ratio": 2.0 * max(two["work_per_rank"]) / sum(one["work_per_rank"]),
+            rows.append({"model": model, "size": size, "start": start, "way": way, "blocks": two["blocks"],
+                         "evaluations": done, "work_ratio": 2.0 * max(two["work_per_rank"]) / sum(one["work_per_rank"]),
                          "ghosts_per_rank": sum(two["ghosts_per_rank"]) / 2.0,
                          "products": two["counters"]["products"] / done,
                          "messages_per_rank": two["messages_per_step"] / 2.0,
