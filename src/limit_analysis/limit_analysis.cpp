@@ -57,7 +57,8 @@ public:
     // Numbers are near 1 already, and what rounding leaves of a zero must not set the scale of a row.
     Clp_scaling(model.get(), 0);
     Clp_setMaximumIterations(model.get(), most_iterations);
-    Clp_initialDualSolve(model.get());  // takes a third of the time of the primal one
+    // The primal method takes three times as long.
+    Clp_initialDualSolve(model.get());
     if (Clp_status(model.get()) != 0) { // no load needs no force, so that a solution exists
       throw UnsolvedProgramme(blocks_.size(), low_.size());
     }

@@ -24,10 +24,11 @@ Columns transposed(const Columns &a) {
           Column{a[0][2], a[1][2], a[2][2], 0.0}};
 }
 
-/// y += a x, and the same for each column of a square.
+/// y += a x
 void add_product(const Columns &a, const Column &x, Column &y) {
   y += a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
 }
+/// y -= a x, of a column or of all three.
 void subtract_product(const Columns &a, const Column &x, Column &y) {
   y -= a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
 }
