@@ -24,6 +24,28 @@ struct LimitRegion {
   std::array<double, 2> torque{};
 };
 
+/// How far a block slides on and may still find hold, in sizes of it.
+constexpr double slip_that_may_end = 0.1;
+/// How far one moves that stays as it lies: gaps and overlaps of contacts are smaller.
+constexpr double slip_at_rest = 1e-3;
+
+/// Of one that moves, m; 0 of the others.
+double size_of(const BlockProperties &block) {
+  return block.keeps_its_velocity() ? 0.0 : std::sqrt(block.area);
+}
+
+/// All pairs become candidates whose joint may close when one of them slides so far.
+void look_farther(RunState &run) {
+  double largest = 0.0;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    largest = std::max(largest, size_of(run.blocks.properties[row]));
+  }
+  run.communicator.max(std::span(&largest, 1));
+  // Boxes of blocks are half a skin larger, and those of fixed ones no larger.
+  run.neighbours.base_skin = 2.0 * slip_that_may_end * largest;
+  refresh(run);
+}
+
 struct OwnedBlock {
   std::int64_t id;
   LimitBlock block;
@@ -84,8 +106,9 @@ void extend(LimitJoint &joint, Vec2 point) {
   }
 }
 
-/// Where corners of the blocks of a pair stand before edges of each other, their joint may close.
-/// @param reach  the farthest of them, m
+/// Where corners of the blocks of a pair stand before edges of each other, or beside the ends of them, their
+/// joint may close.
+/// @param reach  the farthest from an edge and from its ends, m
 /// @param joints  of the pair, those that are closed at first
 void add_open_joints(const Simulation &settled, const CandidatePair &pair, double reach,
                      std::vector<LimitRegion> &joints) {
@@ -103,7 +126,7 @@ void add_open_joints(const Simulation &settled, const CandidatePair &pair, doubl
         const Vec2 from_edge = corners.vertex[corner] - edges.vertex[k];
         const double gap = dot(from_edge, out);
         const double place = dot(from_edge, perp(out));
-        if (gap <= 0.0 || gap > reach || place < 0.0 || place > edges.length[k]) {
+        if (gap <= 0.0 || gap > reach || place < -reach || place > edges.length[k] + reach) {
           continue;
         }
         const auto known = std::find_if(joints.begin(), joints.end(), [&](const LimitRegion &joint) {
@@ -125,7 +148,8 @@ void add_open_joints(const Simulation &settled, const CandidatePair &pair, doubl
   }
 }
 
-std::vector<LimitRegion> regions_of(Simulation &settled) {
+/// @param slip  of each block, in sizes of it
+std::vector<LimitRegion> regions_of(Simulation &settled, double slip) {
   std::vector<std::vector<LimitRegion>> of_pair(settled.candidates().pairs.size());
   const BlockSystem &blocks = settled.blocks();
   const auto add = [&](std::uint32_t number, std::span<const RegionForce> regions) {
@@ -148,7 +172,9 @@ std::vector<LimitRegion> regions_of(Simulation &settled) {
     if (!settled.counts_here(pair)) {
       continue;
     }
-    add_open_joints(settled, pair, settled.state().neighbours.base_skin, of_pair[number]);
+    const double reach = slip * std::max(size_of(blocks.properties[pair.lower.value]),
+                                         size_of(blocks.properties[pair.higher.value]));
+    add_open_joints(settled, pair, reach, of_pair[number]);
     const auto id_of = [&](BlockIndex row) {
       const BlockProperties &block = blocks.properties[row.value];
       return block.keeps_its_velocity() ? std::int64_t{-1} : std::int64_t{block.id.value};
@@ -171,10 +197,8 @@ template <class T> std::vector<T> gathered(const Communicator &communicator, con
   return all;
 }
 
-} // namespace
-
-std::optional<double> bound_at(Simulation &settled, double settled_factor) {
-  evaluate_still(settled.state());
+/// Of all ranks, by id.
+std::vector<OwnedBlock> all_mobile(const Simulation &settled) {
   std::vector<OwnedBlock> mine;
   for (std::size_t row = 0; row < settled.blocks().num_owned; ++row) {
     const BlockProperties &block = settled.blocks().properties[row];
@@ -183,15 +207,27 @@ std::optional<double> bound_at(Simulation &settled, double settled_factor) {
           {block.id.value, {settled.blocks().motion[row].centroid, std::sqrt(block.area), {}, 0.0}});
     }
   }
-  const Communicator &communicator = settled.communicator();
-  std::vector<OwnedBlock> owned = gathered(communicator, mine);
-  std::vector<LimitRegion> regions = gathered(communicator, regions_of(settled));
-  std::sort(owned.begin(), owned.end(), [](const OwnedBlock &a, const OwnedBlock &b) { return a.id < b.id; });
-  std::sort(regions.begin(), regions.end(),
-            [](const LimitRegion &a, const LimitRegion &b) { // on any number of ranks
-              return std::tuple(a.joint.first, a.joint.second, a.joint.begin.x, a.joint.begin.y) <
-                     std::tuple(b.joint.first, b.joint.second, b.joint.begin.x, b.joint.begin.y);
-            });
+  std::vector<OwnedBlock> all = gathered(settled.communicator(), mine);
+  std::sort(all.begin(), all.end(), [](const OwnedBlock &a, const OwnedBlock &b) { return a.id < b.id; });
+  return all;
+}
+
+/// Of all ranks, in an order that does not depend on their number.
+std::vector<LimitRegion> all_regions(Simulation &settled, double slip) {
+  std::vector<LimitRegion> all = gathered(settled.communicator(), regions_of(settled, slip));
+  const auto key = [](const LimitRegion &region) {
+    const LimitJoint &joint = region.joint;
+    return std::tuple(joint.first, joint.second, joint.begin.x, joint.begin.y, joint.normal.x,
+                      joint.normal.y);
+  };
+  std::sort(all.begin(), all.end(),
+            [&](const LimitRegion &a, const LimitRegion &b) { return key(a) < key(b); });
+  return all;
+}
+
+/// What is divided further than at the settled state, to a bound between `least` and `most`.
+std::optional<double> further_bound(Simulation &settled, double slip, double least, double most) {
+  const std::vector<OwnedBlock> owned = all_mobile(settled);
   const auto number_of = [&](std::int64_t id) {
     const auto found =
         std::lower_bound(owned.begin(), owned.end(), id,
@@ -203,7 +239,7 @@ std::optional<double> bound_at(Simulation &settled, double settled_factor) {
     blocks.push_back(block.block);
   }
   std::vector<LimitJoint> joints;
-  for (const LimitRegion &region : regions) {
+  for (const LimitRegion &region : all_regions(settled, slip)) {
     LimitJoint joint = region.joint;
     joint.first = number_of(region.joint.first);
     joint.second = number_of(region.joint.second);
@@ -217,10 +253,26 @@ std::optional<double> bound_at(Simulation &settled, double settled_factor) {
     }
     joints.push_back(joint);
   }
+  constexpr double tolerance = 1e-3;
+  return bound_of_factor(blocks, joints, least, most, tolerance);
+}
+
+} // namespace
+
+SafetyBounds bounds_at(Simulation &settled, double settled_factor) {
+  look_farther(settled.state());
+  evaluate_still(settled.state());
   const StrengthReduction &reduction = settled.scene().reduction;
-  const std::optional<double> further =
-      bound_of_factor(blocks, joints, reduction.from / settled_factor, reduction.to / settled_factor, 1e-3);
-  return further ? std::optional(settled_factor * *further) : std::nullopt;
+  const double least = reduction.from / settled_factor;
+  const double most = reduction.to / settled_factor;
+  const std::optional<double> sliding = further_bound(settled, slip_that_may_end, least, most);
+  // All that holds as it lies holds with joints that may close, too.
+  std::optional<double> resting = further_bound(settled, slip_at_rest, least, sliding.value_or(most));
+  resting = resting ? resting : sliding;
+  const auto whole = [&](std::optional<double> further) {
+    return further ? std::optional(settled_factor * *further) : std::nullopt;
+  };
+  return {whole(sliding), whole(resting)};
 }
 
 } // namespace gcpdda

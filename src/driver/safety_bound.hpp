@@ -1,6 +1,6 @@
 #pragma once
 
-// The upper bound of the factor of safety by limit analysis (limit_analysis/limit_analysis.hpp) at a settled
+// Upper bounds of the factor of safety by limit analysis (limit_analysis/limit_analysis.hpp) at a settled
 // state.
 
 #include "simulation/simulation.hpp"
@@ -9,14 +9,23 @@
 
 namespace gcpdda {
 
-/// Bound between `from` and `to` of the reduction, to 0.1 %; nothing where the blocks could still hold at
-/// `to`. Blocks are rigid there, as they lie. Joints are where they touch, and where a corner stands before
-/// an edge at less than a tenth of the smallest block: a block that slides on by less and finds hold has not
-/// failed. The load of a block is what its contacts carry: weight, water, bolts and liners as they pull,
-/// loads. Friction that depends on pressure (Barton and Bandis) is taken at the pressure of the state, or of
-/// none where a joint is open. Collective.
+/// Bounds between `from` and `to` of the reduction, to 0.1 %; nothing where the blocks could still hold at
+/// `to`.
+struct SafetyBounds {
+  /// Joints are where blocks touch, and where a corner stands before an edge, or beside an end of it, by less
+  /// than a tenth of the size of one of both blocks, sqrt(area): a block that slides on by less and finds
+  /// hold has not failed. No factor of a run lies above it, but where a block slides farther before it holds.
+  std::optional<double> sliding;
+  /// The same for a thousandth of the size: blocks that hold as they lie. No larger than `sliding`, and a
+  /// factor beyond it means that blocks have moved to where they hold.
+  std::optional<double> resting;
+};
+
+/// Blocks are rigid. The load of a block is what its contacts carry: weight, water, bolts and liners as they
+/// pull, loads. Friction that depends on pressure (Barton and Bandis) is taken at the pressure of the state,
+/// or of none where a joint is open. Collective.
 /// @param settled         the state; its contact forces are evaluated
 /// @param settled_factor  what its strengths were divided by
-std::optional<double> bound_at(Simulation &settled, double settled_factor);
+SafetyBounds bounds_at(Simulation &settled, double settled_factor);
 
 } // namespace gcpdda

@@ -60,7 +60,9 @@ private:
   ExitCode bound() {
     Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_directory()});
     try {
-      report_.bound = bound_at(settled, report_.settled.factor);
+      const SafetyBounds bounds = bounds_at(settled, report_.settled.factor);
+      report_.bound = bounds.sliding;
+      report_.resting_bound = bounds.resting;
     } catch (const UnsolvedProgramme &unsolved) {
       say(std::string(unsolved.what()) + "\n");
       return exit_code::undecided;

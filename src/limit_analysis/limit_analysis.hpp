@@ -14,9 +14,9 @@
 // programme: the largest share of the loads, up to all of them, that admissible forces balance.
 //
 // No equilibrium with a larger factor exists at this geometry, whatever path led to it, so that the factor of
-// a run lies below the bound, but where blocks first move on to another geometry and hold there. It is no
-// lower bound: friction is not associated (slip does not open joints), and a run need not find the forces
-// that would balance the load.
+// a run lies below the bound, but where blocks first move on to another geometry and hold there (joints that
+// may close on the way can be given, too). It is no lower bound: friction is not associated (slip does not
+// open joints), and a run need not find the forces that would balance the load.
 
 #include "gcpdda/geometry/vec2.hpp"
 

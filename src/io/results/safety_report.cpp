@@ -24,15 +24,26 @@ constexpr std::array<const char *, 6> own_names{"fos.txt",        "fos.json", "f
                                                 "fos_blocks.csv", "fos.svg",  "fos_first_block.svg"};
 constexpr double one_degree = std::numbers::pi / 180.0;
 
+std::string bound_text(const SafetyReport &report) {
+  std::string text =
+      report.bound ? fmt::format("factor of safety at most {:.5g}, by limit analysis of rigid blocks at "
+                                 "the settled state: with strengths divided by more no forces balance "
+                                 "the loads",
+                                 *report.bound)
+                   : std::string("limit analysis gives no bound: forces balance the loads at the "
+                                 "largest factor (fos.to), or the strengths have no part in it");
+  if (report.resting_bound && report.resting_bound != report.bound) {
+    text +=
+        fmt::format("\nblocks that do not slide on hold at most at {:.5g}: beyond it joints have to close "
+                    "that are open by up to a tenth of a block's size",
+                    *report.resting_bound);
+  }
+  return text;
+}
+
 std::string factor_text(const SafetyReport &report) {
   if (report.is_bound_alone) {
-    return report.bound
-               ? fmt::format(
-                     "factor of safety at most {:.5g}, by limit analysis of rigid blocks at the settled "
-                     "state: with strengths divided by more no forces balance the loads",
-                     *report.bound)
-               : std::string("limit analysis gives no bound: forces balance the loads at the largest factor "
-                             "(fos.to), or the strengths have no part in it");
+    return bound_text(report);
   }
   if (report.holds && report.fails) {
     return fmt::format(
@@ -152,6 +163,7 @@ std::string json_text(const SafetyReport &report) {
       .add("holds", report.holds.value_or(none))
       .add("fails", report.fails.value_or(none))
       .add("bound", report.bound.value_or(none))
+      .add("resting_bound", report.resting_bound.value_or(none))
       .add("tolerance", report.tolerance)
       .add("found", report.is_found() ? 1 : 0)
       .add("version", program_version())

@@ -73,6 +73,7 @@ struct SafetyReport {
   StrengthTrial settled;               ///< the run up to the settled state, at factor 1
   std::vector<StrengthTrial> trials;   ///< by factor
   std::optional<double> bound;         ///< upper bound by limit analysis, where it was asked for
+  std::optional<double> resting_bound; ///< the same for blocks that hold as they lie; no larger
   bool is_bound_alone = false;         ///< no trials were to be run
   std::vector<FailingBlock> mechanism; ///< of `fails`, by BlockId; empty without it
   std::optional<FirstBlock>
