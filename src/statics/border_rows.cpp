@@ -1,49 +1,71 @@
 #include "statics/border_rows.hpp"
 
-#include <algorithm>
-#include <span>
+#include <cstring>
+#include <type_traits>
 
 namespace gcpdda::statics {
 
-template <class Number> void BorderExchange::copy(FieldOf<Number> &field) {
-  if (rows_.empty()) {
-    return;
+void BorderExchange::take(std::vector<BorderRows> rows) {
+  rows_ = std::move(rows);
+  doubles_ = {};
+  floats_ = {};
+}
+
+template <class Number> BorderExchange::Round &BorderExchange::round_of(std::size_t width) {
+  Round &round = std::is_same_v<Number, double> ? doubles_ : floats_;
+  const std::size_t bytes = width * sizeof(Number);
+  if (round.bytes_a_row == bytes) {
+    return round;
   }
-  const std::size_t bytes = field.width() * sizeof(Number);
-  const auto row_of = [&](std::uint32_t row) {
-    return std::as_writable_bytes(std::span(field.of(row), field.width()));
-  };
-  sent_.resize(rows_.size());
-  received_.resize(rows_.size());
+  round = {};
+  round.bytes_a_row = bytes;
   std::vector<Communicator::Message> leaving;
   std::vector<Communicator::Message> arriving;
+  round.sent.resize(rows_.size());
+  round.received.resize(rows_.size());
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    sent_[k].clear();
-    for (const std::uint32_t row : rows_[k].send) {
-      const std::span<std::byte> of_row = row_of(row);
-      sent_[k].insert(sent_[k].end(), of_row.begin(), of_row.end());
+    round.sent[k].resize(rows_[k].send.size() * bytes);
+    round.received[k].resize(rows_[k].receive.size() * bytes);
+    if (!round.sent[k].empty()) {
+      leaving.push_back({rows_[k].rank, round.sent[k]});
     }
-    received_[k].resize(rows_[k].receive.size() * bytes);
-    if (!sent_[k].empty()) {
-      leaving.push_back({rows_[k].rank, sent_[k]});
-      ++all_sent_.messages;
-      all_sent_.bytes += std::ssize(sent_[k]);
-    }
-    if (!received_[k].empty()) {
-      arriving.push_back({rows_[k].rank, received_[k]});
+    if (!round.received[k].empty()) {
+      arriving.push_back({rows_[k].rank, round.received[k]});
     }
   }
-  communicator_.exchange(leaving, arriving);
+  round.messages = MessageRound(communicator_, leaving, arriving);
+  return round;
+}
+
+template <class Number> void BorderExchange::start(const FieldOf<Number> &field) {
+  Round &round = round_of<Number>(field.width());
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const std::byte *from = received_[k].data();
+    std::byte *to = round.sent[k].data();
+    for (const std::uint32_t row : rows_[k].send) {
+      std::memcpy(to, field.of(row), round.bytes_a_row);
+      to += round.bytes_a_row;
+    }
+    all_sent_.messages += round.sent[k].empty() ? 0 : 1;
+    all_sent_.bytes += std::ssize(round.sent[k]);
+  }
+  round.messages.start();
+}
+
+template <class Number> void BorderExchange::finish(FieldOf<Number> &field) {
+  Round &round = round_of<Number>(field.width());
+  round.messages.finish();
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const std::byte *from = round.received[k].data();
     for (const std::uint32_t row : rows_[k].receive) {
-      std::copy_n(from, bytes, row_of(row).data());
-      from += bytes;
+      std::memcpy(field.of(row), from, round.bytes_a_row);
+      from += round.bytes_a_row;
     }
   }
 }
 
-template void BorderExchange::copy(FieldOf<double> &field);
-template void BorderExchange::copy(FieldOf<float> &field);
+template void BorderExchange::start(const FieldOf<double> &field);
+template void BorderExchange::start(const FieldOf<float> &field);
+template void BorderExchange::finish(FieldOf<double> &field);
+template void BorderExchange::finish(FieldOf<float> &field);
 
 } // namespace gcpdda::statics

@@ -62,9 +62,19 @@ template <int places> void leave(std::size_t, const LeanRow<places> &, const Lea
 
 } // namespace
 
+template <class Moves> void StiffnessSolver::take_moving_ghosts(const BlockSystem &system, Moves &&moves) {
+  moving_ghosts_.clear();
+  for (std::size_t row = system.num_owned; row < system.first_fixed(); ++row) {
+    if (moves(row)) {
+      append_row(moving_ghosts_, row);
+    }
+  }
+}
+
 void StiffnessSolver::lay(const BlockSystem &system, std::vector<RowRun> moving, BlockMatrices mass,
                           BlockMatrices bolts, std::vector<BorderRows> border) {
   moving_ = std::move(moving);
+  take_moving_ghosts(system, [&](std::size_t row) { return !system.properties[row].keeps_its_velocity(); });
   mass_ = std::move(mass);
   bolts_ = std::move(bolts);
   border_.take(std::move(border));
@@ -82,6 +92,7 @@ void StiffnessSolver::lay(const BlockSystem &system, std::vector<RowRun> moving,
 void StiffnessSolver::choose(const BlockSystem &system, std::vector<RowRun> moving,
                              std::span<const std::uint8_t> moves) {
   moving_ = std::move(moving);
+  take_moving_ghosts(system, [&](std::size_t row) { return moves[row] != 0; });
   coarse_.choose(system, moves);
   std::fill(p_.values().begin(), p_.values().end(), 0.0F);
 }
@@ -116,6 +127,7 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
   for_rows(moving_, [&](std::size_t row) { // p of rows that rest is zero
     copy_row(system.pseudo[row].velocity.data(), width, p_.of(row));
   });
+  border_.copy(p_);
   springs_.take(springs, SlipSprings::none_tangential, width);
   width == 3 ? multiply_by<4>(system, p_, q_, leave<4>) : multiply_by<8>(system, p_, q_, leave<8>);
   ExactSum strained;
@@ -141,7 +153,6 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
 
 template <int places, class Visit>
 void StiffnessSolver::multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Visit &&visit) {
-  border_.copy(p);
   for_places(moving_, places, [&](std::size_t i) { y.values()[i] = 0.0F; });
   springs_.add(system, p, y);
   for_rows(moving_, [&](std::size_t row) {
@@ -154,6 +165,7 @@ void StiffnessSolver::multiply_by(const BlockSystem &system, LeanField &p, LeanF
 
 void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &springs, LeanField &p,
                                LeanField &y) {
+  border_.copy(p);
   springs_.take(springs, SlipSprings::all, mass_.width());
   mass_.width() == 3 ? multiply_by<4>(system, p, y, leave<4>) : multiply_by<8>(system, p, y, leave<8>);
 }
@@ -174,15 +186,19 @@ double StiffnessSolver::begin(const BlockSystem &system, const Field &force, dou
     coarse_.add_forces(row, deforms<places>(system, row), r.data());
     sum.add(dot_product<places>(r, w));
   });
+  border_.start(w_);
   coarse_.sum_forces(sum.limbs());
+  border_.finish(w_);
   return sum.value();
 }
 
 template <int places> void StiffnessSolver::find_first_p(const BlockSystem &system) {
-  for_rows(moving_, [&](std::size_t row) {
+  const auto find = [&](std::size_t row) {
     row_of<places>(p_, row) = row_of<places>(w_, row);
     coarse_.add_motion(row, deforms<places>(system, row), p_.of(row));
-  });
+  };
+  for_rows(moving_, find);
+  for_rows(moving_ghosts_, find);
 }
 
 template <int places>
@@ -201,22 +217,30 @@ StiffnessSolver::AlongQ StiffnessSolver::find_q_and_u(const BlockSystem &system,
                         row_of<places>(q_, row) = u;
                       });
   std::array<std::int64_t, 3> units{along_p.units(), along_w.units(), along_u.units()};
+  border_.start(q_);
   coarse_.sum_forces(units);
+  border_.finish(q_);
   return {along_p.value(units[0]), along_w.value(units[1]), along_u.value(units[2])};
 }
 
 template <int places>
 void StiffnessSolver::advance(const BlockSystem &system, float step, float share, bool goes_on) {
+  const auto find_next_p = [&](std::size_t row, const LeanRow<places> &p) {
+    const LeanRow<places> w = row_of<places>(w_, row) - step * row_of<places>(q_, row);
+    row_of<places>(w_, row) = w;
+    row_of<places>(p_, row) = w + share * p;
+    coarse_.add_motion(row, deforms<places>(system, row), p_.of(row));
+  };
   for_rows(moving_, [&](std::size_t row) {
     const LeanRow<places> p = row_of<places>(p_, row);
     row_of<places>(x_, row) += step * p;
     if (goes_on) {
-      const LeanRow<places> w = row_of<places>(w_, row) - step * row_of<places>(q_, row);
-      row_of<places>(w_, row) = w;
-      row_of<places>(p_, row) = w + share * p;
-      coarse_.add_motion(row, deforms<places>(system, row), p_.of(row));
+      find_next_p(row, p);
     }
   });
+  if (goes_on) {
+    for_rows(moving_ghosts_, [&](std::size_t row) { find_next_p(row, row_of<places>(p_, row)); });
+  }
 }
 
 template <int places>

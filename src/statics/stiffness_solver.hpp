@@ -21,9 +21,11 @@
 // follow without another one, as well as the coarse motions g = K_c^-1 P^T r, which every rank finds,
 // r^T z = r^T w + (P^T r)^T g and the next p = w + P g + b p. r itself is not kept. Nothing in r^T w cancels
 // but what the iteration takes away: its error is that of single precision, of the largest r^T w so far.
+// Ranks wait for each other once: rows of u travel to their ghosts while the sums are added, and the w and p
+// of a ghost go on from u as its owner's do, to the same bits.
 //
 // Same bits on any number of ranks: a block sums its springs in the order of its partners' ids, border
-// springs are on both ranks, search directions of ghosts are copies of their owners', and inner products are
+// springs are on both ranks, search directions of ghosts are those of their owners, and inner products are
 // sums of one number a block, as integers in units of 2^-44 of r^T z (`SumInUnits`): one word each, and a
 // rounding far below what the iteration leaves.
 //
@@ -73,7 +75,7 @@ public:
   /// @param momentum  v.q, positive
   void damp_strains(const BlockSystem &system, const ContactSprings &springs, double gamma, double momentum,
                     Field &force);
-  /// y = (K + rho D) p for moving rows, with p of ghosts copied. Collective.
+  /// y = (K + rho D) p for moving rows; p of ghosts is copied first. Collective.
   void multiply(const BlockSystem &system, const ContactSprings &springs, LeanField &p, LeanField &y);
 
   [[nodiscard]] const BlockMatrices &mass() const { return mass_; }
@@ -83,6 +85,8 @@ public:
   std::int64_t most_products = 200;
 
 private:
+  /// Those for which moves(row).
+  template <class Moves> void take_moving_ghosts(const BlockSystem &system, Moves &&moves);
   /// For rows of so many places.
   template <int places> std::int64_t solve_by(const BlockSystem &system, const Field &force, Field &solution);
   /// What q is multiplied by in an iteration: p^T q, w^T q and u^T q.
@@ -91,17 +95,18 @@ private:
     double w = 0.0;
     double u = 0.0;
   };
-  /// x = 0, w, and P^T r on the coarse grid. Collective.
+  /// x = 0, w, of ghosts too, and P^T r on the coarse grid. Collective.
   /// @return r^T w
   template <int places> double begin(const BlockSystem &system, const Field &force, double scale);
   /// p = w + P g
   template <int places> void find_first_p(const BlockSystem &system);
-  /// Finds q, u in its place, P^T q on the coarse grid, and what q is multiplied by. Collective.
+  /// Finds q, u in its place, of ghosts too, P^T q on the coarse grid, and what q is multiplied by.
+  /// Collective.
   /// @param size  r^T z
   template <int places> AlongQ find_q_and_u(const BlockSystem &system, double size);
   /// x + a p, and where the iteration goes on w - a u and the next p.
   template <int places> void advance(const BlockSystem &system, float step, float share, bool goes_on);
-  /// y = (K + rho D) p with the springs at hand. visit(row, its p, its y). Collective.
+  /// y = (K + rho D) p with the springs at hand. visit(row, its p, its y).
   template <int places, class Visit>
   void multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Visit &&visit);
 
@@ -109,6 +114,7 @@ private:
   CoarseGrid coarse_;
   BorderExchange border_;
   std::vector<RowRun> moving_;
+  std::vector<RowRun> moving_ghosts_;
   BlockMatrices mass_;
   BlockMatrices bolts_;
   double rho_ = 0.0;
