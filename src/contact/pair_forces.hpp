@@ -99,7 +99,8 @@ private:
   struct BondShare {
     bool holds = false;    ///< a bond carries the shear
     bool released = false; ///< one has just broken ...
-    double shear = 0.0;    ///< ... and leaves this, N/m
+    double shear = 0.0;    ///< ... and leaves this, N/m,
+    double length = 0.0;   ///< of a stretch of this length
   };
 
   /// A region that carries something.
@@ -114,6 +115,8 @@ private:
                     std::span<RegionMemory> old);
   void load_found(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
                   const FoundRegion &found);
+  /// That of a region found before of which this one, which is born, was a part; else -1.
+  [[nodiscard]] std::int32_t law_beside(const Region &region) const;
   /// From the edges on which the region at hand lies.
   void choose_law(const BlockSystem &system, const CandidatePair &pair, const Region &region,
                   RegionMemory &memory) const;

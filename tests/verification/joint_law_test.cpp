@@ -410,6 +410,53 @@ TEST(Bond, DoesNoNetWorkOnAClosedPath) {
   expect_below("bond: net work on a closed path over all work", 1e-6, std::abs(net) / total);
 }
 
+// Turned by 2 mrad two square blocks touch by a tenth of their joint, which is bonded. Slid by the strain
+// that breaks it the bond hands its shear to that tenth, whose spring is ten times softer.
+TEST(Bond, LeavesBehindNoMoreSlipThanItHasStretched) {
+  JointLaws joints = one_law(1e6, 0.5, 2500.0);
+  joints.laws[0].has_bonds = true;
+  joints.laws[0].tension = 5e3;
+  joints.laws[0].residual_tan_friction = 0.5;
+  ContactBench pair(system_of({rectangle({0.0, 0.0}, {1.0, 1.0}), rectangle({1.0, 0.0}, {2.0, 1.0})}, {}),
+                    joints);
+  bond_joints(pair.system, pair.candidates, pair.forces.parameters().joints, 0.0, pair.history);
+  const double turn = 2e-3;
+  pair.move(1, {{0.4 * turn, 0.5 * turn}, turn}); // its upper left corner goes to the left
+  ASSERT_EQ(memories(pair.history).size(), 2U) << "a bond and a region";
+  const double touching = memories(pair.history).front().longest;
+  EXPECT_NEAR(touching, 0.1, 2e-3);
+  const double slide = 0.01;
+  pair.move(1, {{0.0, slide}, 0.0});
+  ASSERT_EQ(memories(pair.history).size(), 1U) << "the bond is broken";
+  // What it had stretched, but for what the region's spring still holds. It slid by the turn too, to first
+  // order.
+  const double held = std::abs(pair.memory().shear) / (0.5 * 1e6);
+  EXPECT_NEAR(pair.memory().slip, slide - held, 2e-3 * slide);
+}
+
+// Corners of two blocks of a Voronoi diagram, as it was cut: along their joint they overlap by rounding.
+TEST(Bond, ThatBreaksAtOnceNeedsARegionWithAnExtentToLeaveItsShear) {
+  const std::vector<Vec2> left{
+      {18.19185882692689, -0.7554835435953847},  {18.514513981774293, -1.7659688394127426},
+      {18.782365207808724, -2.253122449728242},  {20.182525073350547, -2.5888605707119},
+      {21.524476598700865, -0.5040380989957006}, {20.654984443264187, -0.10435515718218769},
+      {18.598674153768652, 0.020721162891162992}};
+  const std::vector<Vec2> right{
+      {20.182525073350547, -2.5888605707119},    {20.188250529628608, -2.5982130009014237},
+      {22.337420166770066, -3.715084951274799},  {23.282641770949127, -1.8298287811445273},
+      {21.585062790117515, -0.4830844582880238}, {21.524476598700865, -0.5040380989957005}};
+  Simulation simulation(
+      Communicator::self(),
+      scene_of(
+          with_law(head({.duration = 0.1, .time_step = 1e-3, .normal_stiffness = 6e7, .friction_deg = 23.0}),
+                   "tension = 0\nresidual_friction_angle_deg = 20") +
+          block_toml("left", left, "fixed = true") + block_toml("right", right)));
+  ASSERT_FALSE(memories(simulation.history()).empty()) << "they touch";
+  for (const RegionMemory &memory : memories(simulation.history())) {
+    EXPECT_TRUE(std::isfinite(memory.slip));
+  }
+}
+
 TEST(Bond, IsLeftAloneByACommonMotion) {
   Glued pair(strong());
   const Vec2 arm = pair.system.properties[1].centroid - pair.system.properties[0].centroid;

@@ -214,6 +214,7 @@ PairForces::BondShare PairForces::share_of_bonds(const CandidatePair &pair, cons
     share.holds = share.holds || (here && !bond.broken);
     share.released = share.released || (here && bond.broken);
     share.shear += here && bond.broken ? bond.memory.shear : 0.0;
+    share.length += here && bond.broken ? bond.memory.longest : 0.0;
   }
   return share;
 }

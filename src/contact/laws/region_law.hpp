@@ -21,7 +21,10 @@
 // overlap of energy U adds (k_n'/k_n - 1) U, and a block that rocks to and fro between two edges, deep on the
 // soft one and shallow on the stiff one, would gain that in every cycle. The same holds for k_t and the stick
 // spring. At birth and death U is 0 but for what one step closes, so a constant stiffness costs no energy.
-// Friction and cohesion only take energy away.
+// Friction and cohesion only take energy away. A region that comes off another one of its pair, at a corner
+// where the outline goes on from one to the other inside of the other block, is born with an energy: it takes
+// the stiffness of that one, and its strength from its edges. (With the stiffness of its edges the force
+// jumped each time that the two parted, and such blocks never came to rest.)
 //
 // A pair whose edges all lead to the same law is as one without families: its law stands in CandidatePair and
 // its regions remember none. Of a mixed pair that is plain (candidates.hpp) the lanes take the constants of
