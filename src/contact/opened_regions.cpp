@@ -151,9 +151,11 @@ void PairForces::keep_open(const BlockSystem &system, const CandidatePair &pair,
 }
 
 void PairForces::add_opening_works(const Candidates &candidates, BlockSystem &system) {
-  // Interior pairs were evaluated before those with a ghost: sums of a block go by its partners' ids.
-  std::sort(opening_works_.begin(), opening_works_.end(),
-            [](const OpeningWork &a, const OpeningWork &b) { return a.pair < b.pair; });
+  // Interior pairs were evaluated before those with a ghost: sums of a block go by its partners' ids, and
+  // then by the regions.
+  std::sort(opening_works_.begin(), opening_works_.end(), [](const OpeningWork &a, const OpeningWork &b) {
+    return std::tie(a.pair, a.found_as) < std::tie(b.pair, b.found_as);
+  });
   for (const OpeningWork &work : opening_works_) {
     const CandidatePair &pair = candidates.pairs[work.pair];
     const bool alone = system.is_fixed(pair.lower.value) || system.is_fixed(pair.higher.value);

@@ -215,7 +215,8 @@ void PairForces::slip(const BlockSystem &system, const CandidatePair &pair, cons
   memory.shear = std::copysign(force.cap, memory.shear);
   memory.state = ContactState::slip;
   if (law.dilates()) {
-    opening_works_.push_back({force.pair, dilate(system, pair, law, slip_before, force, memory)});
+    const double work = dilate(system, pair, law, slip_before, force, memory);
+    opening_works_.push_back({force.pair, opening_works_.size(), work});
   }
 }
 

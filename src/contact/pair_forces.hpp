@@ -171,6 +171,7 @@ private:
   /// Of laws that open a region against its pressure, J/m.
   struct OpeningWork {
     std::uint32_t pair = 0;
+    std::size_t found_as = 0; ///< the regions of a pair are found one after the other
     double work = 0.0;
   };
   std::vector<OpeningWork> opening_works_;

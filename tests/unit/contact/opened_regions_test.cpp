@@ -3,6 +3,7 @@
 #include "contact/block_view.hpp"
 #include "contact/opened_regions.hpp"
 #include "simulation/simulation.hpp"
+#include "support/blocks.hpp"
 #include "support/scenes.hpp"
 #include "support/setting.hpp"
 
@@ -69,6 +70,59 @@ TEST(OpenedRegions, GoOnInTheJointThatHasOpened) {
 TEST(OpenedRegions, DoNotPassToAnotherJoint) {
   const Simulation only_wall = block_in_notch(-1e-3, 1e-4);
   EXPECT_EQ(push_of_region_opened_along(only_wall, {0.0, -1e-3}), Vec2{});
+}
+
+/// A comb of so many teeth that stands on them, from x on.
+std::vector<Vec2> comb(double x, int teeth) {
+  std::vector<Vec2> outline;
+  for (int k = 0; k < teeth; ++k) {
+    const double left = x + k;
+    for (const Vec2 corner : {Vec2{left, 1.0}, {left, 0.0}, {left + 0.5, 0.0}, {left + 0.5, 1.0}}) {
+      outline.push_back(corner);
+    }
+  }
+  outline.erase(outline.begin());
+  outline.pop_back();
+  outline.insert(outline.end(), {{outline.back().x, 2.0}, {x, 2.0}});
+  return outline;
+}
+
+/// Work of the first of some combs that are turned a little, slide along and open their joints, a region for
+/// each tooth, J/m.
+double work_of_first_comb(std::size_t combs, double turn) {
+  constexpr int teeth = 40;
+  constexpr double between = 100.0;
+  JointLaws joints = one_law(1e6, 0.3);
+  joints.laws[0].tan_dilation = 0.1;
+  joints.laws[0].dilation_limit = 1.0;
+  std::vector<std::vector<Vec2>> mobile;
+  std::vector<std::vector<Vec2>> fixed;
+  for (std::size_t k = 0; k < combs; ++k) {
+    const double x = between * static_cast<double>(k);
+    mobile.push_back(comb(x, teeth));
+    fixed.push_back(rectangle({x - 1.0, -1.0}, {x + teeth + 1.0, 0.0}));
+  }
+  ContactBench bench(system_of(mobile, fixed), joints, 0.0, Instructions::widest, 1.0);
+  for (const RigidDof by : {RigidDof{{0.0, -0.01}, turn}, RigidDof{{0.02, 0.0}, 0.0}}) {
+    for (std::size_t k = 0; k < combs; ++k) {
+      bench.system.trial[k] += by;
+    }
+    bench.evaluate();
+  }
+  EXPECT_EQ(bench.regions.all().size(), combs * teeth);
+  bench.forces.add_opening_works(bench.candidates, bench.system);
+  return bench.system.ledger[0].shear;
+}
+
+// They are added in an order that other pairs, whose number hangs on the ranks, do not change.
+TEST(OpenedRegions, WorkOfAPairHasTheSameBitsBesideOthers) {
+  for (const double turn :
+       {1.0e-4, 1.1e-4, 1.2e-4, 1.3e-4, 1.4e-4}) { // some sums have the same bits by chance
+    const double alone = work_of_first_comb(1, turn);
+    EXPECT_GT(alone, 0.0);
+    EXPECT_EQ(work_of_first_comb(2, turn), alone);
+    EXPECT_EQ(work_of_first_comb(3, turn), alone);
+  }
 }
 
 } // namespace
