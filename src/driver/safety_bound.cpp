@@ -3,6 +3,7 @@
 #include "contact/contact_sums.hpp"
 #include "contact/laws/region_law.hpp"
 #include "driver/safety_search.hpp"
+#include "driver/support_reserves.hpp"
 #include "limit_analysis/limit_analysis.hpp"
 #include "simulation/evaluation.hpp"
 
@@ -51,6 +52,22 @@ struct OwnedBlock {
   LimitBlock block;
 };
 
+/// A line above the strength of a law by Barton and Bandis, which grows less and less with the pressure: the
+/// one that touches it at a pressure.
+struct StrengthLine {
+  double tan_friction = 0.0;
+  double cohesion = 0.0; ///< Pa
+};
+StrengthLine strength_line(const JointLaw &law, double pressure) {
+  if (!(pressure > 0.0)) {
+    return {law.tan_friction_at(0.0), 0.0};
+  }
+  const auto strength = [&](double p) { return p * law.tan_friction_at(p); };
+  const double step = 1e-4 * pressure;
+  const double slope = (strength(pressure + step) - strength(pressure - step)) / (2.0 * step);
+  return {slope, std::max(0.0, strength(pressure) - slope * pressure)};
+}
+
 LimitRegion closed_joint(const Simulation &settled, const RegionForce &region, const RegionState &memory,
                          const CandidatePair &pair) {
   const Scene &scene = settled.scene();
@@ -65,13 +82,15 @@ LimitRegion closed_joint(const Simulation &settled, const RegionForce &region, c
   joint.end = region.point + region.extent_end * along;
   joint.normal =
       region.normal_force * dot(region.force, region.normal) >= 0.0 ? region.normal : -1.0 * region.normal;
-  joint.tan_friction = law.is_barton_bandis
-                           ? law.tan_friction_at(std::abs(region.normal_force) / std::max(length, 1e-300))
-                       : is_residual ? law.residual_tan_friction
-                                     : law.tan_friction;
+  joint.tan_friction = is_residual ? law.residual_tan_friction : law.tan_friction;
   joint.tension = region.bonded ? length * law.tension : 0.0;
   joint.is_weakened = is_weakened(scene.reduction, static_cast<std::size_t>(number));
   found.cohesion = is_residual ? law.residual_cohesion : law.cohesion;
+  if (law.is_barton_bandis) {
+    const StrengthLine line = strength_line(law, length > 0.0 ? std::abs(region.normal_force) / length : 0.0);
+    joint.tan_friction = line.tan_friction;
+    found.cohesion = line.cohesion;
+  }
   return found;
 }
 
@@ -106,11 +125,79 @@ void extend(LimitJoint &joint, Vec2 point) {
   }
 }
 
+/// Whether a corner may come to lie on an edge that faces `out`: its block is on the other side, but for
+/// turns of both.
+bool may_lie_on(const TrialOutline &outline, std::size_t corner, Vec2 out, double turn) {
+  const std::size_t before = (corner + outline.vertex.size() - 1) % outline.vertex.size();
+  const Vec2 ahead = perp(outline.normal[corner]); // along the edge that begins at the corner
+  const Vec2 back = -1.0 * perp(outline.normal[before]);
+  return std::min(dot(ahead, out), dot(back, out)) >= -turn;
+}
+
+/// How far the blocks of a pair move until they have failed.
+struct Motion {
+  double reach = 0.0; ///< of one of both, m
+  double turn = 0.0;  ///< of both, rad
+};
+
+/// @param slip  of each block, in sizes of it
+Motion motion_of(const BlockSystem &blocks, const CandidatePair &pair, double slip) {
+  Motion motion;
+  for (const BlockIndex row : {pair.lower, pair.higher}) {
+    const BlockProperties &block = blocks.properties[row.value];
+    const double reach = slip * size_of(block);
+    motion.reach = std::max(motion.reach, reach);
+    motion.turn += reach / block.radius;
+  }
+  return motion;
+}
+
+/// Where a corner stands at an edge.
+enum class Standing { away, before, at_end };
+
+/// Before it or before what lies beside its ends; or at an end, on either side of its line: where two corners
+/// meet they push along the normal of any of their edges.
+Standing standing_of(const TrialOutline &edges, std::size_t edge, Vec2 corner, double reach) {
+  const Vec2 from_edge = corner - edges.vertex[edge];
+  const double gap = dot(from_edge, edges.normal[edge]);
+  const double place = dot(from_edge, perp(edges.normal[edge]));
+  const double length = edges.length[edge];
+  if (std::abs(gap) > reach || place < -reach || place > length + reach) {
+    return Standing::away;
+  }
+  const bool is_at_end = place < reach || place > length - reach;
+  return gap > 0.0 ? Standing::before : is_at_end ? Standing::at_end : Standing::away;
+}
+
+/// A joint that may close where a corner comes to lie on an edge, with the strength of either edge at the
+/// corner.
+LimitRegion joint_of_corner(const Simulation &settled, const CandidatePair &pair, std::size_t side,
+                            std::size_t edge, const TrialOutline &corners, std::size_t corner, Vec2 normal) {
+  const std::size_t before = (corner + corners.vertex.size() - 1) % corners.vertex.size();
+  LimitRegion found;
+  for (const std::size_t own : {before, corner}) {
+    const auto lower = static_cast<std::int32_t>(side == 0 ? own : edge);
+    const auto higher = static_cast<std::int32_t>(side == 0 ? edge : own);
+    const std::int32_t law = pair.is_mixed
+                                 ? law_of_edges(settled.blocks(), settled.scene().joints, pair, lower, higher)
+                                 : pair.law;
+    const LimitRegion joint = open_joint(settled, law, normal, corners.vertex[corner]);
+    const double stronger = std::max(found.joint.tan_friction, joint.joint.tan_friction);
+    const double cohesion = std::max(found.cohesion, joint.cohesion);
+    const bool is_weakened = joint.joint.is_weakened && (own == before || found.joint.is_weakened);
+    found = joint;
+    found.joint.tan_friction = stronger;
+    found.cohesion = cohesion;
+    found.joint.is_weakened = is_weakened;
+  }
+  return found;
+}
+
 /// Where corners of the blocks of a pair stand before edges of each other, or beside the ends of them, their
 /// joint may close.
-/// @param reach  the farthest from an edge and from its ends, m
+/// @param motion  the farthest that a corner is from an edge and from its ends, and that it turns
 /// @param joints  of the pair, those that are closed at first
-void add_open_joints(const Simulation &settled, const CandidatePair &pair, double reach,
+void add_open_joints(const Simulation &settled, const CandidatePair &pair, const Motion &motion,
                      std::vector<LimitRegion> &joints) {
   constexpr double same_line = 0.98; // cosine
   const BlockSystem &blocks = settled.blocks();
@@ -123,26 +210,18 @@ void add_open_joints(const Simulation &settled, const CandidatePair &pair, doubl
       const Vec2 out = edges.normal[k];
       const Vec2 normal = side == 0 ? out : -1.0 * out; // of pressure on the lower block
       for (std::size_t corner = 0; corner < corners.vertex.size(); ++corner) {
-        const Vec2 from_edge = corners.vertex[corner] - edges.vertex[k];
-        const double gap = dot(from_edge, out);
-        const double place = dot(from_edge, perp(out));
-        if (gap <= 0.0 || gap > reach || place < -reach || place > edges.length[k] + reach) {
+        const Standing standing = standing_of(edges, k, corners.vertex[corner], motion.reach);
+        if (standing == Standing::away || !may_lie_on(corners, corner, out, motion.turn)) {
           continue;
         }
         const auto known = std::find_if(joints.begin(), joints.end(), [&](const LimitRegion &joint) {
           return dot(joint.joint.normal, normal) > same_line;
         });
-        if (known != joints.end()) {
+        if (known == joints.end()) {
+          joints.push_back(joint_of_corner(settled, pair, side, k, corners, corner, normal));
+        } else if (standing == Standing::before) {
           extend(known->joint, corners.vertex[corner]);
-          continue;
         }
-        const auto edge = static_cast<std::int32_t>(k);
-        const auto other = static_cast<std::int32_t>(corner);
-        const std::int32_t law = pair.is_mixed
-                                     ? law_of_edges(blocks, settled.scene().joints, pair,
-                                                    side == 0 ? other : edge, side == 0 ? edge : other)
-                                     : pair.law;
-        joints.push_back(open_joint(settled, law, normal, corners.vertex[corner]));
       }
     }
   }
@@ -172,9 +251,7 @@ std::vector<LimitRegion> regions_of(Simulation &settled, double slip) {
     if (!settled.counts_here(pair)) {
       continue;
     }
-    const double reach = slip * std::max(size_of(blocks.properties[pair.lower.value]),
-                                         size_of(blocks.properties[pair.higher.value]));
-    add_open_joints(settled, pair, reach, of_pair[number]);
+    add_open_joints(settled, pair, motion_of(blocks, pair, slip), of_pair[number]);
     const auto id_of = [&](BlockIndex row) {
       const BlockProperties &block = blocks.properties[row.value];
       return block.keeps_its_velocity() ? std::int64_t{-1} : std::int64_t{block.id.value};
@@ -234,11 +311,10 @@ std::optional<double> further_bound(Simulation &settled, double slip, double lea
                          [](const OwnedBlock &block, std::int64_t key) { return block.id < key; });
     return id < 0 ? std::int64_t{-1} : std::int64_t{found - owned.begin()};
   };
-  std::vector<LimitBlock> blocks;
+  LimitModel model;
   for (const OwnedBlock &block : owned) {
-    blocks.push_back(block.block);
+    model.blocks.push_back(block.block);
   }
-  std::vector<LimitJoint> joints;
   for (const LimitRegion &region : all_regions(settled, slip)) {
     LimitJoint joint = region.joint;
     joint.first = number_of(region.joint.first);
@@ -246,15 +322,20 @@ std::optional<double> further_bound(Simulation &settled, double slip, double lea
     const std::array<std::int64_t, 2> ends{joint.first, joint.second};
     for (std::size_t side = 0; side < 2; ++side) {
       if (ends[side] >= 0) { // in equilibrium: the rest of the load is what its contacts balance
-        LimitBlock &block = blocks[static_cast<std::size_t>(ends[side])];
+        LimitBlock &block = model.blocks[static_cast<std::size_t>(ends[side])];
         block.load = block.load - region.force[side];
         block.torque -= region.torque[side];
       }
     }
-    joints.push_back(joint);
+    model.joints.push_back(joint);
+  }
+  for (LimitForce force : support_reserves(settled, slip)) {
+    force.first = number_of(force.first);
+    force.second = number_of(force.second);
+    model.forces.push_back(force);
   }
   constexpr double tolerance = 1e-3;
-  return bound_of_factor(blocks, joints, least, most, tolerance);
+  return bound_of_factor(model, least, most, tolerance);
 }
 
 } // namespace

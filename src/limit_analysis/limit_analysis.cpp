@@ -47,6 +47,17 @@ public:
     close_column(least / unit_, most / unit_);
   }
 
+  void add(const LimitForce &force) {
+    if (force.direction == Vec2{}) {
+      put_couple(force.first, 1.0);
+      put_couple(force.second, -1.0);
+    } else {
+      put(force.first, force.point[0], force.direction);
+      put(force.second, force.point[1], -1.0 * force.direction);
+    }
+    close_column(force.least / unit_, force.most / unit_);
+  }
+
   /// The largest share of the load that the forces hold, at most 1.
   /// @param basis  where the simplex method begins, and where it has ended; empty: none is known
   double largest_share(Basis &basis) const {
@@ -90,6 +101,12 @@ private:
     rows_.insert(rows_.end(), {row, row + 1, row + 2});
     values_.insert(values_.end(), {force.x, force.y, cross(point - on.centroid, force) / on.size});
   }
+  void put_couple(std::int64_t block, double couple) {
+    if (block >= 0) {
+      rows_.push_back(3 * static_cast<int>(block) + 2);
+      values_.push_back(couple / blocks_[static_cast<std::size_t>(block)].size);
+    }
+  }
 
   const std::vector<LimitBlock> &blocks_;
   double unit_ = 1.0; ///< of forces, N/m
@@ -100,11 +117,10 @@ private:
   std::vector<double> high_;
 };
 
-bool can_hold(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoint> &joints, double factor,
-              Basis &basis) {
+bool can_hold(const LimitModel &model, double factor, Basis &basis) {
   constexpr double infinite = std::numeric_limits<double>::max();
-  Programme programme(blocks);
-  for (const LimitJoint &joint : joints) {
+  Programme programme(model.blocks);
+  for (const LimitJoint &joint : model.joints) {
     const double divided = joint.is_weakened ? factor : 1.0;
     const Vec2 along = (joint.tan_friction / divided) * perp(joint.normal);
     for (const Vec2 end : {joint.begin, joint.end}) {
@@ -119,14 +135,17 @@ bool can_hold(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoin
       programme.add(joint, joint.begin, perp(joint.normal), -most, most);
     }
   }
+  for (const LimitForce &force : model.forces) {
+    programme.add(force);
+  }
   return programme.largest_share(basis) > 1.0 - rounding_of_share;
 }
 
 } // namespace
 
-bool can_hold(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoint> &joints, double factor) {
+bool can_hold(const LimitModel &model, double factor) {
   Basis basis;
-  return can_hold(blocks, joints, factor, basis);
+  return can_hold(model, factor, basis);
 }
 
 UnsolvedProgramme::UnsolvedProgramme(std::size_t blocks, std::size_t forces)
@@ -136,11 +155,9 @@ UnsolvedProgramme::UnsolvedProgramme(std::size_t blocks, std::size_t forces)
           " iterations; cut the scene to the blocks around the slip surface, or use fos without "
           "--bound") {}
 
-std::optional<double> bound_of_factor(const std::vector<LimitBlock> &blocks,
-                                      const std::vector<LimitJoint> &joints, double least, double most,
-                                      double tolerance) {
+std::optional<double> bound_of_factor(const LimitModel &model, double least, double most, double tolerance) {
   Basis basis;
-  if (!can_hold(blocks, joints, least, basis)) {
+  if (!can_hold(model, least, basis)) {
     return least;
   }
   // Up in small steps: a programme that begins where a similar one has ended is solved in a fraction of the
@@ -154,10 +171,10 @@ std::optional<double> bound_of_factor(const std::vector<LimitBlock> &blocks,
       return std::nullopt;
     }
     fails = std::min(growth * holds, most);
-  } while (can_hold(blocks, joints, fails, basis));
+  } while (can_hold(model, fails, basis));
   while (fails - holds > tolerance * holds) {
     const double middle = std::sqrt(holds * fails);
-    (can_hold(blocks, joints, middle, basis) ? holds : fails) = middle;
+    (can_hold(model, middle, basis) ? holds : fails) = middle;
   }
   return fails;
 }

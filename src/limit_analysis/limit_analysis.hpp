@@ -13,6 +13,8 @@
 // factor, and the largest factor for which a balance exists is found by bisection, each time by a linear
 // programme: the largest share of the loads, up to all of them, that admissible forces balance.
 //
+// Bolts, liners and fixed points pull as they do in the load, and as much more or less as they may come to.
+//
 // No equilibrium with a larger factor exists at this geometry, whatever path led to it, so that the factor of
 // a run lies below the bound, but where blocks first move on to another geometry and hold there (joints that
 // may close on the way can be given, too). It is no lower bound: friction is not associated (slip does not
@@ -20,6 +22,7 @@
 
 #include "gcpdda/geometry/vec2.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -53,16 +56,30 @@ struct LimitJoint {
   bool is_weakened = true;
 };
 
+/// A force or a couple that may differ from what the load has of it, whatever strengths are divided by.
+struct LimitForce {
+  std::int64_t first = -1; ///< number of a block; -1: one that is fixed
+  std::int64_t second = -1;
+  std::array<Vec2, 2> point; ///< on each of them
+  Vec2 direction;            ///< of the force on the first block; zero: a couple
+  double least = 0.0;        ///< change, N/m; of a couple N
+  double most = 0.0;
+};
+
+struct LimitModel {
+  std::vector<LimitBlock> blocks;
+  std::vector<LimitJoint> joints;
+  std::vector<LimitForce> forces;
+};
+
 /// Whether some admissible forces balance the loads when the strengths of weakened joints are divided by
 /// `factor`.
 /// @throws UnsolvedProgramme
-bool can_hold(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoint> &joints, double factor);
+bool can_hold(const LimitModel &model, double factor);
 
 /// The bound to `tolerance` of it, from above; nothing where the blocks could still hold at `most`, and
 /// `least` where they cannot even hold at that.
 /// @throws UnsolvedProgramme
-std::optional<double> bound_of_factor(const std::vector<LimitBlock> &blocks,
-                                      const std::vector<LimitJoint> &joints, double least, double most,
-                                      double tolerance);
+std::optional<double> bound_of_factor(const LimitModel &model, double least, double most, double tolerance);
 
 } // namespace gcpdda

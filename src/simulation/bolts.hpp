@@ -103,6 +103,15 @@ public:
   [[nodiscard]] std::vector<LinkPull> pulls_from(const std::function<bool(std::int64_t)> &goes,
                                                  const BlockSystem &system) const;
 
+  /// visit(number of the link, link, its law, rows of its blocks) of those that count on this rank.
+  template <class Visit> void for_counted(Visit &&visit) const {
+    for (const Here &here : here_) {
+      if (here.counts) {
+        visit(here.link, links_[here.link], laws_[here.link], here.rows);
+      }
+    }
+  }
+
   /// Of the links at a block.
   [[nodiscard]] std::span<const PointSpring> springs_at(std::int64_t block) const {
     return springs_.at(block);

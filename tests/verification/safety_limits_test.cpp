@@ -82,6 +82,26 @@ TEST(SafetyLimits, ABlockThatFindsNoHoldInTimeHasTheBoundOfThePlane) {
   EXPECT_EQ(bounds.bound, bounds.resting_bound);
 }
 
+// It leaves the rock above it, whose corner stands beside its own, a micrometre higher and as far away: it
+// cannot come to lie under that corner, which would hold it with any friction.
+TEST(SafetyLimits, ABlockThatLeavesACornerHasTheBoundOfThePlane) {
+  const Scene scene = on_the_plane_at_30_degrees(
+      block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0})) +
+      block_toml("rock", rectangle({-2.0, 0.0}, {-1e-6, 1.000001}), "fixed = true"));
+  const SafetyReport bounds = search_quietly(scene, true).report;
+  EXPECT_NEAR(bounds.bound.value_or(0.0), limit_of_the_plane, 3e-3 * limit_of_the_plane);
+}
+
+// The block before it is taken away: the trials begin with fewer blocks than the scene has.
+TEST(SafetyLimits, InclineAfterAnExcavation) {
+  const Scene scene = scene_of(
+      without_duration(head({.gravity = gravity_on(30.0 * degree), .friction_deg = 37.0}) + long_plane +
+                       before_a_stop(0.0)) +
+      "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n[[stage]]\nkind = \"excavate\"\nblocks = [\"stop\"]\n"
+      "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n");
+  expect_factor({"incline after an excavation", limit_of_the_plane}, scene);
+}
+
 // One of more than a thousand blocks is few enough for a static trial not to wait for it (0.1 %) if it stays
 // near. Here it slides on: the motion of single blocks or else the step that confirms the trial sees it.
 TEST(SafetyLimits, ASlidingBlockAmongAThousandAtRest) {
@@ -202,12 +222,59 @@ TEST(SafetyLimits, BoltedBlock) {
       head({.gravity = gravity_on(dip), .friction_deg = 36.0}) +
       block_toml("plane", rectangle({-2.0, -101.0}, {40.0, 0.0}), "fixed = true") +
       block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0})) +
-      fmt::format("[support.steel]\nkind = \"anchored\"\naxial_stiffness = 1e4\npretension = {:.17g}\n"
+      fmt::format("[support.steel]\nkind = \"anchored\"\naxial_stiffness = 1e2\npretension = {:.17g}\n"
                   "[[bolt]]\nsupport = \"steel\"\nfrom = [1.0, 0.5]\nto = [1.0, -100.0]\n",
                   tension);
   expect_factor({"bolted block",
                  (weight * std::cos(dip) + tension) * std::tan(36.0 * degree) / (weight * std::sin(dip))},
                 toml);
+}
+
+/// Supports up the plane bear nothing as long as friction holds, and all that they can, Y, when it does not:
+/// F = W cos(th) tan(phi)/(W sin(th) - Y), which a bound finds that lets them take more than they do at
+/// first.
+/// @param length  across it the bound lets a support pull by Y times a tenth of the block's size over this
+void expect_limit_with_support(const char *name, const std::string &support, double strength, double length) {
+  const Scene scene =
+      on_the_plane_at_30_degrees(block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0})) + support);
+  const double weight = rock_density * earth_gravity * 2.0;
+  const double dip = 30.0 * degree;
+  const double limit = weight * std::cos(dip) * std::tan(37.0 * degree) / (weight * std::sin(dip) - strength);
+  const SafetyReport found = search_quietly(scene).report;
+  ASSERT_TRUE(found.holds && found.fails) << name;
+  EXPECT_NEAR(0.5 * (*found.holds + *found.fails), limit, 0.01 * limit) << name;
+  const double across = strength * 0.1 * std::sqrt(2.0) / length;
+  const double bound = search_quietly(scene, true).report.bound.value_or(0.0);
+  EXPECT_GE(bound, (1.0 - 3e-3) * limit) << name;
+  EXPECT_LE(bound, (1.0 + 3e-3 + across / (weight * std::cos(dip))) * limit) << name;
+}
+
+TEST(SafetyLimits, BlockOnACableThatYields) {
+  expect_limit_with_support(
+      "cable",
+      block_toml("head", rectangle({-102.0, 0.0}, {-100.0, 1.0}), "fixed = true") +
+          "[support.steel]\nkind = \"anchored\"\naxial_stiffness = 1e7\naxial_yield = 5e3\n"
+          "[[bolt]]\nsupport = \"steel\"\nfrom = [1.0, 0.5]\nto = [-101.0, 0.5]\n",
+      5e3, 102.0);
+}
+
+// Sprayed on the block and on rock above it; fibres keep its tensile strength where it cracks.
+TEST(SafetyLimits, BlockOnALinerThatYields) {
+  expect_limit_with_support(
+      "liner",
+      block_toml("rock", rectangle({-2.0, 0.0}, {0.0, 1.0}), "fixed = true") +
+          "[support.shotcrete]\nkind = \"liner\"\nthickness = 0.01\nyoungs_modulus = 1e9\n"
+          "compressive_strength = 5e5\ntensile_strength = 5e5\nresidual_tensile_strength = 5e5\n"
+          "[[liner]]\nsupport = \"shotcrete\"\npoints = [[-2.0, 1.0], [2.0, 1.0]]\n",
+      5e3, 2.0);
+}
+
+TEST(SafetyLimits, ABlockHeldAtAPointHasNoBound) {
+  const Scene scene = on_the_plane_at_30_degrees(
+      block_toml("block", rectangle({0.0, 0.0}, {2.0, 1.0}), "fixed_points = [[0.5, 0.5]]"));
+  EXPECT_EQ(search_quietly(scene).report.holds, scene.reduction.to);
+  const SafetyReport found = search_quietly(scene, true).report;
+  EXPECT_FALSE(found.bound || found.resting_bound);
 }
 
 /// An active block on a steep plane that pushes a passive one along a flatter plane, across a vertical joint.

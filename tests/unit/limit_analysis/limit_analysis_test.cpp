@@ -26,7 +26,7 @@ LimitJoint base_of(double breadth, double phi) {
   return joint;
 }
 double bound(const std::vector<LimitBlock> &blocks, const std::vector<LimitJoint> &joints) {
-  return bound_of_factor(blocks, joints, 0.1, 10.0, 1e-6).value_or(0.0);
+  return bound_of_factor({blocks, joints, {}}, 0.1, 10.0, 1e-6).value_or(0.0);
 }
 
 TEST(LimitAnalysis, BlockOnAPlane) {
@@ -43,8 +43,8 @@ TEST(LimitAnalysis, BlockOnAPlane) {
 TEST(LimitAnalysis, BlockThatTopples) {
   const double dip = 25.0 * degree;
   LimitJoint joint = base_of(1.0, 60.0 * degree);
-  EXPECT_FALSE(can_hold({block_on(dip, 3.0)}, {joint}, 0.1));
-  EXPECT_TRUE(can_hold({block_on(dip, 2.0)}, {joint}, 1.0)) << "b/h = 0.5 > tan(25)";
+  EXPECT_FALSE(can_hold({{block_on(dip, 3.0)}, {joint}, {}}, 0.1));
+  EXPECT_TRUE(can_hold({{block_on(dip, 2.0)}, {joint}, {}}, 1.0)) << "b/h = 0.5 > tan(25)";
   joint.tension = 4.0 * (1.5 * std::sin(dip) - 0.5 * std::cos(dip));
   EXPECT_NEAR(bound({block_on(dip, 3.0)}, {joint}), 2.0, 1e-5);
 }
@@ -82,7 +82,7 @@ TEST(LimitAnalysis, RoundingOfASettledStateChangesNothing) {
   joint.cohesion = 38259.00000808362;
   const double expected = 1.5 + std::tan(5.0 * degree) / std::tan(30.0 * degree);
   EXPECT_NEAR(bound({block}, {joint}), expected, 5e-6);
-  EXPECT_TRUE(can_hold({block}, {joint}, 0.5));
+  EXPECT_TRUE(can_hold({{block}, {joint}, {}}, 0.5));
 }
 
 // However the axes lie: parts of unit vectors that are zero in some are rounding in others.
@@ -107,9 +107,10 @@ TEST(LimitAnalysis, TurnsChangeNothing) {
 }
 
 TEST(LimitAnalysis, SaysWhereNothingFails) {
-  EXPECT_FALSE(bound_of_factor({block_on(0.0, 1.0)}, {base_of(1.0, 30.0 * degree)}, 0.5, 4.0, 0.01));
-  EXPECT_EQ(bound_of_factor({block_on(40.0 * degree, 0.5)}, {base_of(2.0, 20.0 * degree)}, 0.5, 4.0, 0.01),
-            0.5);
+  EXPECT_FALSE(bound_of_factor({{block_on(0.0, 1.0)}, {base_of(1.0, 30.0 * degree)}, {}}, 0.5, 4.0, 0.01));
+  EXPECT_EQ(
+      bound_of_factor({{block_on(40.0 * degree, 0.5)}, {base_of(2.0, 20.0 * degree)}, {}}, 0.5, 4.0, 0.01),
+      0.5);
 }
 
 } // namespace
