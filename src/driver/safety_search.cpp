@@ -205,7 +205,8 @@ Scene with_settle_stage(Scene scene) {
       scene.reduction.limit = scene.run.duration;
     }
     settle.until_verdict = true;
-    settle.local_damping = 0.8; // as a settle stage that says nothing else
+    settle.solver = Solver::statics; // this and the damping as of a settle stage that says nothing else
+    settle.local_damping = 0.8;
   }
   return scene;
 }

@@ -36,7 +36,8 @@ SafetySearch follow(const SearchRange &range, const TrialVerdicts &verdicts);
 /// asked for; at most `most` of them.
 std::vector<double> next_factors(const SearchRange &range, const TrialVerdicts &verdicts, std::size_t most);
 
-/// A scene without stages settles for five times run.duration at most; its trials take run.duration as limit.
+/// A scene without stages settles by the static solver, for five times run.duration at most; its trials take
+/// run.duration as limit.
 Scene with_settle_stage(Scene scene);
 
 /// The scene up to the end of its last settle stage, strengths divided by `factor` from the beginning.
