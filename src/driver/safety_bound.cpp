@@ -169,27 +169,23 @@ Standing standing_of(const TrialOutline &edges, std::size_t edge, Vec2 corner, d
   return gap > 0.0 ? Standing::before : is_at_end ? Standing::at_end : Standing::away;
 }
 
-/// A joint that may close where a corner comes to lie on an edge, with the strength of either edge at the
+/// A joint that may close where a corner comes to lie on an edge, as strong as with either edge at the
 /// corner.
 LimitRegion joint_of_corner(const Simulation &settled, const CandidatePair &pair, std::size_t side,
                             std::size_t edge, const TrialOutline &corners, std::size_t corner, Vec2 normal) {
-  const std::size_t before = (corner + corners.vertex.size() - 1) % corners.vertex.size();
-  LimitRegion found;
-  for (const std::size_t own : {before, corner}) {
+  const auto with = [&](std::size_t own) {
     const auto lower = static_cast<std::int32_t>(side == 0 ? own : edge);
     const auto higher = static_cast<std::int32_t>(side == 0 ? edge : own);
     const std::int32_t law = pair.is_mixed
                                  ? law_of_edges(settled.blocks(), settled.scene().joints, pair, lower, higher)
                                  : pair.law;
-    const LimitRegion joint = open_joint(settled, law, normal, corners.vertex[corner]);
-    const double stronger = std::max(found.joint.tan_friction, joint.joint.tan_friction);
-    const double cohesion = std::max(found.cohesion, joint.cohesion);
-    const bool is_weakened = joint.joint.is_weakened && (own == before || found.joint.is_weakened);
-    found = joint;
-    found.joint.tan_friction = stronger;
-    found.cohesion = cohesion;
-    found.joint.is_weakened = is_weakened;
-  }
+    return open_joint(settled, law, normal, corners.vertex[corner]);
+  };
+  LimitRegion found = with(corner);
+  const LimitRegion other = with((corner + corners.vertex.size() - 1) % corners.vertex.size());
+  found.joint.tan_friction = std::max(found.joint.tan_friction, other.joint.tan_friction);
+  found.cohesion = std::max(found.cohesion, other.cohesion);
+  found.joint.is_weakened = found.joint.is_weakened && other.joint.is_weakened;
   return found;
 }
 
