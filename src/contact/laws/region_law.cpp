@@ -1,5 +1,7 @@
 #include "contact/laws/region_law.hpp"
 
+#include "contact/pair_forces.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +21,25 @@ std::span<const std::int32_t> laws_on(const BlockSystem &system, BlockIndex row)
 std::int32_t by_materials(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair) {
   return joints.between(system.properties[pair.lower.value].material,
                         system.properties[pair.higher.value].material);
+}
+
+/// Whether an outline goes on from a piece to the other one inside of the other block.
+bool goes_on(const Piece &piece, const Piece &next) {
+  return norm(piece.end() - next.begin) < std::min(piece.depth_end, next.depth_begin);
+}
+
+/// Whether an outline goes on from one region to the other one: both are parts of one overlap.
+bool goes_on(std::span<const Piece> pieces, const Region &region, const Region &next) {
+  const auto within = [&](std::uint32_t begin, std::uint32_t end) {
+    return pieces.subspan(begin, end - begin);
+  };
+  const auto any_goes_on = [](std::span<const Piece> from, std::span<const Piece> to) {
+    return std::any_of(from.begin(), from.end(), [&](const Piece &piece) {
+      return std::any_of(to.begin(), to.end(), [&](const Piece &other) { return goes_on(piece, other); });
+    });
+  };
+  return any_goes_on(within(region.begin, region.middle), within(next.begin, next.middle)) ||
+         any_goes_on(within(region.middle, region.end), within(next.middle, next.end));
 }
 
 } // namespace
@@ -89,6 +110,23 @@ void take_law(const BlockSystem &system, const ContactParameters &parameters, st
   // c' = 2 xi sqrt(k_n m_eff / L_ref) + beta k_n, half of it for each side's pieces.
   pair.damping = parameters.damping_ratio * std::sqrt(stiffness * pair.mass / std::sqrt(smaller_area)) +
                  0.5 * parameters.stiffness_damping * stiffness;
+}
+
+std::int32_t PairForces::law_beside(const Region &region) const {
+  const auto is_part_of = [&](const Region &other) {
+    return goes_on(overlap_.pieces(), region, other) || goes_on(overlap_.pieces(), other, region);
+  };
+  const auto beside = std::find_if(found_.begin(), found_.end(), [&](const FoundRegion &other) {
+    return other.known != nullptr && is_part_of(*other.region);
+  });
+  return beside != found_.end() ? beside->known->law : -1;
+}
+
+void PairForces::choose_law(const BlockSystem &system, const CandidatePair &pair, const Region &region,
+                            RegionMemory &memory) const {
+  const JointLaws &joints = parameters_->joints;
+  const std::int32_t edges = law_of_region(system, joints, pair, overlap_.pieces(), region);
+  memory.law = memory.law < 0 ? edges : joints.slid_to(memory.law, edges);
 }
 
 } // namespace gcpdda
