@@ -274,10 +274,17 @@ ExitCode run_ensemble(const Communicator &communicator, const Scene &scene, cons
                        "nothing says how many members there are and what they differ in",
                        "write [ensemble] with a count, and [[ensemble.vary]]"}});
   }
+  const bool is_of_factors = scene.ensemble.measure == Measure::factor;
+  if (!is_of_factors && scene.stages.empty() && scene.earthquake.shakes()) {
+    throw SceneError(
+        {{Severity::error, scene.earthquake.where,
+          "the ground shakes, and no stage says when its blocks stand",
+          "without stages a member is one settling, which has no earthquake",
+          "write [[stage]] tables: one that settles, one of kind \"run\" that shakes, one that settles"}});
+  }
   // What is wrong with the scene itself is refused for all members at once, before there is a folder.
-  const Scene staged = with_settle_stage(scene);
   (void)Simulation(communicator,
-                   scene.ensemble.measure == Measure::factor ? settling_scene(staged, 1.0) : staged);
+                   is_of_factors ? settling_scene(searched_scene(scene), 1.0) : with_settle_stage(scene));
   return EnsembleRun(communicator, scene, member_scene, options).run();
 }
 

@@ -405,7 +405,7 @@ private:
 
 SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene &scene,
                                    const SafetyOptions &options) {
-  Scene staged = with_settle_stage(scene);
+  Scene staged = searched_scene(scene);
   if (staged.region_blocks) { // strengths alone differ from trial to trial
     staged.region_blocks = std::make_shared<KeptBlocks>(staged.region_blocks);
   }

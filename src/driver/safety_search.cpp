@@ -194,8 +194,12 @@ std::vector<double> next_factors(const SearchRange &range, const TrialVerdicts &
   return factors;
 }
 
+Scene searched_scene(Scene scene) {
+  scene.earthquake = {};
+  return with_settle_stage(std::move(scene));
+}
+
 Scene with_settle_stage(Scene scene) {
-  scene.earthquake = {}; // the factor is that of blocks at rest
   if (scene.stages.empty()) {
     Stage &settle = scene.stages.emplace_back();
     settle.name = "settle";
@@ -266,7 +270,7 @@ Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   trial.until_verdict = true;
   trial.failure_motion = scene.reduction.failure_motion;
   trial.local_damping = scene.reduction.local_damping;
-  trial.solver = scene.earthquake.viscous.empty() ? std::prev(last_settle)->solver : Solver::dynamic;
+  trial.solver = std::prev(last_settle)->solver;
   trial.increments = factor == settled_factor ? 1 : std::prev(last_settle)->increments;
   const bool is_static = trial.solver == Solver::statics;
   if (!is_static) {

@@ -40,6 +40,9 @@ std::vector<double> next_factors(const SearchRange &range, const TrialVerdicts &
 /// run.duration as limit.
 Scene with_settle_stage(Scene scene);
 
+/// What a search is made in: such a scene without its earthquake. The factor is that of blocks at rest.
+Scene searched_scene(Scene scene);
+
 /// The scene up to the end of its last settle stage, strengths divided by `factor` from the beginning.
 /// @throws SceneError where no stage is of kind settle
 Scene settling_scene(const Scene &scene, double factor);

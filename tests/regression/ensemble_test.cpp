@@ -85,6 +85,29 @@ TEST(Ensemble, StopsAtTheSignalAndGoesOn) {
       << "not run again: the same CPU time";
 }
 
+// Level ground moves away under the slider by more than any friction of the members takes along: all fail. At
+// rest, without the earthquake, all hold.
+TEST(Ensemble, MembersAreShaken) {
+  const WorkFolder folder;
+  folder.write("push.csv", "0.0, -30.0\n1.0, -30.0\n");
+  const std::string record = "[earthquake]\nrecord = \"push.csv\"\nquantity = \"acceleration\"\n";
+  folder.write("plane.toml", testing::shipped_toml("plane_failure") + record +
+                                 "stage = \"shaking\"\n[[stage]]\nname = \"shaking\"\nkind = "
+                                 "\"run\"\nlimit = 1.0\n");
+  const Outcome shaken =
+      run_gcpdda(0, {"ensemble", "plane.toml", "--count", "3", "--set", "run.gravity=[0,-9.81]"}, folder);
+  EXPECT_EQ(shaken.exit_code, 0) << shaken.err;
+  EXPECT_NE(shaken.out.find("3 of 3 members fail"), std::string::npos) << shaken.out;
+
+  std::string toml = testing::shipped_toml("plane_failure") + record;
+  toml.erase(toml.find("[[stage]]"), toml.find("[fos]") - toml.find("[[stage]]"));
+  toml.insert(toml.find("[run]\n") + 6, "duration = 1.0\n");
+  folder.write("unstaged.toml", toml);
+  const Outcome unstaged = run_gcpdda(0, {"ensemble", "unstaged.toml"}, folder);
+  EXPECT_EQ(unstaged.exit_code, 3);
+  EXPECT_NE(unstaged.err.find("no stage says when its blocks stand"), std::string::npos) << unstaged.err;
+}
+
 TEST(Ensemble, RefusesWhatItCannotRun) {
   const WorkFolder folder;
   folder.write("bench.toml", testing::shipped_toml("toppling"));
