@@ -52,7 +52,8 @@ std::string not_served(const RunState &run) {
   if (run.communicator.max(fastest) > 0.0 || !run.loads.prescribed.empty()) {
     return "blocks move by velocities that are given";
   }
-  if (!run.scene.earthquake.viscous.empty()) {
+  const Earthquake &earthquake = run.scene.earthquake;
+  if (!earthquake.viscous.empty() && run.clock.state.index >= earthquake.stage) {
     return "the region has viscous sides";
   }
   return std::isfinite(end_of_loads(run)) ? "" : "its loads go on changing";

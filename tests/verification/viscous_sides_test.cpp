@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace gcpdda::testing::viscous_sides_test {
@@ -185,6 +186,10 @@ stage = "quiet"
   run_stages(simulation, step);
   ASSERT_EQ(simulation.stage_results().size(), 2U);
   EXPECT_EQ(simulation.stage_results()[0].verdict, Verdict::settled);
+  for (const Diagnostic &note : simulation.notes()) {
+    EXPECT_EQ(note.what.find("goes on with solver"), std::string::npos)
+        << "the static solver serves what comes before: " << note.why;
+  }
   EXPECT_EQ(simulation.blocks().num_fixed, 0U);
   double fastest = 0.0;
   for (std::size_t row = 0; row < simulation.blocks().num_owned; ++row) {
