@@ -17,10 +17,10 @@ std::string words_on_shorter_step(const Simulation &simulation) {
   if (stage.kind != StageKind::settle) {
     return step;
   }
-  const std::string name = simulation.is_staged() ? fmt::format("in stage '{}' ", stage.name) : "";
+  const std::string name = simulation.is_staged() ? fmt::format(" in stage '{}'", stage.name) : "";
   return stage.kinetic_damping
-             ? fmt::format("local_damping = 0.8 {}in place of kinetic_damping, or {}", name, step)
-             : fmt::format("kinetic_damping = true {}in place of local_damping, or {}", name, step);
+             ? fmt::format("local_damping = 0.8 in place of kinetic_damping{}, or {}", name, step)
+             : fmt::format("kinetic_damping = true{}, or {}", name, step);
 }
 
 } // namespace

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <numeric>
 
@@ -279,8 +280,11 @@ void plan_all_stages(RunState &run) {
       Diagnostics found;
       plan_time(settings, run.scene.output, std::numeric_limits<double>::infinity(), found);
       for (Diagnostic &d : found) {
-        if (d.severity == Severity::error) {
+        if (d.severity == Severity::error) { // the one that there is, in the words of a stage
           d.where = stage.where;
+          d.what = fmt::format("stage '{}' of {:g} s and output.interval = {:g} s have no common step",
+                               stage.name, stage.duration, run.scene.output.interval);
+          d.hint = "make its duration or limit a multiple of the interval";
           run.notes.push_back(std::move(d));
         }
       }

@@ -409,9 +409,11 @@ void static_step(RunState &run) {
     book_static_work(run);
     move_and_evaluate(run);
     book_static_work(run);
-    leave_statics(run, "a joint would have closed by more than half of a block",
-                  fmt::format("increments = {} in the stage lets the load in more slowly",
-                              4 * run.clock.stage().increments));
+    leave_statics(
+        run, "a joint would have closed by more than half of a block",
+        fmt::format("increments = {} in the stage lets the load in more slowly; where that does not "
+                    "help, a larger joint.normal_stiffness or region.min_width closes it by less",
+                    4 * run.clock.stage().increments));
   } else {
     judge_statics(run);
   }

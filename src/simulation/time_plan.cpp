@@ -48,13 +48,12 @@ TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double 
     ++parts;
   }
   if (parts > most_parts) {
-    notes.push_back(
-        {Severity::error,
-         {},
-         fmt::format("a duration or limit of {:g} s and output.interval = {:g} s have no common step",
-                     run.duration, output.interval),
-         "the last frame must fall on the end of the run or stage exactly",
-         "make it a multiple of the interval"});
+    notes.push_back({Severity::error,
+                     {},
+                     fmt::format("run.duration = {:g} s and output.interval = {:g} s have no common step",
+                                 run.duration, output.interval),
+                     "the last frame must fall on the end of the run exactly",
+                     "make the duration a multiple of the interval"});
     return {};
   }
   unit /= parts;
