@@ -71,7 +71,9 @@ LinkMemory respond_as_liner(const LinkLaw &law, LinkMemory memory) {
   memory.axial_slip += slip.axial;
   memory.shear_slip += slip.shear;
   memory.turn_slip += slip.moment;
-  const bool yields = slip.axial != 0.0 || slip.shear != 0.0 || slip.moment != 0.0;
+  memory.axial_gives = slip.axial != 0.0;
+  memory.shear_gives = slip.shear != 0.0;
+  const bool yields = memory.axial_gives || memory.shear_gives || slip.moment != 0.0;
   memory.yielded = memory.yielded || yields;
   if (yields) {
     memory.dissipated += cracks
@@ -148,11 +150,9 @@ LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, doub
   if (law.section.thickness > 0.0) {
     return respond_as_liner(law, memory);
   }
-  double trial = law.pretension + law.axial_stiffness * (extension - memory.axial_slip);
-  if (law.slack_in_compression) {
-    trial = std::max(trial, 0.0);
-  }
-  const Yielding axial(trial, law.axial_stiffness, law.axial_yield);
+  const double trial = law.pretension + law.axial_stiffness * (extension - memory.axial_slip);
+  const bool is_slack = law.slack_in_compression && trial < 0.0;
+  const Yielding axial(is_slack ? 0.0 : trial, law.axial_stiffness, law.axial_yield);
   const Yielding shear(law.shear_stiffness * (slide - memory.shear_slip), law.shear_stiffness,
                        law.shear_yield);
   memory.axial = axial.force;
@@ -160,6 +160,8 @@ LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, doub
   memory.shear = shear.force;
   memory.shear_slip += shear.slip;
   memory.dissipated += axial.dissipated + shear.dissipated;
+  memory.axial_gives = is_slack || axial.slip != 0.0;
+  memory.shear_gives = shear.slip != 0.0;
   memory.yielded = memory.yielded || axial.slip != 0.0 || shear.slip != 0.0;
   if (extension + law.pretension / law.axial_stiffness > law.rupture) {
     memory.dissipated += stored_energy(law, memory);

@@ -71,6 +71,9 @@ struct LinkMemory {
   double turn_slip = 0.0; ///< phi_p, rad
   double moment = 0.0;    ///< M, N
   double turn = 0.0;      ///< phi, rad
+  // Of the last evaluation, for the static solver.
+  bool axial_gives = false; ///< N has flown, or the link is slack
+  bool shear_gives = false; ///< Q has flown
 
   friend bool operator==(const LinkMemory &, const LinkMemory &) = default;
 };

@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "contact/contact_sums.hpp"
 #include "simulation/bolt_pieces.hpp"
+#include "simulation/link_springs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -165,17 +166,13 @@ void Bolts::take_laws(const Scene &scene) {
                                                  : scene.bolts[static_cast<std::size_t>(link.bolt)].support;
     laws_.push_back(law_of(scene.supports[static_cast<std::size_t>(support)], link));
   }
-  springs_ = springs_of_links(true);
-  bolt_springs_ = springs_of_links(false);
+  springs_ = springs_of_links();
 }
 
-Bolts::BlockSprings Bolts::springs_of_links(bool of_liners) const {
+Bolts::BlockSprings Bolts::springs_of_links() const {
   std::vector<std::pair<std::int64_t, PointSpring>> all;
   for (std::size_t k = 0; k < 2 * links_.size(); ++k) {
     const BoltLink &link = links_[k / 2];
-    if (link.liner >= 0 && !of_liners) {
-      continue;
-    }
     for (const PointSpring &spring : springs_of(laws_[k / 2], link, k % 2)) {
       all.emplace_back(link.end[k % 2].block, spring);
     }
@@ -364,12 +361,12 @@ std::vector<LinkLine> Bolts::lines(const Communicator &communicator, const Block
   return all;
 }
 
-std::vector<statics::ContactSpring> Bolts::liner_springs(const BlockSystem &system) const {
+std::vector<statics::ContactSpring> Bolts::static_springs(const BlockSystem &system, double share) const {
   std::vector<statics::ContactSpring> springs;
   for (const Here &here : here_) {
     const BoltLink &link = links_[here.link];
-    if (link.liner >= 0 && !link.memory.broken) {
-      springs.push_back(spring_of(system, link, here.rows, laws_[here.link]));
+    if (!link.memory.broken) {
+      append_springs(system, link, here.rows, laws_[here.link], share, springs);
     }
   }
   return springs;

@@ -15,6 +15,7 @@
 #include "gcpdda/parallel/communicator.hpp"
 #include "parallel/ghosts.hpp"
 #include "simulation/liners.hpp"
+#include "statics/springs.hpp"
 
 #include <array>
 #include <cstdint>
@@ -116,13 +117,10 @@ public:
   [[nodiscard]] std::span<const PointSpring> springs_at(std::int64_t block) const {
     return springs_.at(block);
   }
-  /// Of those of bolts alone.
-  [[nodiscard]] std::span<const PointSpring> bolt_springs_at(std::int64_t block) const {
-    return bolt_springs_.at(block);
-  }
-  /// Elements of liners in the posed trial configuration as springs of the static solver, about their
-  /// middles.
-  [[nodiscard]] std::vector<statics::ContactSpring> liner_springs(const BlockSystem &system) const;
+  /// All of this rank's links, which have been evaluated, as springs of the static solver.
+  /// @param share  that is left of the stiffness of what gives
+  [[nodiscard]] std::vector<statics::ContactSpring> static_springs(const BlockSystem &system,
+                                                                   double share) const;
 
   /// Of the links that count on this rank: as they are ...
   void add_energies(double share, LinkEnergies &sums) const;
@@ -166,10 +164,9 @@ private:
 
     [[nodiscard]] std::span<const PointSpring> at(std::int64_t wanted) const;
   };
-  [[nodiscard]] BlockSprings springs_of_links(bool of_liners) const;
+  [[nodiscard]] BlockSprings springs_of_links() const;
 
   BlockSprings springs_;
-  BlockSprings bolt_springs_;
   std::vector<Here> here_;
   std::vector<LinkForce> forces_; ///< by here_
   std::vector<Mat2> gradient_;    ///< by entry of BlockSystem::deformation

@@ -133,22 +133,6 @@ std::vector<BoltLink> lay_liners(const Communicator &communicator, const Scene &
 
 // The normal of the spring is across the element: its `bending` is then the angle between the two convected
 // directions of the element, also of blocks that shear.
-statics::ContactSpring spring_of(const BlockSystem &system, const BoltLink &link,
-                                 const std::array<std::size_t, 2> &rows, const LinkLaw &law) {
-  const Vec2 middle = 0.5 * (trial_position(system, rows[0], link.end[0].point) +
-                             trial_position(system, rows[1], link.end[1].point));
-  statics::ContactSpring spring;
-  spring.lower = static_cast<std::uint32_t>(rows[0]);
-  spring.higher = static_cast<std::uint32_t>(rows[1]);
-  spring.normal = pose_of(system, link, rows).tangent;
-  spring.lower_arm = middle - system.motion[rows[0]].centroid;
-  spring.higher_arm = middle - system.motion[rows[1]].centroid;
-  spring.normal_stiffness = law.shear_stiffness;
-  spring.tangential = law.axial_stiffness;
-  spring.bending = law.bending_stiffness;
-  return spring;
-}
-
 LinerLine line_of(const BlockSystem &system, const BoltLink &link, const std::array<std::size_t, 2> &rows,
                   const LinkLaw &law) {
   const std::size_t head = link.head_first ? 0 : 1;

@@ -1,12 +1,10 @@
 #pragma once
 
-// Liners among the links of a run (bolts.hpp): how they are put in, what they are to the static solver, and
-// what is written of them.
+// Liners among the links of a run (bolts.hpp): how they are put in, and what is written of them.
 
 #include "dynamics/bolt_link.hpp"
 #include "gcpdda/model/scene.hpp"
 #include "gcpdda/parallel/communicator.hpp"
-#include "statics/springs.hpp"
 
 #include <array>
 #include <cstdint>
@@ -32,10 +30,6 @@ struct LinerLine {
 std::vector<BoltLink> lay_liners(const Communicator &communicator, const Scene &scene,
                                  const BlockSystem &system, std::span<const std::int64_t> which,
                                  Diagnostics &notes);
-
-/// An element in the posed trial configuration as a spring of the static solver, about its middle.
-statics::ContactSpring spring_of(const BlockSystem &system, const BoltLink &link,
-                                 const std::array<std::size_t, 2> &rows, const LinkLaw &law);
 
 /// An element in the posed trial configuration, without its number.
 LinerLine line_of(const BlockSystem &system, const BoltLink &link, const std::array<std::size_t, 2> &rows,

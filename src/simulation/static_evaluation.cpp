@@ -13,11 +13,9 @@
 namespace gcpdda {
 
 void lay_statics(RunState &run) {
-  std::vector<statics::Surroundings> around;
+  std::vector<StiffnessBound> stiffness;
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
-    const StiffnessBound stiffness = stiffness_bound(run.scene.joints, run.blocks.properties[row].material);
-    around.push_back({stiffness.normal, stiffness.tangential,
-                      run.bolts.bolt_springs_at(run.blocks.properties[row].id.value)});
+    stiffness.push_back(stiffness_bound(run.scene.joints, run.blocks.properties[row].material));
   }
   const bool any_deformable = run.communicator.max(run.blocks.deformation.empty() ? 0.0 : 1.0) > 0.0;
   std::vector<statics::BorderRows> border;
@@ -25,7 +23,7 @@ void lay_statics(RunState &run) {
       [&](int rank, const std::vector<std::uint32_t> &send, const std::vector<std::uint32_t> &receive) {
         border.push_back({rank, send, receive});
       });
-  run.statics->lay(run.blocks, around, any_deformable, std::move(border));
+  run.statics->lay(run.blocks, stiffness, any_deformable, std::move(border));
 }
 
 void evaluate_statically(RunState &run) {

@@ -94,7 +94,8 @@ double balanced_force(const RunState &run) {
 void find_static_motion(RunState &run) {
   constexpr double near_rest = 100.0; // times the unbalanced ratio at rest
   const auto scope = run.phases.measure(Phase::update);
-  run.statics->springs().set_links(run.bolts.liner_springs(run.blocks));
+  run.statics->springs().set_links(
+      run.bolts.static_springs(run.blocks, run.statics->rules().springs.slip_share));
   const bool was_local = run.statics->is_local();
   const bool is_near_rest =
       run.clock.state.memory.last.unbalanced_ratio <= near_rest * run.clock.stage().tolerance;

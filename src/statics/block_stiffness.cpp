@@ -41,7 +41,7 @@ Vec2 arm_of(const BlockSystem &system, std::size_t row, Vec2 point) {
 
 } // namespace
 
-void add_boundary(const BlockSystem &system, std::size_t row, const Surroundings &around, double *matrix,
+void add_boundary(const BlockSystem &system, std::size_t row, const StiffnessBound &stiffness, double *matrix,
                   std::size_t width) {
   const bool is_deformable = system.is_deformable(row);
   const std::size_t freedoms = num_freedoms(system, row);
@@ -51,21 +51,9 @@ void add_boundary(const BlockSystem &system, std::size_t row, const Surroundings
     const double length = reference_length(system, row, k - system.vertex_begin[row]);
     for (const double gauss : {-1.0, 1.0}) { // exact: b b^T is quadratic along the edge
       const Vec2 x = system.reference_vertex[k] + (0.5 + gauss / std::sqrt(12.0)) * length * t;
-      add_square(forces_of(is_deformable, n, x), 0.5 * length * around.normal_stiffness, freedoms, matrix,
+      add_square(forces_of(is_deformable, n, x), 0.5 * length * stiffness.normal, freedoms, matrix, width);
+      add_square(forces_of(is_deformable, t, x), 0.5 * length * stiffness.tangential, freedoms, matrix,
                  width);
-      add_square(forces_of(is_deformable, t, x), 0.5 * length * around.tangential_stiffness, freedoms, matrix,
-                 width);
-    }
-  }
-}
-
-void add_bolts(const BlockSystem &system, std::size_t row, std::span<const PointSpring> bolts, double *matrix,
-               std::size_t width) {
-  const bool is_deformable = system.is_deformable(row);
-  for (const PointSpring &bolt : bolts) {
-    const Vec2 arm = arm_of(system, row, bolt.point);
-    for (const Vec2 d : {Vec2{1.0, 0.0}, Vec2{0.0, 1.0}}) {
-      add_square(forces_of(is_deformable, d, arm), bolt.stiffness, num_freedoms(system, row), matrix, width);
     }
   }
 }

@@ -11,11 +11,8 @@
 // reference axes: as a scale it need not turn with the block.
 //
 // Own springs. A deformable block has its elasticity, the same in all axes because it is isotropic: on H it
-// is [a b; b a] for H_xx and H_yy and c for H_xy + H_yx. Fixed points have a spring in each direction. So has
-// a bolt, as if its other end did not move: stiffer than it is, which costs evaluations and changes no
-// result.
-
-#include "dynamics/frequency_bound.hpp"
+// is [a b; b a] for H_xx and H_yy and c for H_xy + H_yx. Fixed points have a spring in each direction.
+#include "contact/stiffness_bound.hpp"
 #include "statics/field.hpp"
 #include "statics/springs.hpp"
 
@@ -41,19 +38,9 @@ private:
   std::vector<double> entries_;
 };
 
-/// What a block meets besides the contacts of the moment.
-struct Surroundings {
-  double normal_stiffness = 0.0;     ///< of its joints, Pa/m
-  double tangential_stiffness = 0.0; ///< Pa/m
-  std::span<const PointSpring> bolts;
-};
-
-/// D of an owned row.
-void add_boundary(const BlockSystem &system, std::size_t row, const Surroundings &around, double *matrix,
+/// D of an owned row, with the stiffness of its joints.
+void add_boundary(const BlockSystem &system, std::size_t row, const StiffnessBound &stiffness, double *matrix,
                   std::size_t width);
-/// Bolts at a block as springs to the ground, which hold it no less than the bolts do.
-void add_bolts(const BlockSystem &system, std::size_t row, std::span<const PointSpring> bolts, double *matrix,
-               std::size_t width);
 /// Elasticity and fixed points of an owned row.
 void add_own_springs(const BlockSystem &system, std::size_t row, double *matrix, std::size_t width);
 /// The blocks on the diagonal of K, onto the lower triangles of the matrices of owned rows.

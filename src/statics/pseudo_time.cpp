@@ -10,18 +10,15 @@
 
 namespace gcpdda::statics {
 
-void PseudoTime::lay(BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
+void PseudoTime::lay(BlockSystem &system, std::span<const StiffnessBound> stiffness, bool any_deformable,
                      std::vector<BorderRows> border) {
   width_ = any_deformable ? 6 : 3;
   BlockMatrices mass(system.num_owned, width_);
-  BlockMatrices bolts(system.num_owned, width_);
   far_.lay(system, moving_rows(system));
   moving_.assign(far_.mobile().begin(), far_.mobile().end());
-  for_rows(moving_, [&](std::size_t row) {
-    add_boundary(system, row, around[row], mass.of(row), width_);
-    add_bolts(system, row, around[row].bolts, bolts.of(row), width_);
-  });
-  solver_.lay(system, moving_, std::move(mass), std::move(bolts), std::move(border));
+  for_rows(moving_,
+           [&](std::size_t row) { add_boundary(system, row, stiffness[row], mass.of(row), width_); });
+  solver_.lay(system, moving_, std::move(mass), std::move(border));
   force_ = Field(system.num_rows(), width_);
   driving_ = force_;
   direction_ = Field(system.num_rows(), width_);

@@ -140,9 +140,9 @@ public:
   }
 
   /// Rows have been found anew. Collective.
-  /// @param around  of each owned row
+  /// @param stiffness  of the joints of each owned row
   /// @param any_deformable  on any rank
-  void lay(BlockSystem &system, std::span<const Surroundings> around, bool any_deformable,
+  void lay(BlockSystem &system, std::span<const StiffnessBound> stiffness, bool any_deformable,
            std::vector<BorderRows> border);
   /// What this rank has sent to others, but for reductions.
   [[nodiscard]] const BorderExchange::Sent &sent() const { return solver_.sent(); }

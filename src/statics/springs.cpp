@@ -191,8 +191,10 @@ void ContactSprings::update(const BlockSystem &system, const Candidates &candida
 }
 
 void ContactSprings::hold_slip() {
-  for (ContactSpring &spring : at_work_.springs) {
-    spring.tangential = spring.sticking;
+  for (std::vector<ContactSpring> *list : {&at_work_.springs, &links_}) {
+    for (ContactSpring &spring : *list) {
+      spring.tangential = spring.sticking;
+    }
   }
   are_held_ = true;
 }

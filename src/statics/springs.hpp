@@ -55,8 +55,8 @@
 // ends when its blocks are farther apart than `reach`, which both ranks of a border pair know from exact
 // copies.
 //
-// Elements of liners are springs of the same kind, with the middle of the element in the place of the region
-// (`links`): what they hold is as stiff as a joint, and between two blocks of which none is at rest.
+// Bolts and elements of liners are springs of the same kind (`links`), which are found anew at each
+// evaluation. What of them flows has the share of a region that slips, which does not fade.
 //
 // Springs of two blocks that rest while others move (`set_moving`) stay as they are, in a list of their own:
 // an update passes over those at work alone.
@@ -140,7 +140,7 @@ public:
     f(springs());
     f(std::span<const ContactSpring>(links_));
   }
-  /// Regions that slip have all of k_t up to the next update.
+  /// Regions that slip, and links that flow, have all of their stiffness up to the next update.
   void hold_slip();
   /// Which rows move from here on.
   /// @param moves  by row; empty: all do

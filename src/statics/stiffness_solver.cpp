@@ -72,11 +72,10 @@ template <class Moves> void StiffnessSolver::take_moving_ghosts(const BlockSyste
 }
 
 void StiffnessSolver::lay(const BlockSystem &system, std::vector<RowRun> moving, BlockMatrices mass,
-                          BlockMatrices bolts, std::vector<BorderRows> border) {
+                          std::vector<BorderRows> border) {
   moving_ = std::move(moving);
   take_moving_ghosts(system, [&](std::size_t row) { return !system.properties[row].keeps_its_velocity(); });
   mass_ = std::move(mass);
-  bolts_ = std::move(bolts);
   border_.take(std::move(border));
   coarse_.lay(system);
   diagonal_ = BlockMatrices(system.num_owned, mass_.width());
@@ -104,9 +103,8 @@ void StiffnessSolver::set(const BlockSystem &system, const ContactSprings &sprin
   for_rows(moving_, [&](std::size_t row) {
     double *const own = diagonal_.of(row);
     const double *const mass = mass_.of(row);
-    const double *const bolts = bolts_.of(row);
     for (std::size_t i = 0; i < width * width; ++i) {
-      own[i] = rho * mass[i] + bolts[i];
+      own[i] = rho * mass[i];
     }
     add_own_springs(system, row, own, width);
     take_columns(diagonal_, row, own_);

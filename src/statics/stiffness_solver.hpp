@@ -52,8 +52,7 @@ public:
   /// A neighbourhood that has been made anew. Collective.
   /// @param moving  rows to solve for
   /// @param mass  D of owned rows
-  /// @param bolts  of owned rows
-  void lay(const BlockSystem &system, std::vector<RowRun> moving, BlockMatrices mass, BlockMatrices bolts,
+  void lay(const BlockSystem &system, std::vector<RowRun> moving, BlockMatrices mass,
            std::vector<BorderRows> border);
   /// Solve for some of its rows from here on; the others stay where they are. Collective.
   /// @param moving  of the owned rows
@@ -116,7 +115,6 @@ private:
   std::vector<RowRun> moving_;
   std::vector<RowRun> moving_ghosts_;
   BlockMatrices mass_;
-  BlockMatrices bolts_;
   double rho_ = 0.0;
   SpringProducts springs_; ///< of the product at hand
   BlockMatrices diagonal_; ///< while B is made

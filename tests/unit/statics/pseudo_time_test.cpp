@@ -46,8 +46,8 @@ TEST(PseudoTime, StepsAreTakenBack) {
   const TouchingPair shapes = touching_pair(engine, Touch::face_on_face, 1e-5, 0.3);
   BlockSystem system = strained_blocks(engine, {shapes.lower, shapes.higher}, {false, true}, 1e10, 1e-3);
   statics::PseudoTime iteration(Communicator::self(), {});
-  const std::vector<statics::Surroundings> around(2, {1e9, 1e9, {}});
-  iteration.lay(system, around, true, {});
+  const std::vector<StiffnessBound> stiffness(2, {1e9, 1e9});
+  iteration.lay(system, stiffness, true, {});
   const std::vector<RigidDof> trial = system.trial;
   const Mat2 gradient = system.deformation_of(1).trial;
   for (PseudoMotion &motion : pseudo_rows(system)) {

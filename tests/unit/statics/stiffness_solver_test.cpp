@@ -47,10 +47,9 @@ struct Problem {
     springs.update(bench.system, bench.candidates, bench.history, bench.forces, {});
     statics::BlockMatrices mass(bench.system.num_owned, width);
     for (std::size_t row = 0; row < bench.system.num_owned; ++row) {
-      statics::add_boundary(bench.system, row, {k_n, 0.5 * k_n, {}}, mass.of(row), width);
+      statics::add_boundary(bench.system, row, {k_n, 0.5 * k_n}, mass.of(row), width);
     }
-    solver.lay(bench.system, statics::moving_rows(bench.system), std::move(mass),
-               statics::BlockMatrices(bench.system.num_owned, width), {});
+    solver.lay(bench.system, statics::moving_rows(bench.system), std::move(mass), {});
     solver.set(bench.system, springs, rho, true);
   }
 
