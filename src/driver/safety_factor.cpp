@@ -34,6 +34,8 @@ public:
   SafetyFactor(const Communicator &world, const Scene &scene, const SafetyOptions &options)
       : world_(world), scene_(scene), options_(options) {}
 
+  void leave_out_earthquake() { report_.leaves_earthquake_out = true; }
+
   SafetyOutcome find() {
     const ExitCode code = begin();
     if (code != exit_code::done) {
@@ -409,7 +411,11 @@ SafetyOutcome search_safety_factor(const Communicator &communicator, const Scene
   if (staged.region_blocks) { // strengths alone differ from trial to trial
     staged.region_blocks = std::make_shared<KeptBlocks>(staged.region_blocks);
   }
-  return SafetyFactor(communicator, staged, options).find();
+  SafetyFactor search(communicator, staged, options);
+  if (scene.earthquake.shakes()) {
+    search.leave_out_earthquake();
+  }
+  return search.find();
 }
 
 ExitCode find_safety_factor(const Communicator &communicator, const Scene &scene,

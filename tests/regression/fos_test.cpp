@@ -224,6 +224,16 @@ TEST(Fos, TellsWhatItKnowsWhereTheSignalStopsIt) {
   EXPECT_FALSE(fs::exists(trial / "checkpoints"));
 }
 
+TEST(Fos, SaysThatItLeavesTheEarthquakeOut) {
+  const WorkFolder folder;
+  folder.write("push.csv", "0.0, -30.0\n1.0, -30.0\n");
+  folder.write("plane.toml", testing::plane_failure_toml(0.0) +
+                                 "[earthquake]\nrecord = \"push.csv\"\nquantity = \"acceleration\"\n");
+  const Outcome found = run_gcpdda(0, {"fos", "plane.toml", "--tolerance", "0.3"}, folder);
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_NE(found.out.find("the earthquake of the scene is left out"), std::string::npos) << found.out;
+}
+
 TEST(Fos, SaysWhyATrialCannotRun) {
   const WorkFolder folder;
   folder.write("plane.toml", testing::plane_failure_toml(0.0));

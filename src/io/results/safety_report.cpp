@@ -225,6 +225,9 @@ std::string to_text(const SafetyReport &report) {
   }
   std::string text = fmt::format("{}\n{}strengths divided: friction, cohesion and tension of {}\n",
                                  factor_text(report), undecided_text(report), families);
+  if (report.leaves_earthquake_out) {
+    text += "the earthquake of the scene is left out: the factor is that of blocks that were never shaken\n";
+  }
   text += mechanism_text(report);
   if (report.first_block) {
     text += words_on_first_block(*report.first_block);

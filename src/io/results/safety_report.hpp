@@ -66,6 +66,7 @@ inline bool is_narrow(double width, double holds, double tolerance) {
 /// What gcpdda fos has found.
 struct SafetyReport {
   std::vector<std::string> families;   ///< laws that were weakened
+  bool leaves_earthquake_out = false;  ///< of the scene
   double tolerance = 0.0;              ///< asked for
   std::optional<double> holds;         ///< largest factor at which the blocks settled
   std::optional<double> fails;         ///< smallest one at which they failed
