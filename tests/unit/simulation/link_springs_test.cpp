@@ -88,7 +88,7 @@ double error_of_springs(Linked linked) {
   products.take(springs, statics::SlipSprings::all, 6);
   double largest = 0.0;
   double error = 0.0;
-  for (const std::size_t i : {0, 1, 2, 6, 7, 8, 9, 10, 11}) {
+  for (const std::size_t i : std::array<std::size_t, 9>{0, 1, 2, 6, 7, 8, 9, 10, 11}) {
     const double step = 1e-6;
     std::vector<double> motion(12, 0.0);
     motion[i] = step;
