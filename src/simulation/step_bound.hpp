@@ -12,7 +12,9 @@ struct StepBound {
   double omega_max = 0.0; ///< rad/s, 0 where nothing can touch
   double limit = 2.0;     ///< stable W of scheme and damping; 2 stands in where every W is unstable
   bool always_unstable = false;
-  double safety = 0.0; ///< run.safety; where a stage settles 0.9, unless run.safety is below its default
+  /// run.safety; where a stage settles 0.9, unless run.safety is below its default; 1 where strong dashpots
+  /// set the limit
+  double safety = 0.0;
   double undamped_step = 0.0; ///< the step without Rayleigh damping, s
   double time_step = 0.0;     ///< safety * limit / omega_max, s
   double damping_ratio = 0.0; ///< modal ratio the limit was computed with
