@@ -208,13 +208,29 @@ private:
                       ? ""
                       : outcome.summary.message;
         if (group_->is_root()) {
-          mine.push_back(facts_of(factor, outcome, start_time_, watches_mechanism()));
+          TrialFacts facts = facts_of(factor, outcome, start_time_, watches_mechanism());
+          look_how_far(confirms ? confirmation_directory(factor) : trial_directory(factor), facts);
+          mine.push_back(facts);
         }
       } catch (const std::exception &error) { // of the whole group; the others must not wait for it
         trouble = fmt::format("the trial at factor {:g} cannot run: {}", factor, error.what());
       }
     }
     return share(mine, message, trouble, confirms);
+  }
+
+  /// Whether blocks that have come to rest are farther away than is allowed (fos.largest_motion).
+  void look_how_far(const fs::path &directory, TrialFacts &facts) const {
+    const StrengthReduction &rules = scene_.reduction;
+    if (!std::isfinite(rules.largest_motion) || static_cast<Verdict>(facts.verdict) != Verdict::settled) {
+      return;
+    }
+    const auto area_in = [&](const std::vector<Vec2> &region) {
+      return area_moved_by(rules.largest_motion, region, settled_directory(), directory);
+    };
+    facts.first_rests_far = area_in({}) > 0.0 ? 1 : 0;
+    const double area = facts.first_rests_far != 0 ? area_in(rules.region) : 0.0;
+    facts.rests_far = area > 0.0 && area >= rules.ignored_area ? 1 : 0;
   }
 
   [[nodiscard]] Scene trial_scene(double factor) const {
@@ -247,7 +263,8 @@ private:
   RunOutcome run_confirmation(double factor) {
     const fs::path directory = confirmation_directory(factor);
     const Scene trial = trial_scene(factor);
-    const Verdict found = trials_.at(factor).verdict;
+    const StrengthTrial &known = trials_.at(factor);
+    const Verdict found = known.rests_far ? Verdict::settled : known.verdict;
     const RunOutcome outcome =
         run_in(directory, with_confirming_stage(trial, found), trial_directory(factor), factor);
     return fell_through(outcome, trial) ? run_dynamic_trial(directory, factor) : outcome;
@@ -283,6 +300,9 @@ private:
         }
         StrengthTrial trial = trial_of(facts);
         trial.message.assign(messages[rank].begin(), messages[rank].end());
+        if (trial.rests_far) {
+          trial.message = "at rest, but farther away than fos.largest_motion";
+        }
         trial.directory = trial_directory(facts.factor);
         if (confirms) {
           trial.directory = confirmation_directory(facts.factor);
@@ -360,6 +380,7 @@ private:
       report_.trials.back().decisive =
           std::count(decisive.begin(), decisive.end(), factor) > 0 || stopped_.contains(factor);
     }
+    note_first_slide();
     on_root(world_, [&] {
       for (const auto &[factor, trial] : trials_) { // nobody goes on from them now
         fs::remove_all(trial_directory(factor) / "checkpoints");
@@ -381,6 +402,19 @@ private:
         write_safety_report(options_.directory, report_, pictures);
         std::cout << to_text(report_) << std::flush;
       });
+    }
+  }
+
+  /// The least factor at which blocks hold no longer where they are but somewhere else. Of a mechanism it is
+  /// not known: the motion of a trial is that of any block.
+  void note_first_slide() {
+    const auto slides = [&](const StrengthTrial &trial) {
+      return trial.decisive && trial.verdict == Verdict::settled &&
+             trial.moved >= scene_.reduction.failure_motion;
+    };
+    const auto first = std::find_if(report_.trials.begin(), report_.trials.end(), slides);
+    if (first != report_.trials.end() && !watches_mechanism()) {
+      report_.first_slide = *first;
     }
   }
 

@@ -67,8 +67,9 @@ bool is_by_statics_alone(const TrialFacts &facts) {
 StrengthTrial trial_of(const TrialFacts &facts) {
   StrengthTrial trial;
   trial.factor = facts.factor;
-  trial.verdict = static_cast<Verdict>(facts.verdict);
-  trial.first_block = static_cast<Verdict>(facts.first_block);
+  trial.rests_far = facts.rests_far != 0;
+  trial.verdict = trial.rests_far ? Verdict::failed : static_cast<Verdict>(facts.verdict);
+  trial.first_block = facts.first_rests_far != 0 ? Verdict::failed : static_cast<Verdict>(facts.first_block);
   trial.decided_by = words_on_means(facts);
   trial.time = facts.time;
   trial.moved = facts.moved;

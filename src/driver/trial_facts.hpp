@@ -15,7 +15,9 @@ struct TrialFacts {
   std::int64_t verdict = 0;
   std::int64_t first_block = 0; ///< the verdict on any block
   std::int64_t means = 0;
-  std::int64_t is_confirmed = 0; ///< by a stage of its own
+  std::int64_t is_confirmed = 0;    ///< by a stage of its own
+  std::int64_t rests_far = 0;       ///< has settled, but farther than fos.largest_motion
+  std::int64_t first_rests_far = 0; ///< the same for any block
   double time = 0.0;
   double moved = 0.0;
   double unbalanced_ratio = 0.0;

@@ -1,6 +1,7 @@
 #include "driver/trial_frames.hpp"
 
 #include "base/check.hpp"
+#include "geometry/holds_point.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/frame_reader.hpp"
 #include "model/generators.hpp"
@@ -68,6 +69,15 @@ public:
     return motion;
   }
 
+  /// What a motion does to any point of the block at most, m.
+  [[nodiscard]] double farthest(std::size_t row, const Motion &moved) const {
+    double radius = 0.0;
+    for (const Vec2 vertex : vertices(row)) {
+      radius = std::max(radius, norm(vertex - moved.centroid));
+    }
+    return norm(moved.displacement) + radius * std::abs(moved.rotation);
+  }
+
   /// Where the motion of a block has carried points of the settled state; none for a block that is gone. The
   /// strain of the trial is too small to be seen in a picture.
   [[nodiscard]] std::optional<std::array<Vec2, 2>> carried(std::int64_t block,
@@ -111,11 +121,7 @@ std::vector<FailingBlock> failing_blocks(const Scene &scene, const TwoFrames &fr
     block.displacement = moved.displacement;
     block.rotation = moved.rotation;
     block.area = polygon_moments(block.vertices).area;
-    double radius = 0.0;
-    for (const Vec2 vertex : block.vertices) {
-      radius = std::max(radius, norm(vertex - moved.centroid));
-    }
-    block.motion = block.fixed ? 0.0 : norm(block.displacement) + radius * std::abs(block.rotation);
+    block.motion = block.fixed ? 0.0 : frames.farthest(row, moved);
     blocks.push_back(std::move(block));
   }
   return blocks;
@@ -184,6 +190,21 @@ FailingJoints failing_joints(const TwoFrames &frames, const fs::path &settled, c
 }
 
 } // namespace
+
+double area_moved_by(double share, const std::vector<Vec2> &region, const fs::path &settled,
+                     const fs::path &trial) {
+  const TwoFrames frames(settled, trial);
+  double area = 0.0;
+  for (std::size_t row = 0; row < frames.num_blocks(); ++row) {
+    const TwoFrames::Motion moved = frames.motion(row);
+    const double of_block = polygon_moments(frames.vertices(row)).area;
+    const bool is_far = !frames.is_fixed(row) && frames.farthest(row, moved) >= share * std::sqrt(of_block);
+    if (is_far && (region.empty() || holds_point(region, moved.centroid - moved.displacement))) {
+      area += of_block;
+    }
+  }
+  return area;
+}
 
 DrawnTrial drawn_trial_of(const Scene &scene, const fs::path &settled, const fs::path &trial,
                           double ignored_area) {

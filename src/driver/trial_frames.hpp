@@ -25,4 +25,11 @@ struct DrawnTrial {
 DrawnTrial drawn_trial_of(const Scene &scene, const std::filesystem::path &settled,
                           const std::filesystem::path &trial, double ignored_area);
 
+/// Area of the blocks that end farther than a share of their size (the root of their area) from where they
+/// began, m^2.
+/// @param region  only blocks that began in it count; empty for all
+/// @throws FileError
+double area_moved_by(double share, const std::vector<Vec2> &region, const std::filesystem::path &settled,
+                     const std::filesystem::path &trial);
+
 } // namespace gcpdda

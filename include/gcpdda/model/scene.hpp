@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -168,9 +169,10 @@ struct StrengthReduction {
   double limit = 0.0;          ///< s a trial lasts with local damping; 0: as long as the last settle stage
   std::int64_t patience = 8;   ///< limits that it goes on for without, where it has no verdict
   double failure_motion = 0.1; ///< share of its size that a block moves when it fails
-  double local_damping = 0.3;  ///< without it blocks weakened at once swing beyond their new balance
-  double ignored_area = 0.0;   ///< m^2; what fails and is smaller is no failure of the slope
-  std::vector<Vec2> region;    ///< only blocks that begin in it count; empty for all
+  double largest_motion = std::numeric_limits<double>::infinity(); ///< as far may a block move until it rests
+  double local_damping = 0.3; ///< without it blocks weakened at once swing beyond their new balance
+  double ignored_area = 0.0;  ///< m^2; what fails and is smaller is no failure of the slope
+  std::vector<Vec2> region;   ///< only blocks that begin in it count; empty for all
 };
 
 class BlockSource;

@@ -70,6 +70,15 @@ std::string undecided_text(const SafetyReport &report) {
       report.undecided.back());
 }
 
+std::string slide_text(const SafetyReport &report) {
+  if (!report.first_slide) {
+    return {};
+  }
+  return fmt::format("at {:.6g} blocks slide to where they hold: one moves by {:.2g} of its size before it "
+                     "rests; fos.largest_motion says from where on that is failure\n",
+                     report.first_slide->factor, report.first_slide->moved);
+}
+
 /// Turning about a far point or a corner moves a block's points by more than its centroid.
 std::string mechanism_text(const SafetyReport &report) {
   std::vector<const FailingBlock *> moving;
@@ -164,6 +173,7 @@ std::string json_text(const SafetyReport &report) {
       .add("fails", report.fails.value_or(none))
       .add("bound", report.bound.value_or(none))
       .add("resting_bound", report.resting_bound.value_or(none))
+      .add("slides_from", report.first_slide ? report.first_slide->factor : none)
       .add("tolerance", report.tolerance)
       .add("found", report.is_found() ? 1 : 0)
       .add("version", program_version())
@@ -224,7 +234,7 @@ std::string to_text(const SafetyReport &report) {
     families += (families.empty() ? "" : ", ") + name;
   }
   std::string text = fmt::format("{}\n{}strengths divided: friction, cohesion and tension of {}\n",
-                                 factor_text(report), undecided_text(report), families);
+                                 factor_text(report), undecided_text(report) + slide_text(report), families);
   if (report.leaves_earthquake_out) {
     text += "the earthquake of the scene is left out: the factor is that of blocks that were never shaken\n";
   }

@@ -18,10 +18,11 @@ struct StrengthTrial {
   double factor = 1.0;
   Verdict verdict = Verdict::undecided;     ///< also where the run has ended in a numerical failure
   Verdict first_block = Verdict::undecided; ///< on any block, where `verdict` is on a mechanism
-  std::string decided_by;                   ///< what has come to the verdict, in words
-  bool decisive = false; ///< the bracket rests on it; others were run because ranks were free
-  double time = 0.0;     ///< simulated, s
-  double moved = 0.0;    ///< largest motion of a block, in sizes of that block
+  bool rests_far = false; ///< has failed because blocks come to rest farther than fos.largest_motion
+  std::string decided_by; ///< what has come to the verdict, in words
+  bool decisive = false;  ///< the bracket rests on it; others were run because ranks were free
+  double time = 0.0;      ///< simulated, s
+  double moved = 0.0;     ///< largest motion of a block, in sizes of that block
   double unbalanced_ratio = 0.0;
   std::int64_t steps = 0;
   std::int64_t evaluations = 0; ///< of candidate pairs, all ranks
@@ -80,6 +81,8 @@ struct SafetyReport {
   std::optional<FirstBlock>
       first_block;           ///< where the factor is that of a mechanism (fos.ignore_area, fos.region)
   double ignored_area = 0.0; ///< m^2, fos.ignore_area
+  std::optional<StrengthTrial>
+      first_slide; ///< that of the least factor whose blocks move by fos.failure_motion until they rest
 
   /// The bracket is as narrow as asked for.
   [[nodiscard]] bool is_found() const {

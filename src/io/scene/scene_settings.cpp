@@ -147,6 +147,7 @@ StrengthReduction read_reduction(const SceneSource &source, const JointLaws &joi
   fos.read("limit", reduction.limit);
   fos.read("patience", reduction.patience);
   fos.read("failure_motion", reduction.failure_motion);
+  fos.read("largest_motion", reduction.largest_motion);
   fos.read("local_damping", reduction.local_damping);
   fos.read("ignore_area", reduction.ignored_area);
   fos.read("region", reduction.region);

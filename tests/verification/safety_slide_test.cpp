@@ -1,0 +1,151 @@
+// Blocks that slide to where they hold have not failed, unless fos.largest_motion says so.
+
+#include "problem.hpp"
+#include "safety_limits.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace gcpdda::testing::safety_slide_test {
+namespace {
+
+double middle_of(const SafetyReport &report) {
+  EXPECT_TRUE(report.holds && report.fails);
+  return 0.5 * (report.holds.value_or(0.0) + report.fails.value_or(0.0));
+}
+
+// A dam of 10 x 10 m on level rock, the water 8 m high behind it. The phreatic line falls to the ground
+// within the dam: a triangle of pressure on its back and one under it. The dam is held by friction and
+// cohesion of its base.
+constexpr double side = 10.0;
+constexpr double water_height = 8.0;
+constexpr double friction_deg = 25.0;
+constexpr double cohesion = 5e4;
+
+std::string dam(const std::string &fidelity, const std::string &solver, const std::string &fos_keys) {
+  return fmt::format(R"(
+[run]
+fidelity = "{}"
+[material.rock]
+density = 2400.0
+youngs_modulus = 25e9
+poissons_ratio = 0.2
+[joint.default]
+normal_stiffness = 5e9
+friction_angle_deg = {}
+cohesion = {}
+[water.lake]
+phreatic = [[-50, {}], [0, {}], [{}, 0], [50, 0]]
+active = false
+[[block]]
+material = "rock"
+fixed = true
+vertices = [[-30, -5], [50, -5], [50, 0], [-30, 0]]
+[[block]]
+name = "dam"
+material = "rock"
+vertices = [[0, 0], [{}, 0], [{}, {}], [0, {}]]
+[[stage]]
+name = "weight"
+kind = "settle"
+limit = 20.0
+[[stage]]
+name = "filling"
+kind = "settle"
+limit = 20.0
+solver = "{}"
+set = {{ "water.lake.active" = true }}
+[fos]
+{}
+)",
+                     fidelity, friction_deg, cohesion, water_height, water_height, side, side, side, side,
+                     side, solver, fos_keys);
+}
+
+double factor_of_dam() {
+  constexpr double g = 9.81;
+  constexpr double water = 1000.0 * g;
+  const double push = 0.5 * water * water_height * water_height;
+  const double uplift = 0.5 * water * water_height * side;
+  const double weight = 2400.0 * g * side * side;
+  return (cohesion * side + (weight - uplift) * std::tan(friction_deg * degree)) / push;
+}
+
+// A dam that slides on leaves the water behind, and comes to rest metres farther with any strength. By a
+// thousandth of its size it slides 0.3 % beyond its limit. Brackets of 1 %.
+TEST(SafetySlides, ADamThatSlidesToWhereItHoldsFailsWhereItBeginsTo) {
+  for (const std::string fidelity : {"rigid", "deformable"}) {
+    for (const std::string solver : {"static", "dynamic"}) {
+      const SafetyOutcome found =
+          search_quietly(scene_of(dam(fidelity, solver, "to = 6.0\nlargest_motion = 0.001\n")));
+      EXPECT_EQ(found.exit_code, exit_code::done) << found.message;
+      expect_value(fmt::format("sliding of a gravity dam, {}, {} solver", fidelity, solver), factor_of_dam(),
+                   middle_of(found.report), 0.01);
+    }
+  }
+}
+
+// Without the key it has not failed: the report says from where on it slides by what counts for failure.
+TEST(SafetySlides, WithoutALimitTheReportSaysWhereBlocksSlide) {
+  const SafetyOutcome found = search_quietly(scene_of(dam("rigid", "static", "from = 1.0\nto = 6.0\n")));
+  EXPECT_EQ(found.report.holds, 6.0);
+  EXPECT_FALSE(found.report.fails);
+  ASSERT_TRUE(found.report.first_slide);
+  EXPECT_GT(found.report.first_slide->factor, factor_of_dam());
+  EXPECT_GE(found.report.first_slide->moved, 0.1);
+  EXPECT_NE(to_text(found.report).find("blocks slide to where they hold"), std::string::npos);
+}
+
+constexpr double joint_friction_deg = 40.0;
+constexpr double steep_deg = 38.0; ///< of the plane of the small block, 1 m2
+constexpr double flat_deg = 35.0;  ///< of that of the large block, 6 m2
+constexpr double way = 0.08;       ///< m that each slides until a stop holds it
+
+std::string block_before_a_stop(const std::string &name, Vec2 top, double dip_deg, double width) {
+  const Rotation turn = Rotation::of(-dip_deg * degree);
+  const auto at = [&](double x, double y) { return top + turn({x, y}); };
+  return block_toml(name + "_plane", {at(-1.0, -1.0), at(30.0, -1.0), at(30.0, 0.0), at(-1.0, 0.0)},
+                    "fixed = true") +
+         block_toml(name + "_stop",
+                    {at(width + way, 0.05), at(width + way + 1.0, 0.05), at(width + way + 1.0, 1.0),
+                     at(width + way, 1.0)},
+                    "fixed = true") +
+         block_toml(name, {at(0.0, 0.0), at(width, 0.0), at(width, 1.0), at(0.0, 1.0)});
+}
+
+SafetyReport search_before_stops(const std::string &fos_keys) {
+  const std::string toml = head({.friction_deg = joint_friction_deg}) +
+                           block_before_a_stop("small", {0.0, 0.0}, steep_deg, 1.0) +
+                           block_before_a_stop("large", {60.0, 0.0}, flat_deg, 6.0);
+  const SafetyOutcome outcome =
+      search_quietly(scene_of(without_duration(toml) + "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n[fos]\n" +
+                              "from = 1.0\nto = 1.5\n" + fos_keys));
+  EXPECT_TRUE(outcome.report.undecided.empty()) << outcome.message;
+  return outcome.report;
+}
+
+// Nothing fails while blocks find hold; the small block governs where each block counts, the large one where
+// areas or places are asked for.
+TEST(SafetySlides, AreasAndRegionsCountAsInFailures) {
+  const double factor_of_small = std::tan(joint_friction_deg * degree) / std::tan(steep_deg * degree);
+  const double factor_of_large = std::tan(joint_friction_deg * degree) / std::tan(flat_deg * degree);
+  EXPECT_FALSE(search_before_stops("").fails);
+  const std::string largest = "largest_motion = 0.02\n"; // 0.02 m and 0.05 m
+  expect_value("factor of a block that slides to a stop", factor_of_small,
+               middle_of(search_before_stops(largest)), 0.01);
+  for (const std::string watched :
+       {"ignore_area = 2.0\n", "region = [[50, -40], [90, -40], [90, 10], [50, 10]]\n"}) {
+    const SafetyReport report = search_before_stops(largest + watched);
+    expect_value("the same of the first mechanism, " + watched.substr(0, watched.find(' ')), factor_of_large,
+                 middle_of(report), 0.01);
+    ASSERT_TRUE(report.first_block && report.first_block->holds && report.first_block->fails);
+    expect_value("the same of the first block beside it", factor_of_small,
+                 0.5 * (*report.first_block->holds + *report.first_block->fails), 0.01);
+  }
+}
+
+} // namespace
+} // namespace gcpdda::testing::safety_slide_test
