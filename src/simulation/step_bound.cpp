@@ -1,5 +1,6 @@
 #include "simulation/step_bound.hpp"
 
+#include "contact/laws/region_law.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "dynamics/frequency_bound.hpp"
 #include "simulation/run_state.hpp"
@@ -167,8 +168,12 @@ void scale_masses(RunState &run) {
   }
 }
 
+// On all ranks ghosts, too, and the dashpots of pairs, which a refresh would make of the new masses.
 void unscale_masses(RunState &run) {
-  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+  if (!run.clock.stage().mass_scaling) {
+    return;
+  }
+  for (std::size_t row = 0; row < run.blocks.num_rows(); ++row) {
     BlockProperties &block = run.blocks.properties[row];
     const double back = 1.0 / block.mass_scaling;
     block.mass *= back;
@@ -177,6 +182,9 @@ void unscale_masses(RunState &run) {
     if (run.blocks.is_deformable(row)) {
       run.blocks.deformation_of(row).second_moment = back * run.blocks.deformation_of(row).second_moment;
     }
+  }
+  for (CandidatePair &pair : run.neighbours.candidates.pairs) {
+    take_law(run.blocks, run.contacts.parameters(), pair.law, pair);
   }
 }
 

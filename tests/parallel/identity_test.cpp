@@ -5,6 +5,7 @@
 #include "io/results/frame_reader.hpp"
 #include "io/results/run_comparison.hpp"
 #include "model/contact_history.hpp"
+#include "support/cut_region.hpp"
 #include "support/run_facts.hpp"
 #include "support/scenes.hpp"
 #include "two_runs.hpp"
@@ -300,6 +301,22 @@ TEST(Identity, OfAStandingSlope) {
   EXPECT_GE(runs.counted("contacts"), 20);
   if (runs.world().size() > 1) {
     EXPECT_GE(runs.counted("cross_rank_contacts"), 1);
+  }
+}
+
+// The last frame of a stage with scaled masses is of the true ones, ghosts included: where edges have several
+// laws, dashpots follow from both masses of a pair.
+TEST(Identity, OfASlopeThatSettlesWithScaledMasses) {
+  for (const std::string fidelity : {"rigid", "deformable"}) {
+    Scene scene =
+        testing::scene_of(testing::walked_slope_toml() + "[[stage]]\nkind = \"run\"\nduration = 0.5\n",
+                          {"run.fidelity=" + fidelity, "stage.weight.mass_scaling=true",
+                           "material.granite.youngs_modulus=40e9", "material.granite.poissons_ratio=0.25"});
+    testing::prepare_region(scene);
+    const TwoRuns runs(scene);
+    if (runs.world().size() > 1) {
+      EXPECT_GE(runs.counted("cross_rank_contacts"), 20);
+    }
   }
 }
 
