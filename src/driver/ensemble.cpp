@@ -35,11 +35,11 @@ MemberFacts facts_of(const SafetyOutcome &outcome) {
   const SafetyReport &report = outcome.report;
   facts.member.holds = report.holds;
   facts.member.fails = report.fails;
-  facts.member.message = outcome.message;
   facts.member.outcome = outcome.exit_code == exit_code::numerical_failure ? MemberOutcome::cannot_run
                          : report.fails && *report.fails <= 1.0            ? MemberOutcome::fails
                          : report.holds && *report.holds >= 1.0            ? MemberOutcome::holds
                                                                            : MemberOutcome::undecided;
+  facts.member.message = facts.member.outcome == MemberOutcome::fails ? std::string() : outcome.message;
   facts.member.steps = report.settled.steps;
   facts.member.cpu_s = report.settled.cpu_s;
   for (const StrengthTrial &trial : report.trials) {

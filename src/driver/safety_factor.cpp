@@ -107,15 +107,18 @@ private:
     }
   }
 
-  /// With full strength, or where the blocks do not come to rest so, with the most that is tried.
+  /// With full strength, or where the blocks do not come to rest so, with the most that is tried. Blocks that
+  /// fail on the way have failed at that factor.
   ExitCode settle_as_it_can() {
     ExitCode code = settle(1.0, options_.overwrite, [this] { prepare_directory(); });
+    note_failure_on_the_way();
     const double from = scene_.reduction.from;
     if ((code == exit_code::done || code == exit_code::undecided) && !has_settled() && from < 1.0) {
       say(fmt::format("the blocks do not settle with their full strength, now with their strengths divided "
                       "by fos.from = {:g}\n",
                       from));
       code = settle(from, true, {});
+      note_failure_on_the_way();
     }
     if (code == exit_code::done && !has_settled()) {
       code = exit_code::undecided;
@@ -127,6 +130,12 @@ private:
       say(message_ + "\n");
     }
     return code;
+  }
+
+  void note_failure_on_the_way() {
+    if (report_.settled.verdict == Verdict::failed) {
+      report_.fails = report_.settled.factor;
+    }
   }
 
   /// The state an earlier search has settled; of no cost to this one.

@@ -108,6 +108,25 @@ TEST(Ensemble, MembersAreShaken) {
   EXPECT_NE(unstaged.err.find("no stage says when its blocks stand"), std::string::npos) << unstaged.err;
 }
 
+// With a tenth of the friction that limit equilibrium asks for, members fail whatever is measured: also where
+// they do not come to rest with the largest strength that is tried (fos.from).
+TEST(Ensemble, MembersThatNoSearchCanSettleFail) {
+  const WorkFolder folder;
+  folder.write("plane.toml", testing::shipped_toml("plane_failure"));
+  for (const std::string measure : {"verdict", "factor"}) {
+    const Outcome weak =
+        run_gcpdda(0,
+                   {"ensemble", "plane.toml", "--count", "3", "--out", measure, "--set",
+                    "ensemble.measure=" + measure, "--set",
+                    "ensemble.vary=[{key = \"joint.default.friction_angle_deg\", distribution = \"uniform\", "
+                    "min = 2.0, max = 3.0}]",
+                    "--set", "joint.default.cohesion=0"},
+                   folder);
+    EXPECT_EQ(weak.exit_code, 0) << weak.err;
+    EXPECT_NE(weak.out.find("3 of 3 members fail"), std::string::npos) << weak.out;
+  }
+}
+
 TEST(Ensemble, RefusesWhatItCannotRun) {
   const WorkFolder folder;
   folder.write("bench.toml", testing::shipped_toml("toppling"));
