@@ -10,9 +10,11 @@
 #include "dynamics/deformable.hpp"
 #include "dynamics/half_works.hpp"
 #include "simulation/step_rows.hpp"
+#include "simulation/unbalanced.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 namespace gcpdda {
@@ -277,19 +279,12 @@ Terms current_terms(RunState &run) {
   return terms;
 }
 
-/// Largest net force over the largest force that acts anywhere; rows and pairs of the last evaluation.
-double unbalanced_ratio(const RunState &run) {
-  const BlockSystem &blocks = run.blocks;
-  std::array<double, 2> largest{};
-  for (std::size_t row = 0; row < blocks.num_owned; ++row) {
-    if (!blocks.properties[row].keeps_its_velocity()) {
-      largest[0] = std::max(largest[0], norm(blocks.contact[row].force.u));
-      largest[1] = std::max(largest[1], blocks.properties[row].heavy_mass() * norm(run.scene.run.gravity));
-    }
-  }
-  largest[1] = std::max(largest[1], run.contacts.sums().largest_force());
-  run.communicator.max(largest);
-  return largest[1] > 0.0 ? largest[0] / largest[1] : 0.0;
+/// Blocks that have just been set to rest are no longer damped: then that of their verdict. Collective.
+double ratio_of_row(const RunState &run) {
+  const StageState &stage = run.clock.state;
+  const bool has_ended =
+      run.clock.is_staged && run.clock.stage().takes_steps() && std::ssize(stage.results) > stage.index;
+  return has_ended ? stage.results.back().unbalanced_ratio : unbalanced_ratio(run);
 }
 
 double max_speed(const RunState &run) {
@@ -313,7 +308,7 @@ EnergyLedger::EnergyLedger(RunState &run) {
 
 EnergyRow EnergyLedger::row(RunState &run) const {
   EnergyRow row;
-  row.unbalanced_ratio = unbalanced_ratio(run);
+  row.unbalanced_ratio = ratio_of_row(run);
   row.max_speed = max_speed(run);
   Terms terms = run.clock.step_count == 0 ? initial_terms(run) : current_terms(run);
   terms.agree(run.communicator);

@@ -12,6 +12,7 @@
 #include "simulation/stage_changes.hpp"
 #include "simulation/static_stage.hpp"
 #include "simulation/step_rows.hpp"
+#include "simulation/unbalanced.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,12 +24,6 @@
 namespace gcpdda {
 
 namespace {
-
-/// A component of a force before local damping took its share: f (1 - share sign(f) sign(v)).
-double undamped(double force, double velocity, double share) {
-  const double sign = force * velocity > 0.0 ? 1.0 : force * velocity < 0.0 ? -1.0 : 0.0;
-  return force / (1.0 - share * sign);
-}
 
 double kinetic_energy_of(const BlockSystem &blocks, std::size_t row, const RigidDof &v, const Mat2 &rate) {
   const BlockProperties &block = blocks.properties[row];
@@ -57,14 +52,6 @@ void mark_stage(RunState &run) {
   }
 }
 
-// What local damping of the last evaluation acted against, to a positive factor.
-RigidDof damped_motion(const RunState &run, std::size_t row) {
-  return run.blocks.is_deformable(row)
-             ? next_trial(run.blocks, run.scheme, run.clock.plan.time_step, row).motion -
-                   run.blocks.trial[row] + run.blocks.motion[row].increment()
-             : run.blocks.velocity[row];
-}
-
 /// Of all blocks, which leaves RunState::looks behind. Collective.
 StageLook look_at_blocks(RunState &run) {
   ExactSum kinetic;
@@ -77,20 +64,12 @@ StageLook look_at_blocks(RunState &run) {
     if (block.keeps_its_velocity()) {
       continue;
     }
-    const AppliedForces applied = applied_forces(run.blocks, row);
-    const RigidDof v = damped_motion(run, row);
-    const RigidDof force = run.blocks.contact[row].force + applied.anchor;
     BlockLook &seen = run.looks[row];
-    const double along_x = undamped(force.u.x, v.u.x, run.local_damping);
-    const double along_y = undamped(force.u.y, v.u.y, run.local_damping);
-    const double turning = run.blocks.is_deformable(row)
-                               ? norm(unbalanced_on_gradient(run.blocks.deformation_of(row)))
-                               : std::abs(undamped(force.r, v.r, run.local_damping));
-    seen.unbalanced = std::max(norm(Vec2{along_x, along_y}), turning / block.radius);
+    seen.unbalanced = unbalanced_force(run, row);
     unbalanced = std::max(unbalanced, seen.unbalanced);
     const double weight = block.heavy_mass() * norm(run.scene.run.gravity);
-    seen.load = weight + norm(applied.load.u);
-    acting = std::max({acting, weight, norm(applied.load.u)});
+    seen.load = weight + norm(applied_forces(run.blocks, row).load.u);
+    acting = std::max(acting, acting_force(run, row));
     BlockMark &mark = marks[row];
     const RigidDof &now = run.blocks.displacement[row];
     seen.motion = motion_between(block, mark.look, now);
@@ -108,6 +87,9 @@ StageLook look_at_blocks(RunState &run) {
   acting = std::max(acting, run.contacts.sums().largest_force());
   overlap = run.force_report.max_overlap;
   run.communicator.max(largest);
+  if (overlap == 0.0) { // all hang on fixed points or bolts
+    overlap = run.sag;
+  }
   if (!is_static(run)) { // which has no velocities
     run.communicator.sum(kinetic.limbs());
   }
@@ -345,12 +327,42 @@ void judge_stage(RunState &run) {
   }
 }
 
+namespace {
+
+/// How the stage stands now, which ends or pauses between two looks. Collective.
+StageLook look_between(const RunState &run) {
+  StageLook look = run.clock.state.memory.last;
+  look.unbalanced_ratio = unbalanced_ratio(run);
+  ExactSum kinetic;
+  double moved = 0.0;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const BlockProperties &block = run.blocks.properties[row];
+    if (!block.keeps_its_velocity()) {
+      const double way = motion_between(block, run.blocks.mark_of(row).stage, run.blocks.displacement[row]);
+      moved = std::max(moved, way / std::sqrt(block.area));
+      kinetic.add(kinetic_energy_of(run.blocks, row));
+    }
+  }
+  run.communicator.sum(kinetic.limbs());
+  look.moved = run.communicator.max(moved);
+  look.kinetic = kinetic.value();
+  return look;
+}
+
+bool has_just_looked(const RunState &run) {
+  return means_of_verdict(run) == VerdictMeans::static_solver ||
+         run.clock.stage_step() % steps_between_verdicts(num_blocks(run.scene)) == 0;
+}
+
+} // namespace
+
 std::vector<StageResult> stage_results(const RunState &run) {
   std::vector<StageResult> results = run.clock.state.results;
   if (std::ssize(results) == run.clock.state.index) {
     std::int64_t contact_steps = run.counters.contact_steps;
     run.communicator.sum(std::span(&contact_steps, 1));
-    const StageLook &last = run.clock.state.memory.last;
+    const StageLook last =
+        has_just_looked(run) || !run.clock.is_staged ? run.clock.state.memory.last : look_between(run);
     results.push_back({run.clock.state.verdict, run.clock.time(), run.clock.stage_step(),
                        contact_steps - run.clock.state.contact_steps_before, last.unbalanced_ratio,
                        last.kinetic, last.moved, 0, run.clock.state.memory.num_loose, means_of_verdict(run),

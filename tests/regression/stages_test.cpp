@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <sstream>
 
 namespace gcpdda::stages_test {
 namespace {
@@ -147,6 +148,54 @@ TEST(StagedRun, EveryStageEndsWithAHistoryRow) {
     fs::remove(checkpoints(folder / name).back());
     EXPECT_EQ(run_gcpdda(5 - ranks, {"restart", name}, folder).exit_code, 0);
     EXPECT_EQ(compare_runs(folder / "whole", folder / name), none);
+  }
+}
+
+std::string two_blocks(const std::string &upper) {
+  return "[run]\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 20e9\npoissons_ratio = 0.2\n"
+         "[joint.default]\nnormal_stiffness = 1e8\n[output]\ninterval = 0.02\n" +
+         testing::block_toml("floor", testing::rectangle({-2.0, -1.0}, {2.0, 0.0}), "fixed = true") +
+         testing::block_toml("upper", testing::rectangle({0.0, 5.0}, {1.0, 6.0}), upper);
+}
+
+/// The value of a column in the last row of history/energy.csv.
+double last_energy(const fs::path &results, const std::string &column) {
+  const std::vector<std::string> rows = testing::lines_of(file_text(results / "history/energy.csv"));
+  std::istringstream names(rows.front());
+  std::istringstream values(rows.back());
+  std::string name;
+  std::string value;
+  while (std::getline(names, name, ',') && std::getline(values, value, ',') && name != column) {
+  }
+  return std::stod(value);
+}
+
+// A block that falls freely for 0.02 s, fewer steps than between two looks, has moved by g t^2/2, to a few
+// terms of the first step; nothing holds its weight.
+TEST(StagedRun, TellsHowItStandsBetweenLooks) {
+  const WorkFolder folder;
+  folder.write("fall.toml", two_blocks("") + "[[stage]]\nkind = \"run\"\nduration = 0.02\n");
+  const Outcome outcome = run_gcpdda(0, {"run", "fall.toml"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const fs::path results = folder / "results/fall";
+  EXPECT_NEAR(testing::summary_number(results, "moved"), 0.5 * 9.81 * 0.02 * 0.02, 2e-5);
+  EXPECT_NEAR(testing::summary_number(results, "unbalanced_ratio"), 1.0, 1e-9);
+  EXPECT_NEAR(last_energy(results, "unbalanced_ratio[-]"), 1.0, 1e-9);
+}
+
+// History and verdict mean the same: fixed points hold, and local damping has no part in the balance.
+TEST(StagedRun, HistoryAndVerdictHaveTheSameRatio) {
+  const WorkFolder folder;
+  for (const std::string fidelity : {"rigid", "deformable"}) {
+    const std::string run = "run.fidelity=" + fidelity;
+    folder.write("hung.toml", two_blocks("fixed_points = [[0.2, 6.0], [0.8, 6.0]]") +
+                                  "[[stage]]\nkind = \"settle\"\nlimit = 4.0\nlocal_damping = 0.8\n");
+    const Outcome hung = run_gcpdda(0, {"run", "hung.toml", "--set", run, "--overwrite"}, folder);
+    ASSERT_EQ(hung.exit_code, 0) << hung.err;
+    const fs::path results = folder / "results/hung";
+    EXPECT_EQ(last_energy(results, "unbalanced_ratio[-]"),
+              std::stod(testing::json_value(results / "summary.json", "unbalanced_ratio")));
+    EXPECT_LE(last_energy(results, "unbalanced_ratio[-]"), 1e-5) << fidelity;
   }
 }
 
