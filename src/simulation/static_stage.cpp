@@ -123,6 +123,11 @@ void open_statics(RunState &run) {
     num_mobile += run.blocks.properties[row].keeps_its_velocity() ? 0 : 1;
   }
   run.communicator.sum(std::span(&num_mobile, 1));
+  if (num_mobile == 0) { // nothing to wait for
+    run.clock.state.verdict = Verdict::settled;
+    run.clock.state.ended = true;
+    return;
+  }
   rules.mass_share = statics::mass_share(num_mobile);
   rules.increments = run.clock.stage().increments;
   rules.all_move = run.clock.stage().is_trial() ? rules.all_move_in_trial : rules.all_move;

@@ -232,6 +232,9 @@ void CoarseGrid::find_pattern(const ContactSprings &springs) {
 
 void CoarseGrid::factorise(const BlockSystem &system, const ContactSprings &springs,
                            const BlockMatrices &matrices, const BlockMatrices &mass) {
+  if (keys_.empty()) { // no block of any rank moves
+    return;
+  }
   find_pattern(springs);
   double largest = 0.0;
   for_parts(system, springs, matrices, mass, [&](std::int64_t, std::int64_t, const Square &square) {
@@ -307,7 +310,7 @@ double CoarseGrid::begin() {
 
 double CoarseGrid::subtract(double times) {
   if (residual_.empty()) {
-    return 0.0; // no block of any rank moves
+    return 0.0;
   }
   std::transform(residual_.begin(), residual_.end(), forces_.begin(), residual_.begin(),
                  [&](double r, std::int64_t q) { return r - times * (static_cast<double>(q) / units); });

@@ -183,6 +183,19 @@ TEST(StagedRun, TellsHowItStandsBetweenLooks) {
   EXPECT_NEAR(last_energy(results, "unbalanced_ratio[-]"), 1.0, 1e-9);
 }
 
+// Without a block that could move there is nothing to wait for.
+TEST(StagedRun, RestsWhereNothingMoves) {
+  const WorkFolder folder;
+  folder.write("gone.toml", two_blocks("") +
+                                "[[stage]]\nkind = \"excavate\"\nblocks = [\"upper\"]\n[[stage]]\nkind = "
+                                "\"settle\"\nlimit = 1.0\n[[stage]]\nkind = \"run\"\nduration = 0.02\n");
+  for (const int ranks : {0, 2}) {
+    const Outcome outcome = run_gcpdda(ranks, {"run", "gone.toml", "--overwrite"}, folder);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("stage 'stage1' settled"), std::string::npos) << outcome.err;
+  }
+}
+
 // History and verdict mean the same: fixed points hold, and local damping has no part in the balance.
 TEST(StagedRun, HistoryAndVerdictHaveTheSameRatio) {
   const WorkFolder folder;
