@@ -187,12 +187,13 @@ TEST(StagedRun, TellsHowItStandsBetweenLooks) {
 TEST(StagedRun, RestsWhereNothingMoves) {
   const WorkFolder folder;
   folder.write("gone.toml", two_blocks("") +
-                                "[[stage]]\nkind = \"excavate\"\nblocks = [\"upper\"]\n[[stage]]\nkind = "
+                                "[[stage]]\nkind = \"run\"\nduration = 0.02\n[[stage]]\nkind = "
+                                "\"excavate\"\nblocks = [\"upper\"]\n[[stage]]\nkind = "
                                 "\"settle\"\nlimit = 1.0\n[[stage]]\nkind = \"run\"\nduration = 0.02\n");
   for (const int ranks : {0, 2}) {
     const Outcome outcome = run_gcpdda(ranks, {"run", "gone.toml", "--overwrite"}, folder);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("stage 'stage1' settled"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("stage 'stage2' settled"), std::string::npos) << outcome.err;
   }
 }
 

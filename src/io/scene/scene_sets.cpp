@@ -3,6 +3,7 @@
 #include "base/edit_distance.hpp"
 #include "io/scene/scene_keys.hpp"
 #include "io/scene/scene_section.hpp"
+#include "io/scene/scene_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -90,17 +91,6 @@ std::optional<Path> split(std::string_view dotted) {
     return std::nullopt;
   }
   return path;
-}
-
-std::string quoted(const std::string &text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      result += '\\';
-    }
-    result += c;
-  }
-  return result + '"';
 }
 
 bool is_bare_word(std::string_view text) {

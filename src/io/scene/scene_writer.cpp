@@ -39,11 +39,7 @@ std::string value_text(const toml::node &node) {
   }
   const auto *string = node.as_string();
   expect(string != nullptr, "scene: a sound scene holds no dates");
-  std::string text = "\"";
-  for (const char c : string->get()) { // no control characters in a sound scene
-    text += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
-  }
-  return text + "\"";
+  return scene_text::quoted(string->get()); // no control characters in a sound scene
 }
 
 class Writer {
@@ -90,7 +86,11 @@ private:
   }
 
   static std::string key_text(const std::string &key) {
-    return key.find('.') == std::string::npos ? key : "\"" + key + "\"";
+    const bool is_bare = std::all_of(key.begin(), key.end(), [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+             c == '-';
+    });
+    return is_bare && !key.empty() ? key : scene_text::quoted(key);
   }
 
   void write_below(const std::string &header, const toml::table &table, const std::string &path) {
@@ -103,6 +103,17 @@ private:
 };
 
 } // namespace
+
+std::string quoted(const std::string &text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      result += '\\';
+    }
+    result += c;
+  }
+  return result + '"';
+}
 
 std::string to_toml(const toml::table &root, const Origins &origins) {
   Writer writer(origins);

@@ -400,6 +400,36 @@ TEST(SceneReader, OutlineThatIsStraightOrThinOrFarAwayIsGood) {
   }
 }
 
+// A law whose name holds a dot is quoted in the path by which a stage sets it.
+TEST(SceneReader, ResolvedTextHoldsQuotedPaths) {
+  const Scene scene = good(R"([run]
+[material.rock]
+density = 2600.0
+[joint.default]
+normal_stiffness = 1e8
+[joint."j.b"]
+friction_angle_deg = 30.0
+[[block]]
+material = "rock"
+fixed = true
+vertices = [[0, 0], [1, 0], [1, 1], [0, 1]]
+edge_joints = ["j.b", "", "", ""]
+[output]
+interval = 0.1
+[[stage]]
+kind = "settle"
+limit = 1.0
+[[stage]]
+kind = "settle"
+limit = 1.0
+set = { "joint.\"j.b\".friction_angle_deg" = 20.0 }
+)");
+  const Scene again = good(scene.resolved);
+  expect_same(scene, again);
+  EXPECT_EQ(scene.resolved, again.resolved);
+  EXPECT_EQ(again.stages.at(1).after->joints.laws.at(1).name, "j.b");
+}
+
 TEST(SceneReader, ResolvedTextReadsBackToTheSameScene) {
   const Sets sets{"run.time_step=auto",
                   "run.gravity=[0.1, -0.30000000000000004]",
