@@ -25,6 +25,8 @@
 #include "simulation/simulation.hpp"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
@@ -143,6 +145,16 @@ ExitCode run(const Communicator &world, const Arguments &arguments) {
   });
 }
 
+/// A default interval follows from the duration or the limits: a run that goes on with other ones keeps it.
+void keep_intervals(const OutputSettings &before, std::vector<std::string> &sets) {
+  const bool sets_output =
+      std::any_of(sets.begin(), sets.end(), [](const std::string &set) { return set.starts_with("output"); });
+  if (!sets.empty() && !sets_output) {
+    sets.push_back(fmt::format("output.interval={}", before.interval));
+    sets.push_back(fmt::format("output.history_interval={}", before.history_interval));
+  }
+}
+
 ExitCode restart(const Communicator &world, Arguments arguments) {
   catch_stop_signal();
   const std::filesystem::path scene = std::filesystem::path(arguments.directory) / "scene.toml";
@@ -154,6 +166,7 @@ ExitCode restart(const Communicator &world, Arguments arguments) {
   Arguments unchanged = arguments;
   unchanged.sets.clear();
   const SceneReading before = read_scene(read_scene_on_root(world, arguments.scene), arguments.scene, {});
+  keep_intervals(before.scene.output, arguments.sets);
   return with_scene(world, has_errors(before.diagnostics) ? unchanged : arguments, [&](const Scene &after) {
     judge_before_work(world, arguments, after);
     RunOptions options;

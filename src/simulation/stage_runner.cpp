@@ -279,6 +279,12 @@ void plan_stage(RunState &run) {
   RunSettings settings = run.scene.run;
   settings.duration = stage.takes_steps() ? stage.duration : run.scene.output.interval;
   run.clock.plan = plan_time(settings, run.scene.output, run.bound.time_step, run.notes);
+  if (run.restored && run.clock.step_count == 0 && !run.clock.state.ended) { // it goes on in the middle
+    const RunFacts &facts = run.restored->facts;
+    run.clock.plan = plan_with_step(
+        facts.time_step, facts.time - run.clock.state.start_time - run.clock.state.iteration.skipped,
+        stage.until_verdict, settings, run.scene.output, run.bound.time_step, run.clock.plan);
+  }
   if (!stage.takes_steps()) {
     run.clock.plan.duration = 0.0;
     run.clock.plan.num_steps = 0;

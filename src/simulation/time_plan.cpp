@@ -94,6 +94,22 @@ TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double 
   return plan;
 }
 
+TimePlan plan_with_step(double time_step, double time, bool may_be_longer, RunSettings run,
+                        const OutputSettings &output, double bound, const TimePlan &planned) {
+  const bool is_given = run.time_step > 0.0;
+  const bool fits = planned.time_step >= time_step && is_whole(time / planned.time_step);
+  if (is_given || !(planned.time_step > 0.0) || fits || time_step > bound * (1.0 + whole)) {
+    return planned;
+  }
+  run.time_step = time_step;
+  if (may_be_longer) {
+    run.duration = output.interval * steps_in(run.duration, output.interval);
+  }
+  Diagnostics unsaid;
+  const TimePlan plan = plan_time(run, output, bound, unsaid);
+  return plan.time_step == time_step ? plan : planned;
+}
+
 std::int64_t step_to_go_on_from(const TimePlan &plan, double time, double time_step, Diagnostics &notes) {
   if (!(plan.time_step > 0.0)) {
     return 0; // a plan with faults of its own

@@ -45,6 +45,13 @@ struct TimePlan {
 ///               have no common step
 TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double bound, Diagnostics &notes);
 
+/// A plan with the step of a run that goes on at a time (s), where the step of `planned` is smaller or none
+/// of its steps falls on that time; `planned` where the old step does not divide the intervals or lies above
+/// the bound.
+/// @param may_be_longer  the duration is a limit, which may end up to an interval later
+TimePlan plan_with_step(double time_step, double time, bool may_be_longer, RunSettings run,
+                        const OutputSettings &output, double bound, const TimePlan &planned);
+
 /// The step at which a run goes on that has reached `time` (s) with steps of `time_step` (s).
 ///
 /// @param notes  gets a warning where the plan's step is another one, an error where none of its steps falls

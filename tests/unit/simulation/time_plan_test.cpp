@@ -144,5 +144,27 @@ TEST(TimePlan, IncommensurableTimesAreAnError) {
   EXPECT_FALSE(p.notes[0].hint.empty());
 }
 
+// A stage of 0.13 s with frames every 0.0013 s goes on to a limit of 5 s: 5 s are no multiple of the
+// interval, and a common part of both would ask for another step. The limit comes at the next frame instead.
+TEST(TimePlan, KeepsTheStepWhereALimitGrows) {
+  const OutputSettings output{0.0013, 0.0013, 0.0, true};
+  constexpr double bound = 4.5e-4;
+  RunSettings run;
+  run.duration = 0.13;
+  Diagnostics notes;
+  const TimePlan before = plan_time(run, output, bound, notes);
+  run.duration = 5.0;
+  const TimePlan planned = plan_time(run, output, bound, notes);
+  ASSERT_NE(planned.time_step, before.time_step);
+  const TimePlan plan = plan_with_step(before.time_step, 0.13, true, run, output, bound, planned);
+  EXPECT_EQ(plan.time_step, before.time_step);
+  EXPECT_NEAR(plan.duration, 5.0, 0.0013);
+  EXPECT_GE(plan.duration, 5.0);
+  EXPECT_EQ(step_to_go_on_from(plan, 0.13, before.time_step, notes), before.num_steps);
+  EXPECT_FALSE(has_errors(notes));
+  const TimePlan shorter = plan_with_step(before.time_step, 0.13, true, run, output, 2e-4, planned);
+  EXPECT_EQ(shorter.time_step, planned.time_step) << "the old step lies above the bound";
+}
+
 } // namespace
 } // namespace gcpdda::time_plan_test
