@@ -5,8 +5,9 @@
 
 namespace gcpdda::blockgen {
 
-EdgeJoints::EdgeJoints(std::span<const Trace> traces, const Aabb &box, double tolerance)
-    : traces_(traces), box_(box), tolerance_(tolerance) {
+EdgeJoints::EdgeJoints(std::span<const Trace> traces, const JointLaws &laws, const Aabb &box,
+                       double tolerance)
+    : traces_(traces), laws_(&laws), box_(box), tolerance_(tolerance) {
   // As many bins as traces: a few of these pass each bin, be they long and crossing or short.
   const double per_side = std::ceil(std::sqrt(static_cast<double>(traces.size())));
   num_columns_ = num_rows_ = static_cast<std::size_t>(std::clamp(per_side, 8.0, 512.0));
@@ -20,12 +21,13 @@ EdgeJoints::EdgeJoints(std::span<const Trace> traces, const Aabb &box, double to
 
 std::int32_t EdgeJoints::of(Vec2 from, Vec2 to) const {
   const Vec2 middle = 0.5 * (from + to);
+  std::int32_t joint = -1;
   for (const std::uint32_t k : bins_[row(middle.y) * num_columns_ + column(middle.x)]) {
     if (lies_on(from, traces_[k]) && lies_on(to, traces_[k])) {
-      return traces_[k].joint;
+      joint = laws_->of_edges(joint, traces_[k].joint, -1);
     }
   }
-  return -1;
+  return joint;
 }
 
 // Into every bin it passes: column by column, with a margin for rounding.

@@ -3,20 +3,23 @@
 // Which joint law each edge of a block has.
 
 #include "blockgen/traces.hpp"
+#include "gcpdda/model/joint_law.hpp"
 
 #include <span>
 #include <vector>
 
 namespace gcpdda::blockgen {
 
-/// Finds the trace an edge of a face comes from.
+/// Finds the traces an edge of a face comes from.
 class EdgeJoints {
 public:
   /// @param traces    what the faces were made of; they must stay
+  /// @param laws      the scene's; they must stay
   /// @param tolerance farther from a trace than this an edge is not of it, m
-  EdgeJoints(std::span<const Trace> traces, const Aabb &box, double tolerance);
+  EdgeJoints(std::span<const Trace> traces, const JointLaws &laws, const Aabb &box, double tolerance);
 
-  /// Joint of the first trace that the edge lies on, -1 if none.
+  /// Joint of the traces that the edge lies on: the weakest that they name (JointLaws::of_edges), -1 where
+  /// they name none.
   [[nodiscard]] std::int32_t of(Vec2 from, Vec2 to) const;
 
 private:
@@ -26,6 +29,7 @@ private:
   [[nodiscard]] bool lies_on(Vec2 p, const Trace &trace) const;
 
   std::span<const Trace> traces_;
+  const JointLaws *laws_;
   Aabb box_;
   double tolerance_;
   std::size_t num_columns_ = 1;

@@ -60,7 +60,8 @@ Diagnostic sliver_fault(const RockRegion &region, Vec2 at) {
 } // namespace
 
 RegionCutter::RegionCutter(const Scene &scene, std::int64_t blocks_per_tile)
-    : region_(scene.region), around_(bounding_box(region_.outline)), origin_(origin_for(around_)) {
+    : region_(scene.region), laws_(scene.joints), around_(bounding_box(region_.outline)),
+      origin_(origin_for(around_)) {
   for (const JointMap &map : region_.maps) { // else it would cut nothing, without a word
     expect(!map.lines.empty(), "a joint map has been read (read_joint_map) before it cuts");
   }
@@ -128,7 +129,7 @@ RegionCutter::Made RegionCutter::make(std::int64_t first, std::int64_t last, Cut
   const Aabb known = share.inflated(2.0 * halo_);
   const std::vector<blockgen::Trace> traces =
       first < last_cut ? blockgen::traces_in(region_, known) : std::vector<blockgen::Trace>();
-  blockgen::TileCutter cutter(region_, origin_, [&](const Aabb &box) {
+  blockgen::TileCutter cutter(region_, laws_, origin_, [&](const Aabb &box) {
     if (!known.holds(box.low) || !known.holds(box.high)) {
       return blockgen::traces_in(region_, box);
     }

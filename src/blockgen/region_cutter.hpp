@@ -29,7 +29,7 @@ class RegionCutter final : public BlockSource {
 public:
   static constexpr std::int64_t usual_blocks_per_tile = 4000;
 
-  /// @param scene  with a region; its materials, joints and region are kept
+  /// @param scene  with a region; its joint laws and region are kept
   explicit RegionCutter(const Scene &scene, std::int64_t blocks_per_tile = usual_blocks_per_tile);
 
   /// The last tile holds the fixed blocks along the sides, if the scene has any.
@@ -48,6 +48,7 @@ private:
   [[nodiscard]] std::vector<SceneBlock> fixed_blocks() const;
 
   RockRegion region_;
+  JointLaws laws_;
   Aabb around_;
   Vec2 origin_; ///< of the coordinates GEOS sees
   std::int64_t num_columns_ = 1;

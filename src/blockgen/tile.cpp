@@ -126,8 +126,8 @@ std::int64_t count_t_junctions(const RockFace &face, const EdgeMap &edges, doubl
 
 } // namespace
 
-TileCutter::TileCutter(const RockRegion &region, Vec2 origin, Gather gather)
-    : region_(&region), origin_(origin), gather_(std::move(gather)),
+TileCutter::TileCutter(const RockRegion &region, const JointLaws &laws, Vec2 origin, Gather gather)
+    : region_(&region), laws_(&laws), origin_(origin), gather_(std::move(gather)),
       around_(moved(bounding_box(region.outline), -origin)), sizes_{region.min_width, region.min_area} {
   const Aabb world = bounding_box(region.outline);
   const double largest = std::max({std::abs(world.low.x), std::abs(world.low.y), std::abs(world.high.x),
@@ -139,7 +139,7 @@ TileCutter::TileCutter(const RockRegion &region, Vec2 origin, Gather gather)
 std::vector<SceneBlock> TileCutter::cut(const Tile &tile, CutReport &report) {
   const Tile local{moved(tile.box, -origin_), tile.halo};
   const Surroundings about = look_around(local, report);
-  const EdgeJoints joints(about.traces, about.seen, rounding_);
+  const EdgeJoints joints(about.traces, *laws_, about.seen, rounding_);
   const EdgeMap edges(about.faces);
   std::vector<const RockFace *> own;
   for (const RockFace &face : about.faces) {

@@ -21,9 +21,10 @@ struct Tile {
 /// Cuts one tile of a region. Inside, coordinates are those of the scene less an origin.
 class TileCutter {
 public:
+  /// @param laws    of the scene; like the region they must stay
   /// @param gather  traces of the region that reach into a box, in the order of traces_in()
   using Gather = std::function<std::vector<Trace>(const Aabb &)>;
-  TileCutter(const RockRegion &region, Vec2 origin, Gather gather);
+  TileCutter(const RockRegion &region, const JointLaws &laws, Vec2 origin, Gather gather);
 
   /// Blocks of the tile, by their smallest vertex.
   std::vector<SceneBlock> cut(const Tile &tile, CutReport &report);
@@ -41,6 +42,7 @@ private:
   [[nodiscard]] SceneBlock block_of(const RockFace &face, const Ring &ring, const EdgeJoints &joints) const;
 
   const RockRegion *region_;
+  const JointLaws *laws_;
   Vec2 origin_;
   Gather gather_;
   Aabb around_;
