@@ -30,6 +30,16 @@ std::int32_t EdgeJoints::of(Vec2 from, Vec2 to) const {
   return joint;
 }
 
+std::vector<std::uint32_t> EdgeJoints::at(Vec2 p) const {
+  std::vector<std::uint32_t> found;
+  for (const std::uint32_t k : bins_[row(p.y) * num_columns_ + column(p.x)]) {
+    if (lies_on(p, traces_[k])) {
+      found.push_back(k);
+    }
+  }
+  return found;
+}
+
 // Into every bin it passes: column by column, with a margin for rounding.
 void EdgeJoints::enter(std::size_t trace) {
   const Trace &t = traces_[trace];

@@ -21,12 +21,14 @@ public:
   /// Joint of the traces that the edge lies on: the weakest that they name (JointLaws::of_edges), -1 where
   /// they name none.
   [[nodiscard]] std::int32_t of(Vec2 from, Vec2 to) const;
+  /// Traces on which a point of the box lies, within the tolerance, in the order of the traces.
+  [[nodiscard]] std::vector<std::uint32_t> at(Vec2 p) const;
+  [[nodiscard]] bool lies_on(Vec2 p, const Trace &trace) const;
 
 private:
   void enter(std::size_t trace);
   [[nodiscard]] std::size_t column(double x) const;
   [[nodiscard]] std::size_t row(double y) const;
-  [[nodiscard]] bool lies_on(Vec2 p, const Trace &trace) const;
 
   std::span<const Trace> traces_;
   const JointLaws *laws_;

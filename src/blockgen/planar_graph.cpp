@@ -178,6 +178,11 @@ std::vector<PlaneFace> PlanarGraph::faces(std::span<const Trace> segments) const
   return maker.faces_of(maker.collection(GEOS_MULTILINESTRING, std::move(lines)));
 }
 
+int PlanarGraph::side(const Trace &segment, Vec2 p) const {
+  return GEOSOrientationIndex_r(context_->handle, segment.from.x, segment.from.y, segment.to.x, segment.to.y,
+                                p.x, p.y);
+}
+
 Vec2 PlanarGraph::point_inside(const PlaneFace &face) const {
   const Maker maker(context_->handle, context_->trouble);
   return maker.point_inside(maker.polygon(face));

@@ -31,6 +31,9 @@ public:
 
   /// All bounded faces; dangling segments bound none.
   [[nodiscard]] std::vector<PlaneFace> faces(std::span<const Trace> segments) const;
+  /// On which side of the line through a segment a point lies, without a rounding error: 1 on the left, -1 on
+  /// the right, 0 on the line.
+  [[nodiscard]] int side(const Trace &segment, Vec2 p) const;
   /// A point inside.
   [[nodiscard]] Vec2 point_inside(const PlaneFace &face) const;
   /// Faces that share whole edges, as one.

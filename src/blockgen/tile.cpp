@@ -1,6 +1,7 @@
 #include "blockgen/tile.hpp"
 
 #include "blockgen/necks.hpp"
+#include "blockgen/trace_ends.hpp"
 #include "geometry/polygon.hpp"
 
 #include <algorithm>
@@ -178,7 +179,13 @@ TileCutter::Surroundings TileCutter::look_around(const Tile &tile, CutReport &re
     Surroundings about;
     about.seen = tile.box.inflated(halo);
     about.traces = traces_in(about.seen);
-    about.faces = rock_in(about.traces);
+    std::vector<Trace> lines = about.traces;
+    for (const Trace &bridge :
+         bridges(graph_, about.traces, EdgeJoints(about.traces, *laws_, about.seen, rounding_), about.seen,
+                 rounding_)) {
+      lines.push_back(bridge);
+    }
+    about.faces = rock_in(lines);
     const bool sees_all = holds(about.seen, around_);
     bool is_enough = true;
     std::int64_t slivers = 0;

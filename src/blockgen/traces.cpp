@@ -52,7 +52,7 @@ public:
 
   void add_ring(const std::vector<Vec2> &outline, std::int32_t joint, bool always) {
     for (std::size_t k = 0; k < outline.size(); ++k) {
-      const Trace edge{outline[k], outline[(k + 1) % outline.size()], joint};
+      const Trace edge{outline[k], outline[(k + 1) % outline.size()], joint, true};
       if (always || edge.meets(box_)) {
         traces_.push_back(edge);
       }

@@ -15,6 +15,7 @@ struct Trace {
   Vec2 from;
   Vec2 to;
   std::int32_t joint = -1; ///< index into JointLaws::laws, -1: by the materials
+  bool is_side = false;    ///< of the region, an opening or a layer
 
   [[nodiscard]] Aabb box() const;
   /// It has a point in the box.

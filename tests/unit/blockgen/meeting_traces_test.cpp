@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 namespace gcpdda::meeting_traces_test {
 namespace {
@@ -59,6 +61,95 @@ TEST(MeetingTraces, OfNamedLawsTheWeakerHoldsInAnyOrder) {
   EXPECT_EQ(laws_within(all_blocks(scene)), Laws{1});
   scene.region.faults = {{"b", 2, line, {}}, {"a", 1, line, {}}};
   EXPECT_EQ(laws_within(all_blocks(scene)), Laws{1});
+}
+
+Vec2 between(Vec2 a, Vec2 b, double share) {
+  return a + share * (b - a);
+}
+
+bool cross_inside(const std::vector<Vec2> &a, const std::vector<Vec2> &b) {
+  const auto parts = [](const std::vector<Vec2> &line, const std::vector<Vec2> &other) {
+    const Vec2 along = line[1] - line[0];
+    return cross(along, other[0] - line[0]) * cross(along, other[1] - line[0]) < 0.0;
+  };
+  return parts(a, b) && parts(b, a);
+}
+
+/// Faults from sides of a slanted region to other sides, and from faults to sides, with ends that rounding
+/// puts on either side of where they end.
+Scene scene_of_faults(std::mt19937 &random, Vec2 origin) {
+  Scene scene = scene_with_laws();
+  std::vector<Vec2> &outline = scene.region.outline;
+  outline = {{0.0, 0.3}, {9.1, -1.7}, {11.3, 7.9}, {1.7, 9.1}};
+  for (Vec2 &p : outline) {
+    p += origin;
+  }
+  // Many blocks are expected of this set, which makes tiles small, and none of its joints reaches in.
+  JointSet outside = testing::through_going(0.0, 1.0, 1);
+  outside.within = {outline[1], outline[1] + Vec2{1.0, -1.0}, outline[1] + Vec2{1.0, -0.5}};
+  scene.region.joint_sets = {outside};
+  std::uniform_real_distribution<double> share(0.1, 0.9);
+  const auto on_side = [&](std::size_t k) {
+    return between(outline[k], outline[(k + 1) % 4], share(random));
+  };
+  std::vector<FaultLine> &faults = scene.region.faults;
+  for (std::size_t i = 0; i < 8; ++i) {
+    faults.push_back({"", 1, {on_side(i % 4), on_side((i + 1 + i / 4) % 4)}, {}});
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::vector<Vec2> &other = faults[i].points;
+    faults.push_back({"", 2, {between(other[0], other[1], share(random)), on_side((i + 2) % 4)}, {}});
+  }
+  return scene;
+}
+
+// Each fault that ends at others or at the outline adds a block, and one more at each crossing.
+TEST(MeetingTraces, FaultsThatEndAtOthersToWithinRoundingCut) {
+  std::mt19937 random(7);
+  for (const Vec2 origin : {Vec2{}, Vec2{3.0e5, 5.2e6}}) {
+    for (int trial = 0; trial < 40; ++trial) {
+      const Scene scene = scene_of_faults(random, origin);
+      const std::vector<FaultLine> &faults = scene.region.faults;
+      std::size_t expected = 1 + faults.size();
+      for (std::size_t i = 0; i < faults.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+          const bool ends_there = i >= 8 && k == i - 8;
+          expected += !ends_there && cross_inside(faults[i].points, faults[k].points) ? 1 : 0;
+        }
+      }
+      const std::vector<SceneBlock> blocks = all_blocks(scene);
+      EXPECT_EQ(blocks.size(), expected) << "trial " << trial;
+      // A vertex may move by 64 roundings of the coordinate (blockgen/tile.cpp) on a boundary of some 200 m.
+      const double rounding = 1.5e-14 * (10.0 + origin.y);
+      EXPECT_NEAR(testing::total_area(blocks), signed_area(scene.region.outline), 200.0 * rounding);
+      const RegionCutter tiled(scene, 1);
+      EXPECT_GT(tiled.num_tiles(), 4);
+      std::vector<SceneBlock> parts = tiled.make(0, tiled.num_tiles()).blocks;
+      const auto is_before = [](const SceneBlock &a, const SceneBlock &b) {
+        return std::pair(a.vertices[0].x, a.vertices[0].y) < std::pair(b.vertices[0].x, b.vertices[0].y);
+      };
+      std::sort(parts.begin(), parts.end(), is_before);
+      EXPECT_TRUE(std::equal(parts.begin(), parts.end(), blocks.begin(), blocks.end(), testing::same))
+          << "trial " << trial;
+    }
+  }
+}
+
+// A set that is kept to a layer ends at the outline of the layer.
+TEST(MeetingTraces, ASetWithinALayerCutsTheWholeLayer) {
+  Scene scene = scene_with_laws();
+  const std::vector<Vec2> layer{{-1.0, 2.3}, {11.0, 4.1}, {11.0, 7.7}, {-1.0, 5.9}};
+  scene.region.layers = {{-1, 1, layer, {}}};
+  const auto num_in_layer = [&] {
+    const std::vector<SceneBlock> blocks = all_blocks(scene);
+    return std::count_if(blocks.begin(), blocks.end(), [](const SceneBlock &b) { return b.material == 1; });
+  };
+  for (const double dip : {51.37, 63.7, 77.4, 95.21}) {
+    scene.region.joint_sets = {testing::through_going(dip, 0.7, 1)};
+    const auto through = num_in_layer();
+    scene.region.joint_sets[0].within = layer;
+    EXPECT_EQ(num_in_layer(), through) << dip;
+  }
 }
 
 } // namespace
