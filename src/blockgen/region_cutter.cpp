@@ -169,7 +169,9 @@ Aabb RegionCutter::tile_box(std::int64_t tile) const {
           {around_.low.x + (column + 1.0) * width, around_.low.y + (row + 1.0) * height}};
 }
 
-// Along the part of each side that the region touches; those below and above reach over the corners.
+// Along the part of each side that the region touches; those below and above reach over the corners. At a
+// side that it touches in one vertex, blocks on the left and right reach beyond the vertex, but not into
+// those.
 std::vector<SceneBlock> RegionCutter::fixed_blocks() const {
   const Aabb box = bounding_box(region_.outline);
   const double t = region_.fixed_thickness;
@@ -193,6 +195,10 @@ std::vector<SceneBlock> RegionCutter::fixed_blocks() const {
     }
     return std::pair(low, high);
   };
+  const auto upright = [&](std::pair<double, double> part) {
+    const auto [low, high] = part;
+    return low < high ? part : std::pair(std::max(low - t, box.low.y), std::min(high + t, box.high.y));
+  };
   const auto x_of = [](Vec2 p) { return p.x; };
   const auto y_of = [](Vec2 p) { return p.y; };
   if (is_fixed(Side::bottom)) {
@@ -200,11 +206,11 @@ std::vector<SceneBlock> RegionCutter::fixed_blocks() const {
     add({low - t, box.low.y - t}, {high + t, box.low.y});
   }
   if (is_fixed(Side::left)) {
-    const auto [low, high] = touched([&](Vec2 p) { return p.x == box.low.x; }, y_of);
+    const auto [low, high] = upright(touched([&](Vec2 p) { return p.x == box.low.x; }, y_of));
     add({box.low.x - t, low}, {box.low.x, high});
   }
   if (is_fixed(Side::right)) {
-    const auto [low, high] = touched([&](Vec2 p) { return p.x == box.high.x; }, y_of);
+    const auto [low, high] = upright(touched([&](Vec2 p) { return p.x == box.high.x; }, y_of));
     add({box.high.x, low}, {box.high.x + t, high});
   }
   if (is_fixed(Side::top)) {

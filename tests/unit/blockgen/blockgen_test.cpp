@@ -334,6 +334,20 @@ TEST(RegionCutter, FixedBlocksLieAlongTheSides) {
   }
 }
 
+TEST(RegionCutter, FixedBlocksHoldASingleVertex) {
+  Scene scene = region_scene({{0.0, 0.0}, {10.0, -2.0}, {9.0, 6.0}});
+  scene.region.fixed = {true, true, true, true};
+  const std::vector<SceneBlock> blocks = all_blocks(scene);
+  ASSERT_EQ(blocks.size(), 5U);
+  const std::vector<std::vector<Vec2>> expected{{{9.0, -3.0}, {11.0, -3.0}, {11.0, -2.0}, {9.0, -2.0}},
+                                                {{-1.0, -1.0}, {0.0, -1.0}, {0.0, 1.0}, {-1.0, 1.0}},
+                                                {{10.0, -2.0}, {11.0, -2.0}, {11.0, -1.0}, {10.0, -1.0}},
+                                                {{8.0, 6.0}, {10.0, 6.0}, {10.0, 7.0}, {8.0, 7.0}}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(blocks[k + 1].vertices, expected[k]);
+  }
+}
+
 // Far from the origin nothing is lost but the digits of the coordinates.
 TEST(RegionCutter, AFarRegionKeepsItsVertices) {
   const std::vector<Vec2> outline{
