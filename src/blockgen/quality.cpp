@@ -46,7 +46,9 @@ void BlockQuality::add(std::int64_t id, const SceneBlock &block) {
   areas.add(moments.area);
   all_areas.push_back(moments.area);
   for (std::size_t k = 0; k < block.vertices.size(); ++k) {
-    edges.add(norm(block.vertices[(k + 1) % block.vertices.size()] - block.vertices[k]));
+    const double length = norm(block.vertices[(k + 1) % block.vertices.size()] - block.vertices[k]);
+    edges.add(length);
+    perimeter.add(length);
   }
   const auto enter = [&](std::vector<PoorBlock> &worst, double value) {
     const PoorBlock poor{id, value, moments.centroid};

@@ -56,7 +56,8 @@ struct BlockQuality {
   std::int64_t num_non_convex = 0;
   std::int64_t num_needles = 0;
   std::int64_t num_slivers = 0;
-  ExactSum area; ///< m2
+  ExactSum area;      ///< m2
+  ExactSum perimeter; ///< m
   PowerHistogram areas;
   PowerHistogram edges;
   std::vector<double> all_areas;    ///< for the median

@@ -114,6 +114,10 @@ double RegionCutter::expected_seconds() const {
   return per_block * expected_blocks() + per_pair * tiles * rounds * pairs;
 }
 
+double RegionCutter::rounding() const {
+  return blockgen::rounding_of(region_);
+}
+
 RegionCutter::Made RegionCutter::make(std::int64_t first, std::int64_t last) const {
   CutReport report;
   return make(first, last, report);

@@ -40,6 +40,8 @@ public:
   /// The same, with what had to be mended.
   [[nodiscard]] Made make(std::int64_t first, std::int64_t last, CutReport &report) const;
 
+  /// How far rounding may move the outline of a block, m.
+  [[nodiscard]] double rounding() const;
   [[nodiscard]] std::int64_t num_columns() const { return num_columns_; }
   [[nodiscard]] std::int64_t num_rows() const { return num_rows_; }
 

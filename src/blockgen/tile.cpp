@@ -127,15 +127,18 @@ std::int64_t count_t_junctions(const RockFace &face, const EdgeMap &edges, doubl
 
 } // namespace
 
-TileCutter::TileCutter(const RockRegion &region, const JointLaws &laws, Vec2 origin, Gather gather)
-    : region_(&region), laws_(&laws), origin_(origin), gather_(std::move(gather)),
-      around_(moved(bounding_box(region.outline), -origin)), sizes_{region.min_width, region.min_area} {
+double rounding_of(const RockRegion &region) {
   const Aabb world = bounding_box(region.outline);
   const double largest = std::max({std::abs(world.low.x), std::abs(world.low.y), std::abs(world.high.x),
                                    std::abs(world.high.y), norm(world.extent())});
   constexpr double digits = 64.0 * std::numeric_limits<double>::epsilon();
-  rounding_ = digits * largest;
+  return digits * largest;
 }
+
+TileCutter::TileCutter(const RockRegion &region, const JointLaws &laws, Vec2 origin, Gather gather)
+    : region_(&region), laws_(&laws), origin_(origin), gather_(std::move(gather)),
+      around_(moved(bounding_box(region.outline), -origin)),
+      rounding_(rounding_of(region)), sizes_{region.min_width, region.min_area} {}
 
 std::vector<SceneBlock> TileCutter::cut(const Tile &tile, CutReport &report) {
   const Tile local{moved(tile.box, -origin_), tile.halo};

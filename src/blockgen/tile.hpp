@@ -18,6 +18,9 @@ struct Tile {
   double halo = 0.0;
 };
 
+/// How far rounding may move the outline of a block, m.
+double rounding_of(const RockRegion &region);
+
 /// Cuts one tile of a region. Inside, coordinates are those of the scene less an origin.
 class TileCutter {
 public:
@@ -46,7 +49,7 @@ private:
   Vec2 origin_;
   Gather gather_;
   Aabb around_;
-  double rounding_; ///< of coordinates, m
+  double rounding_; ///< rounding_of(region)
   SliverSizes sizes_;
   PlanarGraph graph_;
 };

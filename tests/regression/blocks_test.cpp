@@ -147,6 +147,30 @@ TEST_F(Blocks, FaultsOfAMapHaveItsLines) {
   EXPECT_EQ(listing(folder_.path()), before);
 }
 
+// Coordinates of a map are rounded by 1e-9 m.
+TEST_F(Blocks, ASampleAtMapCoordinatesIsSound) {
+  folder_.write("sample.toml", R"([run]
+duration = 1
+[material.rock]
+density = 2600
+[joint.default]
+normal_stiffness = 1e9
+[region]
+material = "rock"
+polygon = [[500123, 5200456], [500124, 5200456], [500124, 5200457]]
+[[joint_set]]
+dip_deg = 47
+spacing = 0.1
+origin = [500123, 5200456]
+[[joint_set]]
+dip_deg = 101
+spacing = 0.1
+origin = [500123, 5200456]
+)");
+  const Outcome outcome = run_gcpdda(2, {"blocks", "sample.toml"}, folder_);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
 TEST_F(Blocks, AMissingMapIsFileTrouble) {
   const Outcome outcome =
       run_gcpdda(2, {"blocks", "scene.toml", "--set", "joint_map=[{file='none.csv'}]"}, folder_);
