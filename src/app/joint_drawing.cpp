@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <fcntl.h>
@@ -203,10 +202,7 @@ private:
 } // namespace
 
 bool is_drawing(const std::string &path) {
-  std::string end = fs::path(path).extension().string();
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return end == ".dxf";
+  return lower_case(fs::path(path).extension().string()) == ".dxf";
 }
 
 DrawnLines lines_of_drawing(const JointMap &map) {

@@ -20,6 +20,15 @@ inline std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
 }
 
+/// With small letters for the capital ones of ASCII.
+inline std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char &c : result) {
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return result;
+}
+
 /// Text of a file as it may stand in a message.
 inline std::string printable(std::string_view text) {
   std::string result(text.substr(0, 40));

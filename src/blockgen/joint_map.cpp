@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -93,6 +94,80 @@ private:
   bool has_rows_ = false;
 };
 
+/// Rewrites what RFC 7946 allows and the reader of GEOS refuses: coordinates beyond the second, and features
+/// without a geometry, which become features with an empty one. Only the latter move what follows in a line.
+class GeoJsonForGeos {
+public:
+  explicit GeoJsonForGeos(std::string text) : text_(std::move(text)) {}
+
+  std::string rewritten() {
+    std::size_t bracket = std::string::npos; // that opened last
+    for (std::size_t at = 0; at < text_.size(); ++at) {
+      switch (text_[at]) {
+      case '"': {
+        const std::size_t end = end_of_string(at);
+        if (std::string_view(text_).substr(at, end - at) == "\"geometry\"") {
+          fill_geometry(end);
+        }
+        bracket = std::string::npos;
+        at = end - 1;
+        break;
+      }
+      case '[':
+        bracket = at;
+        break;
+      case ']':
+        if (bracket != std::string::npos) {
+          blank_beyond_two(bracket, at);
+        }
+        bracket = std::string::npos;
+        break;
+      default:
+        break;
+      }
+    }
+    return std::move(text_);
+  }
+
+private:
+  /// One past the closing quote.
+  [[nodiscard]] std::size_t end_of_string(std::size_t at) const {
+    for (++at; at < text_.size() && text_[at] != '"'; ++at) {
+      at += text_[at] == '\\' ? 1 : 0;
+    }
+    return std::min(at + 1, text_.size());
+  }
+
+  /// @param at  one past the key
+  void fill_geometry(std::size_t at) {
+    constexpr const char *space = " \t\r\n";
+    constexpr std::string_view null = "null";
+    const std::size_t colon = text_.find_first_not_of(space, at);
+    if (colon == std::string::npos || text_[colon] != ':') {
+      return;
+    }
+    const std::size_t value = text_.find_first_not_of(space, colon + 1);
+    if (value != std::string::npos && text_.compare(value, null.size(), null) == 0) {
+      text_.replace(value, null.size(), R"({"type":"GeometryCollection","geometries":[]})");
+    }
+  }
+
+  /// Of an array that is numbers alone, by spaces, so that all else stays where it is.
+  void blank_beyond_two(std::size_t open, std::size_t close) {
+    const std::string_view array = std::string_view(text_).substr(open + 1, close - open - 1);
+    const std::size_t second = array.find(',', array.find(',') + 1);
+    const bool has_more = array.find(',') != std::string_view::npos && second != std::string_view::npos;
+    if (has_more && array.find_first_not_of("0123456789+-.eE, \t\r\n") == std::string_view::npos &&
+        !trimmed(array.substr(array.rfind(',') + 1)).empty()) {
+      for (std::size_t at = open + 1 + second; at < close; ++at) {
+        text_[at] = text_[at] == '\n' ? '\n' : ' ';
+      }
+    }
+  }
+
+  std::string text_;
+};
+
 class GeoJsonReader {
 public:
   explicit GeoJsonReader(const std::string &path) : path_(&path), handle_(GEOS_init_r()) {
@@ -105,7 +180,8 @@ public:
   GeoJsonReader(const GeoJsonReader &) = delete;
   GeoJsonReader &operator=(const GeoJsonReader &) = delete;
 
-  JointMapReading read(const std::string &text) {
+  JointMapReading read(std::string_view given) {
+    const std::string text = GeoJsonForGeos(std::string(given)).rewritten();
     GEOSGeoJSONReader *reader = GEOSGeoJSONReader_create_r(handle_);
     GEOSGeometry *geometry = GEOSGeoJSONReader_readGeometry_r(handle_, reader, text.c_str());
     GEOSGeoJSONReader_destroy_r(handle_, reader);
@@ -186,8 +262,9 @@ private:
 } // namespace
 
 JointMapReading read_joint_map(std::string_view text, const std::string &path) {
-  if (path.ends_with(".geojson") || path.ends_with(".json")) {
-    return GeoJsonReader(path).read(std::string(text));
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+  if (extension == ".geojson" || extension == ".json") {
+    return GeoJsonReader(path).read(text);
   }
   return CsvReader(path).read(text);
 }

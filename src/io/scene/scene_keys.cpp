@@ -143,7 +143,7 @@ constexpr Key keys_after_joints[] = {
   {"fault[].joint", Kind::name, optional, any, "", "<by the materials>", "\"fault\"", "Contact law, one of [joint.NAME]."},
 
   {"joint_map[]", Kind::table_list, optional, any, "", "", "[[joint_map]]", "Mapped joint traces from a file."},
-  {"joint_map[].file", Kind::text, required, any, "", "", "\"traces.csv\"", "Path from the folder of the scene file: CSV with rows trace,x,y (rows of one trace follow each other), or .geojson with LineStrings and MultiLineStrings in m, or a .dxf drawing in m, which GDAL's ogr2ogr (Debian package gdal-bin) converts at the start of each command but restart."},
+  {"joint_map[].file", Kind::text, required, any, "", "", "\"traces.csv\"", "Path from the folder of the scene file: CSV with rows trace,x,y (rows of one trace follow each other), or .geojson with LineStrings and MultiLineStrings in m, whose heights are left out, or a .dxf drawing in m, which GDAL's ogr2ogr (Debian package gdal-bin) converts at the start of each command but restart."},
   {"joint_map[].layer", Kind::text, optional, any, "", "<all layers>", "\"J1\"", "Layer of the drawing whose lines are read; a table for each layer gives each its contact law. One without lines is a fault."},
   {"joint_map[].joint", Kind::name, optional, any, "", "<by the materials>", "\"mapped\"", "Contact law, one of [joint.NAME]."},
 

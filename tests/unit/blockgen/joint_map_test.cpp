@@ -55,6 +55,29 @@ TEST(JointMap, GeoJsonHoldsLinesInFeatures) {
       (Lines{{{0.0, 1.0}, {2.0, 3.5}}, {{1.0, 1.0}, {2.0, 2.0}, {3.0, 1.0}}, {{9.0, 9.0}, {8.0, 8.0}}}));
 }
 
+// RFC 7946 allows both; sections are plane.
+TEST(JointMap, HeightsAndFeaturesWithoutGeometryAreLeftOut) {
+  const JointMapReading reading = read_joint_map(R"({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"no \"geometry\"": null, "list": [1, 2, 3]}, "geometry" : null},
+    {"type": "Feature", "properties": null, "geometry":
+      {"type": "LineString", "coordinates": [[0, 1, 105.5], [2, 3.5, -1e2], [4, 4.5]]}},
+    {"type": "Feature", "properties": null, "geometry":
+      {"type": "MultiLineString", "coordinates": [[[1, 1, 7, 8], [2, 2, 7,
+        8]], [[9, 9, 0], [8, 8, 0]]]}}]})",
+                                                 "m.geojson");
+  EXPECT_EQ(texts(reading.faults), std::vector<std::string>());
+  EXPECT_EQ(
+      reading.lines,
+      (Lines{{{0.0, 1.0}, {2.0, 3.5}, {4.0, 4.5}}, {{1.0, 1.0}, {2.0, 2.0}}, {{9.0, 9.0}, {8.0, 8.0}}}));
+}
+
+TEST(JointMap, ExtensionsMayHaveCapitals) {
+  const char *text = R"({"type": "LineString", "coordinates": [[0, 1], [2, 3.5]]})";
+  for (const char *path : {"m.GEOJSON", "m.GeoJSON", "m.JSON"}) {
+    EXPECT_EQ(read_joint_map(text, path).lines, (Lines{{{0.0, 1.0}, {2.0, 3.5}}})) << path;
+  }
+}
+
 TEST(JointMap, BrokenGeoJsonHasAPlace) {
   const JointMapReading reading =
       read_joint_map("{\"type\": \"LineString\",\n  \"coordinates\": [[0, 1], [2 3]]}", "m.geojson");
@@ -62,6 +85,12 @@ TEST(JointMap, BrokenGeoJsonHasAPlace) {
   EXPECT_EQ(reading.faults[0].where.line, 2);
   EXPECT_NEAR(reading.faults[0].where.column, 31, 2); // the parser names the end of what it could not use
   EXPECT_EQ(reading.faults[0].what, "not valid GeoJSON");
+  // A height moves nothing.
+  const JointMapReading high =
+      read_joint_map("{\"type\": \"LineString\",\n  \"coordinates\": [[0, 1, 5], [2 3]]}", "m.geojson");
+  ASSERT_EQ(high.faults.size(), 1U);
+  EXPECT_EQ(high.faults[0].where.line, 2);
+  EXPECT_EQ(high.faults[0].where.column, reading.faults[0].where.column + 3);
 }
 
 TEST(JointMap, GeoJsonWithoutLinesIsAFault) {
