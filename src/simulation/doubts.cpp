@@ -2,6 +2,7 @@
 
 #include "base/edit_distance.hpp"
 #include "contact/stiffness_bound.hpp"
+#include "geometry/holds_point.hpp"
 #include "geometry/mean_width.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/id_slabs.hpp"
@@ -75,36 +76,58 @@ struct Gap {
   std::int64_t higher = -1;
 };
 
-/// Width of the gap between an edge and one that faces it; infinite where it does not.
-double gap_between(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-  constexpr double none = std::numeric_limits<double>::infinity();
+/// What lies between two edges that face each other.
+struct Between {
+  double width = std::numeric_limits<double>::infinity(); ///< m; infinite where they do not
+  Vec2 middle;
+};
+
+Between between(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   constexpr double parallel = 0.9994; // cos 2 degrees
   const double length = norm(b - a);
   const double other = norm(d - c);
   const Vec2 along = (1.0 / length) * (b - a);
   if (dot(along, d - c) > -parallel * other) {
-    return none;
+    return {};
   }
+  const double end = dot(c - a, along);
   const double from = std::max(0.0, dot(d - a, along));
-  const double to = std::min(length, dot(c - a, along));
+  const double to = std::min(length, end);
   if (to - from < 0.5 * std::min(length, other)) {
-    return none;
+    return {};
   }
   const Vec2 outwards = -perp(along); // counter-clockwise: the interior lies on the left
   const double first = dot(c - a, outwards);
   const double second = dot(d - a, outwards);
-  return std::min(first, second) > 0.0 ? std::max(first, second) : none;
+  if (std::min(first, second) <= 0.0) {
+    return {};
+  }
+  const double at = 0.5 * (from + to);
+  const double across = first + (second - first) * (end - at) / dot(c - d, along);
+  return {std::max(first, second), a + at * along + (0.5 * across) * outwards};
 }
 
-double gap_between(std::span<const Vec2> first, std::span<const Vec2> second) {
-  double gap = std::numeric_limits<double>::infinity();
+/// Between the edges of two blocks that are nearest to each other.
+Between between(std::span<const Vec2> first, std::span<const Vec2> second) {
+  Between nearest;
   for (std::size_t i = 0; i < first.size(); ++i) {
     for (std::size_t k = 0; k < second.size(); ++k) {
-      gap = std::min(gap, gap_between(first[i], first[(i + 1) % first.size()], second[k],
-                                      second[(k + 1) % second.size()]));
+      const Between edges =
+          between(first[i], first[(i + 1) % first.size()], second[k], second[(k + 1) % second.size()]);
+      nearest = edges.width < nearest.width ? edges : nearest;
     }
   }
-  return gap;
+  return nearest;
+}
+
+/// For each block the candidates for contact with it.
+std::vector<std::vector<std::size_t>> neighbours_of_blocks(const RunState &run) {
+  std::vector<std::vector<std::size_t>> neighbours(run.blocks.properties.size());
+  for (const CandidatePair &pair : run.neighbours.candidates.pairs) {
+    neighbours[pair.lower.value].push_back(pair.higher.value);
+    neighbours[pair.higher.value].push_back(pair.lower.value);
+  }
+  return neighbours;
 }
 
 /// Bricks of one wall or pyramid stand apart where it says so.
@@ -375,6 +398,15 @@ void doubt_gaps(RunState &run) {
   constexpr double rounding = 1e-6;
   std::vector<Gap> mine(1);
   std::int64_t count = 0;
+  std::vector<std::vector<std::size_t>> near; // made for the first gap
+  const auto holds_block = [&](std::size_t a, std::size_t b, Vec2 place) {
+    if (near.empty()) {
+      near = neighbours_of_blocks(run);
+    }
+    return std::any_of(near[a].begin(), near[a].end(), [&](std::size_t row) {
+      return row != b && holds_point(current_vertices(run.blocks, row), place);
+    });
+  };
   for (std::size_t k = 0; k < run.neighbours.candidates.pairs.size(); ++k) {
     const CandidatePair &pair = run.neighbours.candidates.pairs[k];
     const std::size_t a = pair.lower.value;
@@ -386,12 +418,12 @@ void doubt_gaps(RunState &run) {
     const BlockProperties &first = run.blocks.properties[a];
     const BlockProperties &second = run.blocks.properties[b];
     const double size = std::sqrt(std::min(first.area, second.area));
-    const double gap = gap_between(current_vertices(run.blocks, a), current_vertices(run.blocks, b));
-    if (gap > rounding * size && gap <= widest_share * size &&
-        !is_given_gap(run.scene, first.id.value, second.id.value)) {
+    const Between gap = between(current_vertices(run.blocks, a), current_vertices(run.blocks, b));
+    if (gap.width > rounding * size && gap.width <= widest_share * size &&
+        !is_given_gap(run.scene, first.id.value, second.id.value) && !holds_block(a, b, gap.middle)) {
       ++count;
-      const Gap found{gap, first.id.value, second.id.value};
-      mine[0] = gap > mine[0].width ? found : mine[0];
+      const Gap found{gap.width, first.id.value, second.id.value};
+      mine[0] = gap.width > mine[0].width ? found : mine[0];
     }
   }
   count = total(run.communicator, count);

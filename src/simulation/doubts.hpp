@@ -14,7 +14,7 @@ void doubt_blocks(RunState &run, std::span<const SceneBlock> slab);
 /// Why pairs of blocks have been refused for their overlap, and which width would merge the thin ones.
 /// Collective.
 void explain_slivers(RunState &run);
-/// Blocks that face each other across a narrow gap. Collective.
+/// Blocks that face each other across a narrow gap with no block in it. Collective.
 void doubt_gaps(RunState &run);
 /// Monitors of blocks that a stage excavates. Collective.
 void doubt_monitors(RunState &run);

@@ -131,6 +131,13 @@ TEST(PlausibleBlocks, ThatAreDrawnAsTouchingTouch) {
   EXPECT_EQ(warnings_of(scene_of(two_blocks(wall))), std::vector<std::string>{});
 }
 
+TEST(PlausibleBlocks, TouchWhereAThinBlockFillsTheGap) {
+  const std::string thin = block_toml("thin", rectangle({0.0, 1.0}, {0.7, 1.003}));
+  const std::string upper = block_toml("upper", rectangle({0.0, 1.003}, {1.0, 2.0}));
+  EXPECT_EQ(warnings_of(scene_of(two_blocks(thin + upper))), std::vector<std::string>{});
+  expect_one(warnings_of(scene_of(two_blocks(upper))), "face each other across a gap of 0.003 m");
+}
+
 TEST(PlausibleBlocks, FeelTheirLoads) {
   Scene scene = scene_of(two_blocks(""));
   scene.blocks[1].loads = {{{0.5, 1.0}, {0.0, -20.0}}};
