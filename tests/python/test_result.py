@@ -98,6 +98,36 @@ def test_strength_used_is_one_where_contacts_slip(opening):
     assert used[state == "stick"].mean() < 0.6
 
 
+def bonded_block(shear, corner=-0.5):
+    """A block of 1 m on a floor to which it is bonded, under 1 MN/m and a shear load in N/m; the floor has a corner of
+    180 degrees at x = `corner`."""
+    scene = gcpdda.Scene(name="bonded", fidelity="rigid")
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=35, cohesion=2e5, tension=1e5,
+                residual_friction_angle_deg=30)
+    scene.block("floor", [[-1, -1], [2, -1], [2, 0], [corner, 0], [-1, 0]], material="rock", fixed=True)
+    press = {"point": [0.5, 1.0], "force": [0.0, -1e6]}
+    scene.block("block", [[0, 0], [1, 0], [1, 1], [0, 1]], material="rock", load=[press])
+    scene.stage("press", "settle", limit=2.0)
+    scene.stage("shear", "settle", limit=2.0,
+                set={"block.block.load": [press, {"point": [0.5, 0.0], "force": [shear, 0.0]}]})
+    return scene
+
+
+@pytest.mark.parametrize("corner, bonds", [(-0.5, 1), (0.4, 2)])
+def test_bonds_use_the_friction_of_what_presses_on_them(tmp_path, corner, bonds):
+    """T/(N tan phi + c l) of the joint, whose bonds carry T, one on each edge of the floor, and whose touching edges
+    carry N in one region."""
+    scene = bonded_block(5e5, corner)
+    frame = gcpdda.run(scene, ranks=1, out=tmp_path / "bonded").frame("last")
+    is_bond = (frame.contacts["state"] == "bond").to_numpy()
+    normal = 1e6 + 2600 * 9.81
+    expected = 5e5 / (normal * np.tan(np.radians(35.0)) + 2e5)
+    used = strength_used(frame)
+    assert is_bond.sum() == bonds and (~is_bond).sum() == 1
+    assert used == pytest.approx(expected, rel=2e-3)  # the block turns a little: not all edges bear the mean pressure
+
+
 def test_strength_follows_the_stages_and_the_trial(opening, search):
     from gcpdda.joints import strength_laws
     scene = dict(opening.scene)

@@ -128,7 +128,8 @@ class Frame:
     @functools.cached_property
     def contacts(self):
         """One row a contact region: the two blocks, joint law, state, forces in N/m, overlap and accumulated slip in
-        m, its ends and its length. A bond has state "bond" and minus its tension as normal force."""
+        m, its ends and its length. A bond has state "bond", the shear force of its joint, and minus its tension as normal
+        force; what presses on its edges is in a row with state "stick"."""
         import pandas
         data = self._contact_data
         (x0, y0), (x1, y1) = (data["lines"][:, end].T for end in (0, 1))

@@ -132,34 +132,67 @@ def strength_laws(result, time):
 
 
 def strength_used(frame):
-    """|T|/(N tan phi + c l) of each contact region: 1 where it slips. A bond has its peak strength, every other contact
-    the residual one; 0 where there is neither force nor strength, infinite where a force meets none."""
+    """|T|/(N tan phi + c l) of each contact region: 1 where it slips. A bond has its peak strength and carries the shear
+    of its joint, while the region on its edges carries what presses on them: both have the value of N and T together.
+    Every other contact has its residual strength. 0 where there is neither force nor strength, infinite where a force
+    meets none."""
     data = frame._contact_data
-    laws = strength_laws(frame.result, frame.time)
-    factor, families = frame.result.weakened
-    along = data["lines"][:, 1] - data["lines"][:, 0]
-    length = np.hypot(*along.T)
-    normal, shear = data["normal_force"], np.abs(data["shear_force"])
-    strength = np.zeros(len(normal))
-    for number, name in enumerate(frame.result.joint_names):
-        law = laws[name]
-        angle, cohesion = law.get("friction_angle_deg", 0.0), law.get("cohesion", 0.0)
-        bonded_law = "tension" in law or "residual_cohesion" in law or "residual_friction_angle_deg" in law
-        for bond in (False, True):
-            of = (data["joint"] == number) & ((data["state"] == 3) == bond)
-            if not of.any():
-                continue
-            phi, c = angle, cohesion
-            if law.get("law") == "barton-bandis":
-                residual = law.get("residual_friction_angle_deg", angle)
-                stress = np.maximum(normal[of], 1e-12) / np.maximum(length[of], 1e-12)
-                phi = np.minimum(residual + law["jrc"] * np.log10(np.maximum(law["jcs"] / stress, 1.0)), 70.0)
-            elif bonded_law and not bond:
-                phi = law.get("residual_friction_angle_deg", angle)
-                c = law.get("residual_cohesion", 0.0)
-            strength[of] = np.maximum(normal[of] * np.tan(np.radians(phi)) + c * length[of], 0.0)
-            strength[of] /= factor if name in families else 1.0
+    touching, bond, share = pressed_bonds(data)
+    normal, shear = data["normal_force"].copy(), np.abs(data["shear_force"])
+    np.add.at(normal, bond, share * data["normal_force"][touching])
+    strength = _strengths(frame, normal)
     with np.errstate(divide="ignore", invalid="ignore"):
         used = shear / strength
     used[shear == 0.0] = 0.0
+    np.maximum.at(used, touching, used[bond])
     return used
+
+
+def pressed_bonds(data):
+    """Rows of contact regions that press on the edges of a bond, rows of these bonds, and the share of the region's
+    length that lies beside the bond."""
+    import pandas
+    is_bond = data["state"] == STATES.index("bond")
+    pairs = np.sort(data["blocks"], axis=1)
+    rows = pandas.DataFrame({"a": pairs[:, 0], "b": pairs[:, 1], "row": np.arange(len(pairs))})
+    both = rows[~is_bond].merge(rows[is_bond], on=["a", "b"], suffixes=("", "_bond"))
+    touching, bond = both["row"].to_numpy(), both["row_bond"].to_numpy()
+    along = data["lines"][bond, 1] - data["lines"][bond, 0]
+    length = np.hypot(*along.T)
+    along = along / np.maximum(length, 1e-300)[:, None]
+    ends = data["lines"][touching] - data["lines"][bond, :1]
+    s = np.einsum("nki,ni->nk", ends, along)
+    aside = along[:, None, 0] * ends[..., 1] - along[:, None, 1] * ends[..., 0]
+    beside = np.minimum(s.max(axis=1), length) - np.maximum(s.min(axis=1), 0.0)
+    # Edges with a bond lie on each other up to 2 % of their length where stress in the rock presses them together.
+    lie_on_it = (beside > 0.0) & (np.abs(aside).max(axis=1) < 0.05 * length)
+    share = beside / np.maximum(np.ptp(s, axis=1), 1e-300)
+    return touching[lie_on_it], bond[lie_on_it], share[lie_on_it]
+
+
+def _strengths(frame, normal):
+    """N tan phi + c l of each contact region in N/m, with the normal forces N in N/m."""
+    data = frame._contact_data
+    laws = strength_laws(frame.result, frame.time)
+    factor, families = frame.result.weakened
+    length = np.hypot(*(data["lines"][:, 1] - data["lines"][:, 0]).T)
+    strength = np.zeros(len(normal))
+    for number, name in enumerate(frame.result.joint_names):
+        for bond in (False, True):
+            of = (data["joint"] == number) & ((data["state"] == STATES.index("bond")) == bond)
+            phi, c = _friction(laws[name], bond, normal[of], length[of])
+            strength[of] = np.maximum(normal[of] * np.tan(np.radians(phi)) + c * length[of], 0.0)
+            strength[of] /= factor if name in families else 1.0
+    return strength
+
+
+def _friction(law, bond, normal, length):
+    """Friction angles in degrees and cohesion in Pa of contacts or bonds of a law."""
+    angle, cohesion = law.get("friction_angle_deg", 0.0), law.get("cohesion", 0.0)
+    if law.get("law") == "barton-bandis":
+        stress = np.maximum(normal, 1e-12) / np.maximum(length, 1e-12)
+        roughness = law["jrc"] * np.log10(np.maximum(law["jcs"] / stress, 1.0))
+        return np.minimum(law.get("residual_friction_angle_deg", angle) + roughness, 70.0), cohesion
+    if not bond and {"tension", "residual_cohesion", "residual_friction_angle_deg"} & law.keys():
+        return law.get("residual_friction_angle_deg", angle), law.get("residual_cohesion", 0.0)
+    return angle, cohesion

@@ -68,8 +68,8 @@ inline constexpr std::tuple changing_block_fields{
 inline constexpr std::tuple contact_fields{
     ContactField<IdPair>{"blocks", [](const ContactRow &row) { return IdPair{row.lower, row.higher}; }, &ContactFrameContent::blocks, "numbers of the two blocks"},
     ContactField<std::int32_t>{"joint", [](const ContactRow &row) { return row.joint; }, &ContactFrameContent::joint, "number of the joint law"},
-    ContactField<std::uint8_t>{"state", [](const ContactRow &row) { return row.state; }, &ContactFrameContent::state, "1 stick, 2 slip, 3 bonded and in tension"},
-    ContactField<double>{"normal_force", [](const ContactRow &row) { return row.normal_force; }, &ContactFrameContent::normal_force, "N/m, of a bond in tension negative"},
+    ContactField<std::uint8_t>{"state", [](const ContactRow &row) { return row.state; }, &ContactFrameContent::state, "1 stick, 2 slip, 3 bond, which has the shear and the tension of its joint; what presses on its edges is in a row of state 1"},
+    ContactField<double>{"normal_force", [](const ContactRow &row) { return row.normal_force; }, &ContactFrameContent::normal_force, "N/m, of a bond minus its tension"},
     ContactField<double>{"shear_force", [](const ContactRow &row) { return row.shear_force; }, &ContactFrameContent::shear_force, "N/m"},
     ContactField<double>{"overlap", [](const ContactRow &row) { return row.overlap; }, &ContactFrameContent::overlap, "largest depth, m"},
     ContactField<double>{"slip", [](const ContactRow &row) { return row.slip; }, &ContactFrameContent::slip, "so far, m"}};
