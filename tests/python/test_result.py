@@ -145,6 +145,23 @@ def test_strength_follows_the_stages_and_the_trial(opening, search):
     assert used[bedding].max() == pytest.approx(1.0, abs=0.05)
 
 
+def test_runs_of_a_search_know_by_what_strengths_are_divided(search, tmp_path):
+    """Also those that confirm a trial, states settled with strengths divided by fos.from, and runs without fos.json."""
+    confirmed = gcpdda.Result(search.mechanism.path / "confirm")
+    assert confirmed.weakened == (search.fails, ["bedding"]) and search.settled.weakened == (1.0, [])
+    shutil.copytree(search.mechanism.path, tmp_path / "trial")
+    assert gcpdda.Result(tmp_path / "trial").weakened == (search.fails, ["bedding"])
+    weak = tmp_path / "weak"
+    shutil.copytree(search.settled.path, weak)
+    text = (weak / "scene.toml").read_text()
+    (weak / "scene.toml").write_text(f"# settled by gcpdda fos: strengths as below divided by 0.5\n{text}")
+    result = gcpdda.Result(weak)
+    assert result.weakened == (0.5, ["bedding"])
+    full, used = strength_used(search.settled.frame("last")), strength_used(result.frame("last"))
+    bedding = (result.frame("last").contacts["joint"] == "bedding").to_numpy()
+    assert used[bedding] == pytest.approx(0.5 * full[bedding]) and used[~bedding] == pytest.approx(full[~bedding])
+
+
 def test_bolts(leaning):
     frame = leaning.frame("last")
     assert list(frame.bolts["support"]) == ["cable"] and list(frame.bolts["state"]) == ["elastic"]

@@ -4,12 +4,16 @@ import functools
 import io
 import json
 import pathlib
+import re
 import tomllib
 
 import numpy as np
 
 from .frame import Frame
 from .joints import find_joints
+
+# The first line of the scene of a run whose strengths `gcpdda fos` divides.
+WEAKENED = re.compile(r"# (?:a trial of|settled by) gcpdda fos: strengths as below divided by (\S+)$")
 
 
 def read_csv(path):
@@ -203,16 +207,15 @@ class Result(Folder):
         """Joints of the first frame."""
         return find_joints(self.frames[0])
 
-    @property
+    @functools.cached_property
     def weakened(self):
-        """Of a trial of `gcpdda fos`: the factor that divides its strengths, and the joint laws that are weakened."""
-        search = self.path.parent.parent / "fos.json"
-        if self.path.parent.name != "trials" or not search.exists():
+        """Of a trial of `gcpdda fos`, and of the state it begins with: the factor that divides strengths, and the joint
+        laws that are weakened."""
+        with open(self.path / "scene.toml") as file:
+            said = WEAKENED.match(file.readline())
+        if not said:
             return 1.0, []
-        found = json.loads(search.read_text())
-        factor = next((trial["factor"] for trial in found["trials"] if trial_folder(trial["factor"]) == self.path.name),
-                      float(self.path.name.removeprefix("F")))
-        return factor, found["families"] or self.joint_names
+        return float(said[1]), self.scene.get("fos", {}).get("families") or self.joint_names
 
     @functools.cached_property
     def _names(self):
