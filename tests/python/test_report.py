@@ -94,6 +94,11 @@ def test_of_a_search(search, tmp_path):
     assert f"{len(search.summary['moving'])} blocks move" in text
 
 
+def test_of_a_trial(search, tmp_path):
+    headings, _, text = check(gcpdda.report(search.mechanism.path, tmp_path / "trial.html", frames=0))
+    assert "Stage trial: failed" in text and "State of the joints" in text
+
+
 def test_of_an_ensemble(members, tmp_path):
     headings, _, text = check(gcpdda.report(members.path, tmp_path / "ensemble.html"))
     assert headings[0] == "Members" and "Probability of failure" in text

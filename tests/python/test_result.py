@@ -7,6 +7,7 @@ import pytest
 
 import gcpdda
 from gcpdda.joints import strength_used
+from gcpdda.plot.layers import Shown
 from gcpdda.result import trial_folder
 
 
@@ -160,6 +161,30 @@ def test_runs_of_a_search_know_by_what_strengths_are_divided(search, tmp_path):
     full, used = strength_used(search.settled.frame("last")), strength_used(result.frame("last"))
     bedding = (result.frame("last").contacts["joint"] == "bedding").to_numpy()
     assert used[bedding] == pytest.approx(0.5 * full[bedding]) and used[~bedding] == pytest.approx(full[~bedding])
+
+
+def test_joints_of_trials_are_those_of_the_settled_state(search, tmp_path):
+    """The bed that fails slides as far as its blocks have moved, and joints behind it open; also where the state is
+    that of another search, and in the run that confirms the trial."""
+    other = tmp_path / "other"
+    shutil.copytree(search.path, other, ignore=shutil.ignore_patterns("settled"))
+    confirmed = search.mechanism.path / "confirm"
+    far = search.blocks["motion[m]"].max()
+    for path in (confirmed, other / confirmed.relative_to(search.path), search.mechanism.path):
+        result = gcpdda.Result(path)
+        joints = result.frame("last").joints
+        assert result.start.path.samefile(search.settled.frame("last").path)
+        assert 0.5 * far < joints["shear_displacement"].abs().max() < 1.5 * far
+        assert "open" in set(joints["state"]) and joints["opening"].max() > 0.1 * far
+        assert result.before("trial") is result.start
+        with pytest.raises(ValueError, match="no frame of"):
+            result.at(0.0)
+        moved = Shown(result.frame("last"), 10.0).points - result.start.points
+        assert moved == pytest.approx(10.0 * (result.frame("last").points - result.start.points))
+    shutil.rmtree(other / "trials" / "F1")
+    (other / "fos.json").unlink()
+    with pytest.raises(FileNotFoundError, match="settled state"):
+        gcpdda.Result(other / search.mechanism.path.relative_to(search.path)).start
 
 
 def test_bolts(leaning):

@@ -128,8 +128,8 @@ class Frame:
     @functools.cached_property
     def contacts(self):
         """One row a contact region: the two blocks, joint law, state, forces in N/m, overlap and accumulated slip in
-        m, its ends and its length. A bond has state "bond", the shear force of its joint, and minus its tension as normal
-        force; what presses on its edges is in a row with state "stick"."""
+        m, its ends and its length. A bond has state "bond", the shear force of its joint, and minus its tension as
+        normal force; what presses on its edges is in a row with state "stick"."""
         import pandas
         data = self._contact_data
         (x0, y0), (x1, y1) = (data["lines"][:, end].T for end in (0, 1))
@@ -157,7 +157,7 @@ class Frame:
 
     @functools.cached_property
     def _tracked(self):
-        return track(self.result.joint_traces, self.result.frames[0], self)
+        return track(self.result.joint_traces, self.result.start, self)
 
     @property
     def joint_lines(self):
@@ -167,9 +167,10 @@ class Frame:
 
     @functools.cached_property
     def joints(self):
-        """One row a joint of the first frame, that is where edges of two blocks lay on each other: the blocks, the ends
-        of its middle line in m, opening and shear displacement since then in m, and with contacts the state: stick,
-        slip or bond; broken where a bond was; unloaded where edges lie on each other without force; else open."""
+        """One row a joint of the first frame, that is where edges of two blocks lay on each other (of a trial of
+        `gcpdda fos` in its settled state): the blocks, the ends of its middle line in m, opening and shear displacement
+        since then in m, and with contacts the state: stick, slip or bond; broken where a bond was; unloaded where edges
+        lie on each other without force; else open."""
         import pandas
         lines, opening, shear, there = self._tracked
         blocks, middle = self.result.joint_traces.blocks[there], lines.mean(axis=1)
@@ -181,8 +182,10 @@ class Frame:
         return table
 
     def _joint_states(self, table):
-        """The largest state of the contacts of each pair; broken where that of the first frame was a bond."""
-        before, now = self.result.frames[0]._pair_states, self._pair_states
+        """The largest state of the contacts of each pair; broken where that of the first frame was a bond. Trials have
+        contacts also where output.contacts = false leaves the settled state without."""
+        start, now = self.result.start, self._pair_states
+        before = start._pair_states if start.has_contacts else {}
         closed = 1e-6 * float(np.median(np.sqrt(self.areas)))
         states = []
         for a, b, opening in zip(table["block_a"], table["block_b"], table["opening"]):

@@ -132,10 +132,10 @@ def strength_laws(result, time):
 
 
 def strength_used(frame):
-    """|T|/(N tan phi + c l) of each contact region: 1 where it slips. A bond has its peak strength and carries the shear
-    of its joint, while the region on its edges carries what presses on them: both have the value of N and T together.
-    Every other contact has its residual strength. 0 where there is neither force nor strength, infinite where a force
-    meets none."""
+    """|T|/(N tan phi + c l) of each contact region: 1 where it slips. A bond has its peak strength and carries the
+    shear of its joint, while the region on its edges carries what presses on them: both have the value of N and T
+    together. Every other contact has its residual strength. 0 where there is neither force nor strength, infinite where
+    a force meets none."""
     data = frame._contact_data
     touching, bond, share = pressed_bonds(data)
     normal, shear = data["normal_force"].copy(), np.abs(data["shear_force"])

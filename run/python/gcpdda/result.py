@@ -28,6 +28,13 @@ def trial_folder(factor):
     return f"F{factor:.9g}"
 
 
+def settled_folder(search):
+    """Folder of the settled state of a search: in its own, or what --settled named; None where neither is there."""
+    found = search / "fos.json"
+    named = json.loads(found.read_text())["settled"]["directory"] if found.exists() else search
+    return next((path for path in (search / "settled", pathlib.Path(named)) if (path / "frames").is_dir()), None)
+
+
 class Folder:
     """What result folders have in common."""
 
@@ -46,6 +53,7 @@ class Result(Folder):
     """The result folder of a run.
 
     frames, frame(WHICH)       `Frame`s: a number, "first", "last", or the one at or before a time: at(TIME)
+    start                      the frame from which joints and motions count
     times                      of the frames, in s
     histories, history(NAME)   names of the monitors; the table of one. energy, bolts, liners: tables of the same kind
     profiles                   names of the monitored lines
@@ -127,9 +135,27 @@ class Result(Folder):
             raise KeyError(f"no frame {which}: there are {min(by_number)} to {max(by_number)}, first, last, all")
         return by_number[which]
 
+    @functools.cached_property
+    def start(self):
+        """The frame from which joints and motions count: the first one; of a trial of `gcpdda fos`, which has a frame
+        of its end alone, the last one of the settled state."""
+        folder = self.path.resolve()
+        trial = folder.parent if folder.name == "confirm" else folder
+        if trial.parent.name != "trials" or not self.weakened[1]:
+            return self.frame("first")
+        settled = settled_folder(trial.parent.parent)
+        if settled is None:
+            raise FileNotFoundError(f"the settled state that {self.path} begins with is not found: it is in 'settled' "
+                                    f"of {trial.parent.parent}, or where fos.json there says")
+        return Result(settled).frame("last")
+
     def at(self, time):
         """The last frame that is not later than a time."""
-        return [frame for frame in self.frames if frame.time <= time + 1e-9 * max(time, 1.0)][-1]
+        latest = time + 1e-9 * max(time, 1.0)
+        early = [frame for frame in self.frames if frame.time <= latest]
+        if not early and self.start.time > latest:
+            raise ValueError(f"no frame of {self.path} is at or before t = {time:g} s")
+        return early[-1] if early else self.start
 
     def before(self, stage):
         """The last frame that is not later than the beginning of a stage."""
@@ -204,8 +230,8 @@ class Result(Folder):
 
     @functools.cached_property
     def joint_traces(self):
-        """Joints of the first frame."""
-        return find_joints(self.frames[0])
+        """Joints of the frame `start`."""
+        return find_joints(self.start)
 
     @functools.cached_property
     def weakened(self):
@@ -273,8 +299,7 @@ class Safety(Folder):
     @property
     def settled(self):
         """The run that trials begin with: in this folder, or that of another search, which --settled named."""
-        folder = self.path / "settled"
-        return Result(folder if folder.exists() else pathlib.Path(self.summary["settled"]["directory"]))
+        return Result(settled_folder(self.path) or self.path / "settled")
 
     def trial(self, factor):
         """The run of the trial with that factor."""

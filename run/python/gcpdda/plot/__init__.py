@@ -31,8 +31,8 @@ class Plots:
 
     frame       a number, "first", "last", "all", or a list of them: one panel each (default: last)
     window      (x0, y0, x1, y1) in m: part of the plane to draw
-    scale       draws the motion since the first frame so many times
-    compare     "first" outlines the blocks as they were in the first frame
+    scale       draws the motion since the first frame so many times; of trials of a search since the settled state
+    compare     "first" outlines the blocks as they were then
     since       the stage from whose beginning permanent displacement counts
     title, dpi, out     a heading; resolution; file: .png, .pdf, .svg, or .gif, which is animated
     """
@@ -106,8 +106,8 @@ class Plots:
         if ("permanent" in (field, arrows)) != (since is not None):
             raise ValueError("permanent displacement and the stage since which it counts belong together")
         start = self.result.before(since) if since else None
-        first = Shown(self.result.frame("first"))
-        layers = [Blocks(field or ("none" if plain else "displacement"), start, first if compare else None), Water()]
+        layers = [Blocks(field or ("none" if plain else "displacement"), start,
+                         Shown(self.result.start) if compare else None), Water()]
         layers += [Pressure()] if pressure else []
         if joints:
             layers.append(JointStates() if joints == "state" else JointLines(_known(joints, JOINTS, "joints")))

@@ -52,7 +52,7 @@ class Shown:
         self.fixed, self.offsets, self.ids, self.time = frame.fixed, frame.offsets, frame.ids, frame.time
         self.points = frame.points
         if scale != 1.0:
-            first = frame.result.frames[0]
+            first = frame.result.start
             of_left = np.repeat(np.isin(first.ids, frame.ids), np.diff(first.offsets))
             start = first.points[of_left]
             self.points = start + scale * (frame.points - start)

@@ -130,7 +130,10 @@ def _stages(page, result):
     page.text("The unbalanced ratio is the largest net force over the largest force in the model; the motion is that "
               "within the stage. Settled: blocks have come to rest. Failed: a block moves on. Undecided: neither, when "
               "the stage ended.", "note")
-    shown = [row for row in stages.to_dict("records") if row["steps"] > 0 and row["end"] > row["begin"]]
+    # A trial of a search has no frames of the stages before.
+    begin = result.frame("first").time if result.frames else np.inf
+    shown = [row for row in stages.to_dict("records")
+             if row["steps"] > 0 and row["end"] > row["begin"] and row["end"] >= begin]
     settings = {stage.get("name", f"stage{k}"): stage for k, stage in enumerate(result.scene.get("stage", []))}
     for row in shown[:12]:
         page.heading(f"Stage {row['name']}: {row['verdict']}")
@@ -147,8 +150,7 @@ def _stages(page, result):
 
 
 def draws_joints(result):
-    first, last = result.frame("first"), result.frame("last")
-    return first.has_contacts and last.has_contacts and len(first.ids) <= MANY_BLOCKS
+    return result.frame("last").has_contacts and len(result.frame("first").ids) <= MANY_BLOCKS
 
 
 def close_up(result):

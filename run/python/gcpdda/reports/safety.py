@@ -50,9 +50,10 @@ def _trials(page, search):
     page.table(search.trials, {"factor[-]": "factor", "verdict": "verdict", "time[s]": "time (s)", "steps": "steps",
                                "moved[-]": "largest motion (block sizes)",
                                "unbalanced_ratio[-]": "unbalanced ratio (-)", "cpu[s]": "CPU time (s)"})
-    if search.summary["slides_from"]:
-        page.text(f"At {search.summary['slides_from']:.5g} blocks slide to where they hold; fos.largest_motion says from "
-                  "where on that is failure.", "note")
+    slides_from = search.summary.get("slides_from")
+    if slides_from:
+        page.text(f"At {slides_from:.5g} blocks slide to where they hold; fos.largest_motion says from where on that is "
+                  "failure.", "note")
     if search.summary["undecided"]:
         page.text("Trials without a verdict at their limit stay in the bracket; a longer fos.limit may decide them.",
                   "note")
