@@ -8,6 +8,7 @@ import pytest
 import gcpdda
 from gcpdda.joints import strength_used
 from gcpdda.plot.layers import Shown
+from gcpdda.plot.water import waters
 from gcpdda.result import trial_folder
 
 
@@ -230,7 +231,7 @@ def test_results_are_read_while_a_run_goes_on(opening, tmp_path):
     energy.write_text("".join(rows[:5]) + rows[5][:40])
 
     result = gcpdda.Result(folder)
-    assert result.verdict is None and not len(result.stages)
+    assert result.verdict is None
     assert len(result.frames) == 10
     assert len(result.energy) == 4 and result.reached == result.energy["time[s]"].iloc[-1]
     result.plot.joints("state", out=tmp_path / "running.png")
@@ -238,6 +239,51 @@ def test_results_are_read_while_a_run_goes_on(opening, tmp_path):
         path.rename(folder / "frames" / path.name)
     assert len(result.frames) == len(opening.frames)
     assert gcpdda.Result(tmp_path / "empty").reached == 0.0
+
+
+def set_back(result, folder, stage, restart=""):
+    """A copy of a folder as it was while a stage went on."""
+    shutil.copytree(result.path, folder)
+    (folder / "summary.json").unlink()
+    lines = result.log.splitlines(keepends=True)
+    end = next(k for k, line in enumerate(lines) if line.startswith(f"stage '{stage}'"))
+    (folder / "run.log").write_text("".join(lines[:end]) + restart)
+    return gcpdda.Result(folder)
+
+
+def test_stages_are_known_while_a_run_goes_on(opening, tmp_path):
+    running = set_back(opening, tmp_path / "running", "fall")
+    shown, whole = running.stages, opening.stages
+    assert list(shown["name"]) == list(whole["name"]) and list(shown["kind"]) == list(whole["kind"])
+    assert list(shown["verdict"]) == [*whole["verdict"][:4], "goes on"]
+    assert list(shown["begin"]) == list(whole["begin"]) and list(shown["removed"][:4]) == list(whole["removed"][:4])
+    assert running.before("fall").number == opening.before("fall").number
+    assert "Stage arch" in gcpdda.report(running.path, frames=0).read_text()
+    # A restart from before the end of a stage does it again.
+    restart = f"restart from c.h5: t = {whole['begin'][2]:.9g} s, step 57, 3 frames\n"
+    again = set_back(opening, tmp_path / "again", "fall", restart)
+    assert list(again.stages["name"]) == ["weight", "opening", "arch"]
+    assert list(again.stages["verdict"])[2] == "goes on"
+    scene = gcpdda.Result(tmp_path / "none")
+    scene.__dict__["scene"] = {}
+    assert not len(scene.stages) and {"name", "begin", "end", "steps"} <= set(scene.stages.columns)
+
+
+def test_strengths_and_water_of_stages_are_known_while_a_run_goes_on(tmp_path):
+    scene = bonded_block(1e5)
+    scene.tables["joint"]["default"] = {"normal_stiffness": 1e9, "friction_angle_deg": 35}
+    scene.table("water.low", phreatic=[[-10.0, -5.0], [10.0, -5.0]])
+    scene.stage("weak", "change", set={"joint.default.friction_angle_deg": 20.0,
+                                       "water.low.phreatic": [[-10.0, -2.0], [10.0, -2.0]]})
+    scene.stage("wait", "run", duration=0.1)
+    result = gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    running = set_back(result, tmp_path / "running", "wait")
+    for one in (result, running):
+        before, last = one.before("weak"), one.frame("last")
+        for frame, friction, level in ((before, 35.0, -5.0), (last, 20.0, -2.0)):
+            used = 1e5 / ((1e6 + 2600 * 9.81) * np.tan(np.radians(friction)))
+            assert strength_used(frame) == pytest.approx(used, rel=0.01)  # what still moves
+            assert waters(one, frame.time)["low"]["phreatic"][0][1] == level
 
 
 def test_fos_and_ensemble(search, members):

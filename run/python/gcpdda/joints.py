@@ -116,16 +116,10 @@ def track(joints, first, frame):
 def strength_laws(result, time):
     """The laws of a scene as they are at a time, with what stages have set: {name: keys}, keys of default filled in."""
     laws = {name: dict(keys) for name, keys in result.scene["joint"].items()}
-    stages = result.stages
-    begins = dict(zip(stages["name"], stages["begin"])) if len(stages) else {}
-    for k, stage in enumerate(result.scene.get("stage", [])):
-        begin = begins.get(stage.get("name", f"stage{k}"))
-        if begin is None or begin > time - 1e-9 * max(time, 1.0) and begin > 0.0:
-            continue
-        for path, value in stage.get("set", {}).items():
-            parts = path.split(".")
-            if parts[0] == "joint" and len(parts) >= 3:
-                laws.setdefault(".".join(parts[1:-1]), {})[parts[-1]] = value
+    for path, value in result.set_by_stages(time).items():
+        parts = path.split(".")
+        if parts[0] == "joint" and len(parts) >= 3:
+            laws.setdefault(".".join(parts[1:-1]), {})[parts[-1]] = value
     default = laws.get("default", {})
     inherited = {key: value for key, value in default.items() if key != "materials"}
     return {name: inherited | keys for name, keys in laws.items()}

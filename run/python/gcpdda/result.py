@@ -15,6 +15,13 @@ from .joints import find_joints
 # The first line of the scene of a run whose strengths `gcpdda fos` divides.
 WEAKENED = re.compile(r"# (?:a trial of|settled by) gcpdda fos: strengths as below divided by (\S+)$")
 
+STAGE_COLUMNS = ["name", "kind", "verdict", "begin", "end", "steps", "contact_steps", "unbalanced_ratio", "kinetic",
+                 "moved", "removed", "loose"]
+# Lines of run.log.
+STAGE_LINE = re.compile(r"stage '(.*)' (?:(\w+) )?at t = (\S+) s(?:, (\d+) blocks removed|"
+                        r" after (\d+) steps: unbalanced (\S+), largest motion (\S+) of a block's size)")
+RESTART_LINE = re.compile(r"restart from .*: t = (\S+) s, step")
+
 
 def read_csv(path):
     """A history as a table with the columns of the file. A row that is just being written is left out."""
@@ -57,7 +64,8 @@ class Result(Folder):
     times                      of the frames, in s
     histories, history(NAME)   names of the monitors; the table of one. energy, bolts, liners: tables of the same kind
     profiles                   names of the monitored lines
-    summary                    summary.json as a dictionary, None while the run goes on; verdict, stages come from it
+    summary                    summary.json as a dictionary, None while the run goes on; verdict comes from it
+    stages                     table of the stages, from run.log while the run goes on
     scene, log                 the resolved scene as a dictionary; what the program has printed
     plot                       pictures: result.plot.field("stress", out="stress.png")
     """
@@ -101,16 +109,54 @@ class Result(Folder):
 
     @property
     def stages(self):
-        """One row a stage that has ended: name, kind, verdict, begin and end in s, steps, ... Empty without stages."""
+        """One row a stage that has ended: name, kind, verdict, begin and end in s, steps, ... Empty without stages.
+        While the run goes on, or where it was killed, the last row is the stage in which it is: "goes on"."""
         import pandas
-        entries = (self.summary or {}).get("stages", [])
-        table = pandas.DataFrame(entries).rename(columns={"time": "end"})
-        if len(table):
-            kinds = {stage.get("name", f"stage{k}"): stage["kind"]
-                     for k, stage in enumerate(self.scene.get("stage", []))}
-            table.insert(1, "kind", [kinds.get(name, "") for name in table["name"]])
-            table.insert(3, "begin", [0.0, *table["end"][:-1]])
-        return table
+        summary = self.summary
+        entries = self._stages_of_log() if summary is None else summary.get("stages", [])
+        table = pandas.DataFrame(entries, columns=["name", "verdict", "time"] if not entries else None)
+        table = table.rename(columns={"time": "end"})
+        kinds = {name: stage["kind"] for name, stage in self._stage_tables.items()}
+        table["kind"] = [kinds.get(name, "") for name in table["name"]]
+        table["begin"] = [0.0, *table["end"][:-1]][:len(table)]
+        return table.reindex(columns=STAGE_COLUMNS)
+
+    @property
+    def _stage_tables(self):
+        """Tables of the scene for its stages, by name."""
+        return {stage.get("name", f"stage{k}"): stage for k, stage in enumerate(self.scene.get("stage", []))}
+
+    def _stages_of_log(self):
+        """What summary.json will have about the stages that have ended, and the stage that goes on."""
+        rows = read_csv(self.path / "history" / "energy.csv")["time[s]"].to_numpy() if self.reached else np.zeros(1)
+        ended = {}
+        for line in self.log.splitlines():
+            if restart := RESTART_LINE.match(line):
+                latest = (1 + 1e-8) * float(restart[1])
+                ended = {name: entry for name, entry in ended.items() if entry["time"] <= latest}
+            if not (stage := STAGE_LINE.match(line)):
+                continue
+            name, verdict, time, removed, steps, unbalanced, moved = stage.groups()
+            ended.pop(name, None)
+            # The log has nine digits; the row of the histories that ends the stage has all of them.
+            row = rows[np.abs(rows - float(time)).argmin()]
+            ended[name] = {"name": name, "verdict": verdict or "done", "steps": int(steps or 0),
+                           "time": float(row) if abs(row - float(time)) <= 1e-8 * float(time) else float(time),
+                           "unbalanced_ratio": float(unbalanced or 0.0), "moved": float(moved or 0.0),
+                           "removed": int(removed or 0)}
+        going_on = next((name for name in self._stage_tables if name not in ended), None)
+        last = [] if going_on is None else [{"name": going_on, "verdict": "goes on", "time": self.reached}]
+        return [*ended.values(), *last]
+
+    def set_by_stages(self, time):
+        """Values of the scene that stages which began before a time in s have set: {path: value}."""
+        begins = dict(zip(self.stages["name"], self.stages["begin"]))
+        values = {}
+        for name, stage in self._stage_tables.items():
+            begin = begins.get(name)
+            if begin is not None and (begin == 0.0 or begin < time - 1e-9 * max(time, 1.0)):
+                values |= stage.get("set", {})
+        return values
 
     @property
     def frames(self):
@@ -159,12 +205,9 @@ class Result(Folder):
 
     def before(self, stage):
         """The last frame that is not later than the beginning of a stage."""
-        if self.summary is None:
-            raise FileNotFoundError(f"no {self.path / 'summary.json'}, which tells when stages began: the run goes "
-                                    "on, or was killed")
         stages = self.stages
-        if not len(stages) or stage not in set(stages["name"]):
-            raise KeyError(f"no stage {stage}: there are {', '.join(stages.get('name', [])) or 'none'}")
+        if stage not in set(stages["name"]):
+            raise KeyError(f"no stage {stage}: there are {', '.join(stages['name']) or 'none'}")
         return self.at(float(stages["begin"][stages["name"] == stage].iloc[0]))
 
     @property

@@ -12,16 +12,10 @@ PRESSURE = LinearSegmentedColormap.from_list("pressure", ["#b9dcf2", "#2f7fd6", 
 def waters(result, time):
     """The water tables of a scene as they are at a time, with what stages have set: {name: keys}."""
     tables = {name: dict(keys) for name, keys in result.scene.get("water", {}).items()}
-    stages = result.stages
-    begins = dict(zip(stages["name"], stages["begin"])) if len(stages) else {}
-    for k, stage in enumerate(result.scene.get("stage", [])):
-        begin = begins.get(stage.get("name", f"stage{k}"))
-        if begin is None or begin > 0.0 and begin >= time * (1.0 - 1e-9):
-            continue
-        for path, value in stage.get("set", {}).items():
-            parts = path.split(".")
-            if parts[0] == "water" and len(parts) >= 3 and ".".join(parts[1:-1]) in tables:
-                tables[".".join(parts[1:-1])][parts[-1]] = value
+    for path, value in result.set_by_stages(time).items():
+        parts = path.split(".")
+        if parts[0] == "water" and len(parts) >= 3 and ".".join(parts[1:-1]) in tables:
+            tables[".".join(parts[1:-1])][parts[-1]] = value
     return tables
 
 
