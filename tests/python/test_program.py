@@ -154,6 +154,19 @@ def test_a_sweep_has_a_row_for_every_combination(tmp_path):
     assert table["result"][1].summary["time"] == 0.2
 
 
+def test_a_sweep_has_no_results_of_earlier_runs(tmp_path):
+    path = "joint.default.friction_angle_deg"
+    gcpdda.sweep(sliding_block(), {path: [10.0, 40.0]}, ranks=1, out=tmp_path / "sweep")
+    table = gcpdda.sweep(sliding_block(), {path: [20.0, 95.0]}, ranks=1, out=tmp_path / "sweep")
+    assert list(table["exit_code"]) == [4, 3] and list(table["result"]) == [None, None]
+    assert list(table["verdict"]) == [None, None] and table["largest_displacement"].isna().all()
+    scene = sliding_block()
+    scene.stage("rest", "settle", limit=0.001)
+    del scene.tables["run"]["duration"]
+    table = gcpdda.sweep(scene, {path: [0.0]}, ranks=1, out=tmp_path / "undecided")
+    assert table["exit_code"][0] == 7 and table["verdict"][0] == table["result"][0].verdict == "undecided"
+
+
 def test_the_installed_package_finds_the_installed_program(tmp_path):
     build = pathlib.Path(gcpdda.program()).parent
     subprocess.run(["cmake", "--install", str(build), "--prefix", str(tmp_path)], check=True, capture_output=True)

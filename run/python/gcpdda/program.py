@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 
-from .errors import GcpddaError, error_of
+from .errors import GcpddaError, NumericalError, Stopped, Undecided, error_of
 from .result import Ensemble, Result, Safety
 from .scene import Scene, toml_value
 
@@ -90,7 +90,8 @@ def sweep(scene, values, ranks=2, set=None, out=None, *, overwrite=False, progre
 
     Columns: one for each path; verdict; time, the simulated time at the end in s; largest_displacement in m;
     exit_code and message; result, the `Result` or None. A row whose run fails has its exit code and message, and
-    the sweep goes on.
+    the sweep goes on; where the program refuses a run, because of the scene or of an earlier run in the folder, there
+    is no result.
     """
     import pandas
     out = _folder(scene, out, "_sweep")
@@ -104,7 +105,8 @@ def sweep(scene, values, ranks=2, set=None, out=None, *, overwrite=False, progre
                                 overwrite=overwrite, progress=progress, program=program)
         except GcpddaError as error:
             row |= {"exit_code": error.exit_code, "message": str(error)}
-            if (folder / "summary.json").exists():
+            # A run that is refused leaves the results of an earlier one in the folder.
+            if isinstance(error, (NumericalError, Stopped, Undecided)) and (folder / "summary.json").exists():
                 row["result"] = Result(folder)
         if row["result"] is not None:
             moved = row["result"].frame("last").blocks
