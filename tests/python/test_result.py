@@ -130,6 +130,34 @@ def test_bonds_use_the_friction_of_what_presses_on_them(tmp_path, corner, bonds)
     assert used == pytest.approx(expected, rel=2e-3)  # the block turns a little: not all edges bear the mean pressure
 
 
+def test_rollers_have_a_law_and_names(tmp_path):
+    """Rock between two rollers with the law that the program adds, and with one of the scene."""
+    scene = gcpdda.Scene(name="rollers", fidelity="rigid")
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=31.0)
+    scene.table("in_situ", level=4, k0=0.5)
+    scene.table("region", material="rock", polygon=[[0, 0], [4, 0], [4, 4], [0, 4]], fixed=["bottom"],
+                roller=["left", "right"])
+    scene.add("bricks", block_size=[2, 1], bond=0.0)
+    for side in ("left", "right"):
+        scene.monitor(block=f"roller.{side}")
+    scene.stage("weight", "settle", limit=3.0)
+    for given in (False, True):
+        if given:
+            scene.joint("roller", friction_angle_deg=1.0)
+        result = gcpdda.run(scene, ranks=1, out=tmp_path / str(given))
+        frame = result.frame("last")
+        assert list(frame.blocks["name"][:3]) == ["roller.left", "roller.right", "b2"]
+        assert frame.blocks["x"][1] == pytest.approx(result.history("roller.right")["x[m]"].iloc[-1])
+        contacts = frame.contacts
+        assert set(contacts["joint"]) == {"default", "roller"}
+        assert ((contacts["joint"] == "roller") == (contacts["block_a"] < 2)).all()
+        rolls = (contacts["joint"] == "roller").to_numpy()
+        used = strength_used(frame)[rolls]
+        assert (used == 0.0).all() if not given else used.max() <= 1.0
+    assert gcpdda.report(tmp_path / "False", frames=0).exists()
+
+
 def test_strength_follows_the_stages_and_the_trial(opening, search):
     from gcpdda.joints import strength_laws
     scene = dict(opening.scene)

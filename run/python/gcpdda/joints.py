@@ -122,7 +122,9 @@ def strength_laws(result, time):
             laws.setdefault(".".join(parts[1:-1]), {})[parts[-1]] = value
     default = laws.get("default", {})
     inherited = {key: value for key, value in default.items() if key != "materials"}
-    return {name: inherited | keys for name, keys in laws.items()}
+    # The law of rollers that the program adds has neither friction nor cohesion.
+    added = {name: {} for name in result.joint_names if name not in laws}
+    return {name: inherited | keys for name, keys in laws.items()} | added
 
 
 def strength_used(frame):

@@ -77,8 +77,15 @@ class Result(Folder):
 
     @functools.cached_property
     def joint_names(self):
-        """Names of the joint laws by their number in the files: default, then the others in the order of the scene."""
-        return ["default"] + [name for name in self.scene["joint"] if name != "default"]
+        """Names of the joint laws by their number in the files: default, then the others in the order of the scene, and
+        that of rollers, which the program adds where the scene has none."""
+        names = ["default"] + [name for name in self.scene["joint"] if name != "default"]
+        return names if not self.rollers or "roller" in names else [*names, "roller"]
+
+    @property
+    def rollers(self):
+        """Names of the fixed blocks along the rollers of the region."""
+        return [f"roller.{side}" for side in self.scene.get("region", {}).get("roller", [])]
 
     @property
     def summary(self):
@@ -288,16 +295,19 @@ class Result(Folder):
 
     @functools.cached_property
     def _names(self):
-        """Names of inline and generated blocks; those after them are b<number>."""
-        names = [block.get("name", f"b{k}") for k, block in enumerate(self.scene.get("block", []))]
-        for kind in self.scene:  # generators in the order of the file
-            for k, table in enumerate(self.scene[kind] if kind in ("wall", "pyramid") else []):
-                for row in range(table["rows"]):
-                    if kind == "pyramid":
-                        columns = table["rows"] - row
-                    else:
-                        columns = table["columns"] + (row % 2 if table.get("bond", 0.5) > 0 else 0)
-                    names += [f"{table.get('name', f'{kind}{k}')}.{row}.{column}" for column in range(columns)]
+        """Names of inline blocks, rollers and generated blocks; those after them are b<number>."""
+        names = [block.get("name", f"b{k}") for k, block in enumerate(self.scene.get("block", []))] + self.rollers
+        # Generators in the order of the file, in which walls and pyramids may alternate.
+        headings = re.findall(r"^\[\[(wall|pyramid)\]\]$", (self.path / "scene.toml").read_text(), re.M)
+        for place, kind in enumerate(headings):
+            k = headings[:place].count(kind)
+            table = self.scene[kind][k]
+            for row in range(table["rows"]):
+                if kind == "pyramid":
+                    columns = table["rows"] - row
+                else:
+                    columns = table["columns"] + (row % 2 if table.get("bond", 0.5) > 0 else 0)
+                names += [f"{table.get('name', f'{kind}{k}')}.{row}.{column}" for column in range(columns)]
         return names
 
     def names_of(self, ids):
