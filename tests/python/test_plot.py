@@ -1,6 +1,7 @@
 """Pictures: that each is drawn with axes, units and content, and that its scale means what it says."""
 
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import SOURCE
 
+import gcpdda
 from gcpdda.plot import ARROWS, FIELDS, HISTORIES, JOINTS, style
 from gcpdda.plot.layers import Arrows, Blocks, Crosses, JointLines, Shown
 from gcpdda.plot.over_time import PROFILES
@@ -97,6 +99,52 @@ def test_profiles(leaning, opening):
         plt.close(figure)
     with pytest.raises(ValueError, match="no profile"):
         opening.plot.profile()
+
+
+def test_profiles_of_whole_numbers(opening, tmp_path):
+    """Distances of 0, 1 and 2 m, with a gap at 1 m at the second time; and a profile of which no row is written."""
+    folder = tmp_path / "copy"
+    shutil.copytree(opening.path, folder)
+    header = "time[s],distance[m],x[m],y[m],ux[m],uy[m],vx[m/s],vy[m/s],sxx[Pa],syy[Pa],sxy[Pa],block\n"
+    rows = [f"{time},{at},{at},0,{time},0,0,0,0,0,0,1\n" for time, at in ((0, 0), (0, 1), (0, 2), (1, 0), (1, 2))]
+    (folder / "history" / "line.csv").write_text(header + "".join(rows))
+    (folder / "history" / "none.csv").write_text(header)
+    figure = gcpdda.Result(folder).plot.profile("line")
+    distances = figure.axes[0].lines[0].get_xdata()
+    assert distances == pytest.approx([0.0, np.nan, 2.0], nan_ok=True)
+    plt.close(figure)
+    with pytest.raises(ValueError, match="no rows"):
+        gcpdda.Result(folder).plot.profile("none")
+
+
+def test_blocks_that_are_gone(opening, tmp_path):
+    """Permanent displacement of blocks that are excavated before the stage; frames without any block."""
+    figure = opening.plot.field("permanent", since="fall", frame=["first", "last"])
+    check_map(figure)
+    scene = gcpdda.Scene(name="gone", fidelity="rigid")
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=30)
+    scene.block("ground", [[-5, -1], [5, -1], [5, 0], [-5, 0]], material="rock", fixed=True)
+    scene.block("block", [[-1, 0], [1, 0], [1, 2], [-1, 2]], material="rock")
+    scene.stage("weight", "settle", limit=1.0)
+    scene.stage("all", "excavate", region=[[-9, -9], [9, -9], [9, 9], [-9, 9]])
+    scene.stage("rest", "run", duration=0.05)
+    result = gcpdda.run(scene, ranks=1, out=tmp_path / "gone")
+    last = result.frame("last")
+    assert not len(last.blocks) and not len(last.joints) and not last.polygons
+    check_map(result.plot.field(frame=["first", "last"], scale=2.0))
+    with pytest.raises(ValueError, match="no blocks to draw"):
+        result.plot.field()
+    assert "No block is left" in gcpdda.report(result.path, frames=2).read_text()
+
+
+def test_states_of_joints_need_contacts(tmp_path):
+    result = gcpdda.run(SOURCE / "run" / "scenes" / "incline.toml", ranks=1, out=tmp_path / "run",
+                        set={"output.contacts": False})
+    check_map(result.plot.joints("opening"))
+    for draw in (result.plot.joints, result.plot.strength):
+        with pytest.raises(FileNotFoundError, match="output.contacts = false"):
+            draw()
 
 
 def test_energies_balance(opening, leaning):

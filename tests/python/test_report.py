@@ -112,6 +112,24 @@ def test_of_a_run_that_goes_on(opening, tmp_path):
     assert "The run goes on, or was killed" in text
 
 
+def test_of_a_run_that_fails_at_once(tmp_path):
+    """Before the first row of energy.csv is written."""
+    scene = gcpdda.Scene(name="fast", fidelity="rigid", duration=1.0)
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=30)
+    scene.block("ground", [[-5, -1], [5, -1], [5, 0], [-5, 0]], material="rock", fixed=True)
+    scene.block("block", [[-1, 1], [1, 1], [1, 3], [-1, 3]], material="rock", velocity=[0, -1e5, 0])
+    scene.monitor(block="block")
+    with pytest.raises(gcpdda.NumericalError) as caught:
+        gcpdda.run(scene, ranks=1, out=tmp_path / "fast")
+    result = gcpdda.Result(caught.value.path)
+    assert not len(result.energy)
+    headings, _, text = check(gcpdda.report(result.path))
+    assert "Energy" not in headings and "could pass through a block" in text
+    with pytest.raises(ValueError, match="no rows"):
+        result.plot.energy()
+
+
 def test_of_a_run_without_contacts_and_histories(tmp_path):
     result = gcpdda.run(SCENES / "incline.toml", ranks=1, out=tmp_path / "run",
                         set={"output.contacts": False, "monitor": []})

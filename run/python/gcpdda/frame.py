@@ -75,7 +75,7 @@ class Frame:
     @functools.cached_property
     def polygons(self):
         """Corners of each block, a list of arrays."""
-        return np.split(self.points, self.offsets[1:-1])
+        return np.split(self.points, self.offsets[1:-1])[:len(self.ids)]  # none where no block is left
 
     @functools.cached_property
     def _facts(self):
@@ -106,19 +106,26 @@ class Frame:
     @functools.cached_property
     def _contact_data(self):
         import h5py
-        path = self.path.with_name(self.path.name.replace("frame_", "contacts_"))
-        if not path.exists():
-            raise FileNotFoundError(f"{path} does not exist: contacts are written unless the scene has "
-                                    "output.contacts = false")
-        with h5py.File(path, "r") as file:
+        self.expect_contacts()
+        with h5py.File(self._contact_path, "r") as file:
             cells = file["VTKHDF/CellData"]
             data = {name: cells[name][:] for name in cells}
             data["lines"] = file["VTKHDF/Points"][:, :2].reshape(-1, 2, 2)
         return data
 
     @property
+    def _contact_path(self):
+        return self.path.with_name(self.path.name.replace("frame_", "contacts_"))
+
+    @property
     def has_contacts(self):
-        return self.path.with_name(self.path.name.replace("frame_", "contacts_")).exists()
+        return self._contact_path.exists()
+
+    def expect_contacts(self):
+        """Raises FileNotFoundError where there are none."""
+        if not self.has_contacts:
+            raise FileNotFoundError(f"{self._contact_path} does not exist: contacts, and states of joints, are written "
+                                    "unless the scene has output.contacts = false")
 
     @property
     def contact_lines(self):
@@ -186,7 +193,7 @@ class Frame:
         contacts also where output.contacts = false leaves the settled state without."""
         start, now = self.result.start, self._pair_states
         before = start._pair_states if start.has_contacts else {}
-        closed = 1e-6 * float(np.median(np.sqrt(self.areas)))
+        closed = 1e-6 * float(np.median(np.sqrt(self.areas))) if len(table) else 0.0
         states = []
         for a, b, opening in zip(table["block_a"], table["block_b"], table["opening"]):
             state = now.get((a, b), 0)

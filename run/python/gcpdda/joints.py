@@ -75,6 +75,9 @@ def affine_maps(old, new):
     row_of = {block: row for row, block in enumerate(new.ids.tolist())}
     rows = np.array([row_of.get(block, -1) for block in old.ids.tolist()])
     there = np.flatnonzero(rows >= 0)
+    matrices, centres_old, centres_new = np.zeros((len(rows), 2, 2)), np.zeros((len(rows), 2)), np.zeros((len(rows), 2))
+    if not len(there):
+        return rows, matrices, centres_old, centres_new
     counts = np.diff(old.offsets)[there]
     begins = np.concatenate(([0], np.cumsum(counts)))[:-1]
     p = np.concatenate([old.points[old.offsets[k]:old.offsets[k + 1]] for k in there])
@@ -84,7 +87,6 @@ def affine_maps(old, new):
     p, q = p - np.repeat(centre_p, counts, axis=0), q - np.repeat(centre_q, counts, axis=0)
     moments = np.add.reduceat(p[:, :, None] * p[:, None, :], begins)
     mixed = np.add.reduceat(q[:, :, None] * p[:, None, :], begins)
-    matrices, centres_old, centres_new = np.zeros((len(rows), 2, 2)), np.zeros((len(rows), 2)), np.zeros((len(rows), 2))
     matrices[there] = mixed @ np.linalg.inv(moments)
     centres_old[there], centres_new[there] = centre_p, centre_q
     return rows, matrices, centres_old, centres_new

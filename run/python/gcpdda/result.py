@@ -262,7 +262,10 @@ class Result(Folder):
 
     @property
     def energy(self):
-        return self.history("energy")
+        """Energies over time; empty before the first row."""
+        import pandas
+        path = self.path / "history" / "energy.csv"
+        return read_csv(path) if path.exists() else pandas.DataFrame()
 
     @property
     def bolts(self):

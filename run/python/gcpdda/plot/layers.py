@@ -59,7 +59,7 @@ class Shown:
 
     @functools.cached_property
     def polygons(self):
-        return np.split(self.points, self.offsets[1:-1])
+        return np.split(self.points, self.offsets[1:-1])[:len(self.ids)]  # none where no block is left
 
     @functools.cached_property
     def centroids(self):
@@ -163,8 +163,10 @@ class Blocks(Layer):
 
 
 def start_of(reference, frame):
-    """Displacements in a reference frame of the blocks of a frame, which may be fewer."""
-    known = dict(zip(reference.ids.tolist(), reference.values("displacement")[:, :2]))
+    """Displacements in a reference frame of the blocks of a frame; those of the frame itself of blocks that are gone in
+    the reference: they have none since then."""
+    known = dict(zip(frame.ids.tolist(), frame.values("displacement")[:, :2]))
+    known |= dict(zip(reference.ids.tolist(), reference.values("displacement")[:, :2]))
     return np.array([known[block] for block in frame.ids.tolist()]).reshape(-1, 2)
 
 
@@ -266,6 +268,7 @@ class JointStates(Layer):
         seen = set()
         for one in shown:
             lines = joint_lines(one)
+            one.frame.expect_contacts()
             if len(lines):
                 seen |= set(np.tile(one.frame.joints["state"].to_numpy(), 2)[style.within(lines, window)])
         self.present = [state for state in self.COLOURS if state in seen]

@@ -67,12 +67,13 @@ def draw_history(result, quantity, names=None):
     for name in names:
         table = result.history(name)
         try:
-            curves[name] = (table["time[s]"], values_of(table))
+            if len(table):
+                curves[name] = (table["time[s]"], values_of(table))
         except KeyError:
             pass  # a point has position and velocity alone
     if not curves:
-        raise ValueError(f"no history of {quantity}: monitored are {', '.join(names) or 'nothing'}; points have no "
-                         "rotation, stress or force")
+        raise ValueError(f"no history of {quantity} with rows: monitored are {', '.join(names) or 'nothing'}; points "
+                         "have no rotation, stress or force")
     largest = max(float(np.abs(values).max()) for _, values in curves.values())
     factor, unit = style.unit_prefix(unit, largest)
     figure, (axes,) = curve_figure()
@@ -102,6 +103,8 @@ def draw_profile(result, name, quantity, times=None):
         raise ValueError(f"no profile {name}: there are {', '.join(result.profiles) or 'none'}")
     label, unit, values_of = PROFILES[quantity]
     table = result.history(name)
+    if not len(table):
+        raise ValueError(f"the history of {name} has no rows")
     known = table["time[s]"].unique()
     if times is None:
         chosen = known[np.unique(np.linspace(0, len(known) - 1, 6).round().astype(int))[1 if len(known) > 1 else 0:]]
@@ -109,11 +112,12 @@ def draw_profile(result, name, quantity, times=None):
         chosen = [known[np.abs(known - time).argmin()] for time in np.atleast_1d(times)]
     values = values_of(table)
     factor, unit = style.unit_prefix(unit, float(np.abs(values).max()))
-    step = np.diff(np.sort(table["distance[m]"].unique())).min(initial=np.inf)
+    distance = table["distance[m]"].astype(float)  # whole numbers alone are read as integers
+    step = np.diff(np.sort(distance.unique())).min(initial=np.inf)
     figure, (axes,) = curve_figure()
     for colour, time in zip(plt.get_cmap("viridis")(np.linspace(0.85, 0.0, len(chosen))), chosen):
         rows = table["time[s]"] == time
-        along, height = table["distance[m]"][rows].to_numpy(), values[rows].to_numpy() * factor
+        along, height = distance[rows].to_numpy(), values[rows].to_numpy() * factor
         gaps = np.flatnonzero(np.diff(along) > 1.5 * step) + 1
         axes.plot(np.insert(along, gaps, np.nan), np.insert(height, gaps, np.nan), color=colour, lw=1.2, marker=".",
                   ms=4, label=f"t = {time:.4g} s")
@@ -147,6 +151,8 @@ def energy_parts(table):
 
 def draw_energy(result):
     table = result.energy
+    if not len(table):
+        raise ValueError(f"the history of energies in {result.path} has no rows")
     time = table["time[s]"]
     parts = energy_parts(table)
     largest = max(float(np.abs(values).max()) for values in parts.values())

@@ -49,6 +49,8 @@ def view(frames):
         return (points.min(axis=0), points.max(axis=0)) if len(points) else None
 
     mobile, fixed = box(False), box(True)
+    if mobile is None and fixed is None:
+        raise ValueError("there are no blocks to draw: none is left in these frames")
     low, high = mobile or fixed
     extent = (high - low).max()
     low, high = low - 0.03 * extent, high + 0.03 * extent

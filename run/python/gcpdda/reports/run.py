@@ -140,6 +140,9 @@ def _stages(page, result):
         if settings.get(row["name"], {}).get("set"):
             page.keys(settings[row["name"]]["set"])
         number = result.at(row["end"]).number
+        if not len(result.frame(number).ids):
+            page.text("No block is left.")
+            continue
         pictures = [(picture(result.plot.field("permanent", since=row["name"], frame=number)),
                      f"Displacement since stage {row['name']} began, at its end.")]
         if draws_joints(result):
@@ -170,6 +173,9 @@ def close_up(result):
 
 def _end(page, result):
     page.section("State at the end")
+    if not len(result.frame("last").ids):
+        page.text("No block is left.")
+        return
     plots, part = result.plot, {"window": close_up(result)}
     if part["window"]:
         page.text("The pictures show the part of the model that has moved most.", "note")
@@ -195,21 +201,22 @@ def _end(page, result):
 
 
 def _histories(page, result):
-    if result.profiles:
+    profiles = [name for name in result.profiles if len(result.history(name))]
+    names = [name for name in result.histories if len(result.history(name))]
+    if profiles:
         page.section("Profiles")
-        page.pictures(*((picture(result.plot.profile(name)), f"Displacement along {name}.")
-                        for name in result.profiles))
-    if not result.histories:
+        page.pictures(*((picture(result.plot.profile(name)), f"Displacement along {name}.") for name in profiles))
+    if not names:
         return
     page.section("Histories")
     page.pictures((picture(result.plot.history("displacement")),
                    "Displacement of monitored blocks and points; stages are marked."))
-    columns = [column for name in result.histories for column in result.history(name).columns]
+    columns = [column for name in names for column in result.history(name).columns]
     page.pictures((picture(result.plot.history("speed")), "Their speed."))
     if "sxx[Pa]" in columns:
         page.pictures((picture(result.plot.history("fy")), "Vertical contact force on monitored blocks."))
     rows = []
-    for name in result.histories:
+    for name in names:
         table = result.history(name)
         last = {"monitor": name, "rows": len(table)} | {column: float(table[column].iloc[-1])
                                                         for column in table.columns}
@@ -220,12 +227,10 @@ def _histories(page, result):
 
 def residual_share(result):
     """The residual over the energy that was turned over: losses, work, and the largest change of what is stored."""
-    try:
-        parts = energy_parts(result.energy)
-    except (KeyError, ValueError):
+    table = result.energy
+    if not len(table):
         return None
-    if not len(parts["residual"]):
-        return None
+    parts = energy_parts(table)
     turned_over = max(float(np.abs(values).max()) for name, values in parts.items() if name != "residual")
     return float(np.abs(parts["residual"]).max()) / turned_over if turned_over > 0.0 else 0.0
 
