@@ -1,6 +1,7 @@
 """Reports: that they hold what they promise, in one file without links to elsewhere, and that a browser shows them."""
 
 import base64
+import html
 import html.parser
 import io
 import json
@@ -92,6 +93,55 @@ def test_of_a_search(search, tmp_path):
     headings, _, text = check(gcpdda.report(search.path, tmp_path / "fos.html", frames=4))
     assert headings[:2] == ["Trials", "Mechanism"] and "Factor of safety" in text
     assert f"{len(search.summary['moving'])} blocks move" in text
+
+
+def verdicts(page):
+    return re.findall(r'<p class="verdict (\w+)">([^<]*)</p>', html.unescape(page.read_text()))
+
+
+def changed(search, folder, **values):
+    """A copy of a search with other values in fos.json."""
+    shutil.copytree(search.path, folder)
+    path = folder / "fos.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | values))
+    return folder
+
+
+@pytest.mark.parametrize("values, kind, said", [
+    ({"found": 0, "undecided": [1.28]}, "open", "hold when strengths are divided by .* and fail at .* undecided"),
+    ({"found": 0}, "open", "lies anywhere between two trials.* the search ended before"),
+    ({"found": 0, "fails": None, "factor": None}, "open", "still hold at 1.2[0-9]+; no factor tried"),
+    ({"found": 0, "holds": None, "factor": None}, "open", "fail already at 1.3[0-9]*, the smallest"),
+    ({"found": 0, "holds": None, "fails": None, "factor": None}, "open", "No trial came to a verdict"),
+])
+def test_of_a_search_that_knows_a_part(search, tmp_path, values, kind, said):
+    page = gcpdda.report(changed(search, tmp_path / "fos", **values), frames=0)
+    (shown, text), = verdicts(page)
+    assert shown == kind and re.search(said, text)
+
+
+def test_of_a_search_with_a_first_block_and_a_weak_settled_state(search, tmp_path):
+    settled = search.summary["settled"] | {"factor": 0.5}
+    folder = changed(search, tmp_path / "fos", first_block_holds=1.0, first_block_fails=1.02, settled=settled)
+    scene = folder / "settled" / "scene.toml"
+    scene.write_text(scene.read_text() + '\n[earthquake]\nrecord = "shaking.csv"\n')
+    page = gcpdda.report(folder, frames=0)
+    text = html.unescape(page.read_text())
+    assert verdicts(page)[1] == ("good", "First block: factor 1.01, holds at 1 and fails at 1.02.")
+    assert "rest with strengths divided by 0.5." in text and "blocks that were never shaken" in text
+    assert "<th>decided by</th>" in text and "static solver and dynamic step" in text
+    assert "<th>displacement in x (m)</th>" in text
+
+
+def test_of_a_bound(tmp_path):
+    folder = tmp_path / "bound"
+    subprocess.run([gcpdda.program(), "fos", str(SCENES / "plane_failure.toml"), "--bound", "--out", str(folder)],
+                   check=True, capture_output=True)
+    search = gcpdda.open_folder(folder)
+    page = gcpdda.report(folder, frames=0)
+    (kind, text), = verdicts(page)
+    assert kind == "open" and f"at most {search.bound:.5g}, by limit analysis" in text and 1.9 < search.bound < 2.0
+    assert "Trials" not in Reader(page.read_text()).headings
 
 
 def test_of_a_trial(search, tmp_path):

@@ -344,6 +344,11 @@ class Safety(Folder):
         return self.summary["fails"]
 
     @property
+    def bound(self):
+        """The upper bound of `gcpdda fos --bound`, None where that was not asked for or limit analysis finds none."""
+        return self.summary["bound"]
+
+    @property
     def trials(self):
         return read_csv(self.path / "fos_trials.csv")
 

@@ -13,57 +13,110 @@ COLOURS = {"settled": "#2e7d4f", "failed": "#b0332a"}
 
 def safety_page(search, title, frames):
     page = Page(title)
-    summary = search.summary
-    if summary["found"]:
-        page.verdict(f"Factor of safety {summary['factor']:.4g}: the blocks hold when strengths are divided by "
-                     f"{summary['holds']:.5g} and fail at {summary['fails']:.5g}.",
-                     "good" if summary["factor"] >= 1.0 else "bad")
-    else:
-        page.verdict("The factor of safety has not been found: no bracket between a trial that holds and one that "
-                     "fails.", "open")
+    summary, settled = search.summary, search.settled
+    # A search without trials has been asked for the bound alone.
+    page.verdict(*(factor_words(summary) if summary["trials"] else bound_words(summary)))
+    if summary["trials"] and "first_block_holds" in summary:
+        page.verdict(*first_block_words(summary))
     mechanism = search.mechanism
     cards = {"laws weakened": ", ".join(summary["families"]) or "all", "trials": str(len(summary["trials"])),
              "blocks that move": str(len(summary["moving"])),
              "CPU time": f"{sum(t['cpu_s'] for t in summary['trials']):.3g} s"}
     page.cards(cards)
-    _trials(page, search)
+    if settled.scene.get("earthquake", {}).get("record"):
+        page.text("The earthquake of the scene is left out: the factor is that of blocks that were never shaken.")
+    if summary["trials"]:
+        _trials(page, search)
     if mechanism is not None and mechanism.frames:
         _mechanism(page, search, mechanism, frames)
-    settled = search.settled
     add_scene(page, settled.scene, settled)
     page.section("Settled state")
     if settled.frames:
         most, name, _ = moved_most(settled.frame("last"))
-        page.text("Trials begin from this state, in which the blocks rest with their full strength. "
-                  f"{name} has moved most, by {length(most)}.")
+        factor = summary["settled"]["factor"]
+        strength = "their full strength" if factor == 1.0 else f"strengths divided by {factor:g}"
+        words = "Trials begin from this state" if summary["trials"] else "Limit analysis is done at this state"
+        page.text(f"{words}, in which the blocks rest with {strength}. {name} has moved most, by {length(most)}.")
         page.pictures((picture(settled.plot.field("displacement")), "Displacement while settling."),
-                      (picture(settled.plot.crosses()), "Principal stresses before strengths are lowered."))
+                      (picture(settled.plot.crosses()), "Principal stresses in the settled state."))
     add_provenance(page, search, settled.path / "scene.toml", facts(settled), "fos")
     return page
 
 
+def factor_words(summary):
+    """What the trials say about the factor of safety, and whether that is good, bad or open."""
+    holds, fails = summary["holds"], summary["fails"]
+    if holds is None and fails is None:
+        return "No trial came to a verdict.", "open"
+    if fails is None:
+        return f"The blocks still hold at {holds:.5g}; no factor tried made them fail.", "open"
+    if holds is None:
+        words = f"The blocks fail already at {fails:.5g}, the smallest factor tried."
+        return words, "bad" if fails <= 1.0 else "open"
+    bracket = f"the blocks hold when strengths are divided by {holds:.5g} and fail at {fails:.5g}"
+    if summary["found"]:
+        return (f"Factor of safety {summary['factor']:.4g}: {bracket}.",
+                "good" if summary["factor"] >= 1.0 else "bad")
+    reason = ("trials in between are undecided" if summary["undecided"]
+              else "the search ended before the bracket was as narrow as fos.tolerance")
+    return f"The factor of safety lies anywhere between two trials: {bracket}; {reason}.", "open"
+
+
+def first_block_words(summary):
+    """What the trials say about the first block that fails, where fos.ignore_area or fos.region leave some out."""
+    holds, fails = summary["first_block_holds"], summary["first_block_fails"]
+    if fails is None:
+        return "First block: none fails at any factor tried.", "open"
+    if holds is None:
+        return f"First block: fails already at {fails:.5g}.", "bad" if fails <= 1.0 else "open"
+    factor = 0.5 * (holds + fails)
+    return (f"First block: factor {factor:.4g}, holds at {holds:.5g} and fails at {fails:.5g}.",
+            "good" if factor >= 1.0 else "bad")
+
+
+def bound_words(summary):
+    """The upper bound of limit analysis, and whether that is good, bad or open."""
+    bound, resting = summary["bound"], summary["resting_bound"]
+    if bound is None:
+        text = ("Limit analysis gives no bound: forces balance the loads at the largest factor (fos.to), or the "
+                "strengths have no part in it.")
+    else:
+        text = (f"Factor of safety at most {bound:.5g}, by limit analysis of rigid blocks at the settled state: with "
+                "strengths divided by more no forces balance the loads.")
+    if resting is not None and resting != bound:
+        text += (f" Blocks that do not slide on hold at most at {resting:.5g}: beyond it joints have to close that are "
+                 "open by up to a tenth of a block's size.")
+    return text, "bad" if bound is not None and bound < 1.0 else "open"
+
+
 def _trials(page, search):
     page.section("Trials")
-    page.pictures((picture(draw_trials(search)),
-                   "Largest motion in each trial in sizes of a block, over the factor that divides the "
-                   "strengths. The factor of safety lies in the grey band."))
+    words = "Largest motion in each trial in sizes of a block, over the factor that divides the strengths."
+    if has_bracket(search.summary):
+        words += " The factor of safety lies in the grey band."
+    page.pictures((picture(draw_trials(search)), words))
     page.table(search.trials, {"factor[-]": "factor", "verdict": "verdict", "time[s]": "time (s)", "steps": "steps",
                                "moved[-]": "largest motion (block sizes)",
-                               "unbalanced_ratio[-]": "unbalanced ratio (-)", "cpu[s]": "CPU time (s)"})
+                               "unbalanced_ratio[-]": "unbalanced ratio (-)", "cpu[s]": "CPU time (s)",
+                               "decided_by": "decided by"})
     slides_from = search.summary.get("slides_from")
     if slides_from:
-        page.text(f"At {slides_from:.5g} blocks slide to where they hold; fos.largest_motion says from where on that is "
-                  "failure.", "note")
+        page.text(f"At {slides_from:.5g} blocks slide to where they hold; fos.largest_motion says from where on that "
+                  "is failure.", "note")
     if search.summary["undecided"]:
         page.text("Trials without a verdict at their limit stay in the bracket; a longer fos.limit may decide them.",
                   "note")
+
+
+def has_bracket(summary):
+    return summary["holds"] is not None and summary["fails"] is not None
 
 
 def draw_trials(search):
     trials, summary = search.trials, search.summary
     with plt.rc_context(style.PARAMETERS):
         figure, axes = plt.subplots(figsize=(7.2, 2.8), layout="constrained")
-    if summary["found"]:
+    if has_bracket(summary):
         axes.axvspan(summary["holds"], summary["fails"], color="#d9dde2", lw=0)
     for verdict, rows in trials.groupby("verdict"):
         axes.semilogy(rows["factor[-]"], np.maximum(rows["moved[-]"], 1e-12), "o", ms=6,
@@ -97,5 +150,6 @@ def _mechanism(page, search, mechanism, frames):
                        "Strength that contacts use, with strengths divided by the factor."))
     farthest = sorted(moving, key=lambda entry: -entry["motion"])[:15]
     page.table([entry | {"rotation": float(np.degrees(entry["rotation"]))} for entry in farthest],
-               {"block": "block", "x": "x (m)", "y": "y (m)", "rotation": "rotation (°)", "motion": "motion (m)"})
+               {"block": "block", "x": "displacement in x (m)", "y": "displacement in y (m)",
+                "rotation": "rotation (°)", "motion": "motion (m)"})
     page.text("The blocks that have moved farthest.", "note")
