@@ -10,12 +10,14 @@ import shutil
 import subprocess
 
 import browser
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from conftest import SCENES, SOURCE
 from PIL import Image
 
 import gcpdda
+from gcpdda.reports.ensemble import draw_factors
 from gcpdda.reports.page import Page, text_of
 from gcpdda.reports.run import residual_share
 
@@ -152,6 +154,24 @@ def test_of_a_trial(search, tmp_path):
 def test_of_an_ensemble(members, tmp_path):
     headings, _, text = check(gcpdda.report(members.path, tmp_path / "ensemble.html"))
     assert headings[0] == "Members" and "Probability of failure" in text
+
+
+def test_of_an_ensemble_of_which_not_all_run_and_have_a_factor(members, tmp_path):
+    """Shares are those of ensemble.txt: members that cannot run have no part; factors are those of brackets."""
+    folder = tmp_path / "ensemble"
+    shutil.copytree(members.path, folder)
+    (folder / "ensemble.json").write_text(json.dumps(
+        members.summary | {"done": 8, "holds": 3, "fails": 1, "undecided": 0, "cannot_run": 4, "measure": "factor",
+                           "probability_of_failure": 0.25, "factors": 2, "mean": 1.1, "deviation": 0.1, "skewness": 0.0,
+                           "least": 1.0, "most": 1.2}))
+    table = members.members
+    table["holds"], table["fails"] = [1.0, 1.1, 1.2, *[np.nan] * 5], [1.1, 1.3, np.nan, 0.5, *[np.nan] * 4]
+    table.to_csv(folder / "ensemble_members.csv", index=False)
+    text = gcpdda.report(folder).read_text()
+    assert "1 of 4 members fail" in text and "Factors of safety of the 2 members with" in text
+    figure = draw_factors(gcpdda.open_folder(folder).members)
+    assert sum(patch.get_height() for patch in figure.axes[0].patches) == 2
+    plt.close(figure)
 
 
 def test_of_a_run_that_goes_on(opening, tmp_path):

@@ -21,8 +21,9 @@ def ensemble_page(ensemble, title):
     if probability is None:
         page.verdict("No member has a verdict yet.", "open")
     else:
-        page.verdict(f"Probability of failure {probability:.3g}: {summary['fails']} of {summary['done']} members fail; "
-                     f"with {100 * summary['confidence']:.0f} % confidence it lies between {summary['low']:.3g} and "
+        trials = summary["holds"] + summary["fails"] + summary["undecided"]  # members that cannot run are none
+        page.verdict(f"Probability of failure {probability:.3g}: {summary['fails']} of {trials} members fail; with "
+                     f" {100 * summary['confidence']:.0f} % confidence it lies between {summary['low']:.3g} and "
                      f"{summary['high']:.3g}.",
                      "open" if summary["undecided"] else "good" if summary["fails"] == 0 else "bad")
     page.cards({"members": f"{summary['done']} of {summary['count']}", "hold": str(summary["holds"]),
@@ -30,7 +31,9 @@ def ensemble_page(ensemble, title):
                 "cannot run": str(summary["cannot_run"])})
     page.section("Members")
     if summary["measure"] == "factor" and summary["factors"]:
-        page.pictures((picture(draw_factors(members)), "Factors of safety of the members."))
+        page.pictures((picture(draw_factors(members)),
+                       f"Factors of safety of the {len(factors_of(members))} members with a trial that holds and one "
+                       "that fails."))
         page.table([{name: summary[name] for name in ("mean", "deviation", "skewness", "least", "most")}])
     page.pictures(*((picture(draw_values(members, key)), f"Values of {key} that members drew, by outcome.")
                     for key in summary["keys"]))
@@ -87,10 +90,15 @@ def draw_pair(members, x, y):
     return figure
 
 
+def factors_of(members):
+    """The middles of the brackets of the members that have one."""
+    return members[["holds", "fails"]].dropna().mean(axis=1)
+
+
 def draw_factors(members):
-    """Histogram of the middles of the brackets; failure is below 1."""
+    """Histogram of factors of safety; failure is below 1."""
     figure, axes = _axes()
-    factors = members[["holds", "fails"]].mean(axis=1).dropna()
+    factors = factors_of(members)
     axes.hist(factors, bins=min(24, max(6, len(factors) // 4)), color="#7fa8c9", edgecolor="white", linewidth=0.5)
     axes.axvline(1.0, color="#b0332a", lw=1.2)
     axes.set(xlabel="factor of safety (-)", ylabel="members")
