@@ -12,6 +12,7 @@ from conftest import SCENES, SOURCE
 
 import gcpdda
 from gcpdda.errors import error_of
+from gcpdda.result import path_parts
 
 
 def sliding_block(**run):
@@ -60,6 +61,48 @@ def test_toml_holds_what_was_put_in():
                               "slope": {"toe_length": 2.5}}
     assert read["joint_set"] == [{"dip_deg": 35, "spacing_scatter": {"kind": "normal", "deviation": 0.2}}]
     assert read["stage"][0]["set"] == {"joint.default.friction_angle_deg": 25.0, "water.low.active": True}
+
+
+def test_names_with_dots_and_lists_in_tables():
+    scene = sliding_block()
+    scene.material("rock.hard", density=2700)
+    scene.joint("j.b", cohesion=1.0, materials=["rock", "rock.hard"])
+    scene.table("ensemble", count=3)
+    for key in ("joint.default.cohesion", "material.rock.density"):
+        scene.add("ensemble.vary", key=key, kind="uniform", low=1.0, high=2.0)
+    read = tomllib.loads(scene.toml())
+    assert read["material"] == {"rock": {"density": 2600}, "rock.hard": {"density": 2700}}
+    assert read["joint"]["j.b"]["cohesion"] == 1.0
+    assert read["ensemble"]["count"] == 3
+    assert [entry["key"] for entry in read["ensemble"]["vary"]] == ["joint.default.cohesion", "material.rock.density"]
+    del scene.tables["ensemble"]
+    scene.tables["block"][1]["material"] = "rock.hard"
+    gcpdda.inspect(scene)
+    assert path_parts('joint."j.b".cohesion') == path_parts("joint.'j.b'.cohesion") == ("joint", "j.b", "cohesion")
+
+
+def test_files_of_scenes_are_kept(tmp_path):
+    """The file that a scene was read from, and the one beside results whose run is not replaced."""
+    mine = tmp_path / "mine.toml"
+    text = "# a comment\n" + sliding_block().toml()
+    mine.write_text(text)
+    scene = gcpdda.Scene.read(mine)
+    assert gcpdda.run(scene, ranks=1, out=tmp_path / "mine").verdict == "completed"
+    scene.joint("default", friction_angle_deg=11)
+    with pytest.raises(FileExistsError, match="choose another"):
+        gcpdda.run(scene.copy(), ranks=1, out=tmp_path / "mine", overwrite=True)
+    assert mine.read_text() == text
+
+    gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    kept = (tmp_path / "run.toml").read_text()
+    scene.joint("default", friction_angle_deg=12)
+    with pytest.raises(gcpdda.FileError):
+        gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    assert (tmp_path / "run.toml").read_text() == kept
+    (tmp_path / "run.toml").unlink()
+    with pytest.raises(gcpdda.FileError):
+        gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    assert not (tmp_path / "run.toml").exists()
 
 
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)

@@ -118,10 +118,9 @@ def track(joints, first, frame):
 def strength_laws(result, time):
     """The laws of a scene as they are at a time, with what stages have set: {name: keys}, keys of default filled in."""
     laws = {name: dict(keys) for name, keys in result.scene["joint"].items()}
-    for path, value in result.set_by_stages(time).items():
-        parts = path.split(".")
-        if parts[0] == "joint" and len(parts) >= 3:
-            laws.setdefault(".".join(parts[1:-1]), {})[parts[-1]] = value
+    for parts, value in result.set_by_stages(time).items():
+        if parts[0] == "joint" and len(parts) == 3:
+            laws.setdefault(parts[1], {})[parts[2]] = value
     default = laws.get("default", {})
     inherited = {key: value for key, value in default.items() if key != "materials"}
     # The law of rollers that the program adds has neither friction nor cohesion.

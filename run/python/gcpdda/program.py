@@ -8,11 +8,13 @@ import shutil
 import subprocess
 import sys
 import threading
+import tomllib
 
 from .errors import GcpddaError, NumericalError, Stopped, Undecided, error_of
 from .result import Ensemble, Result, Safety
 from .scene import Scene, toml_value
 
+FILES_EXIT_CODE = 4  # a file cannot be read or written, or the result folder holds another run
 _HERE = pathlib.Path(__file__).resolve().parent
 
 
@@ -37,7 +39,8 @@ def run(scene, ranks=2, set=None, out=None, *, overwrite=False, progress=False, 
     """Runs a scene, a path or a `Scene`, and returns its `Result`.
 
     set         values of the scene to replace, by path: {"joint.default.friction_angle_deg": 36}
-    out         result folder; results/<name of the scene> if not given. A `Scene` is written as OUT.toml beside it.
+    out         result folder; results/<name of the scene> if not given. A `Scene` is written as OUT.toml beside it;
+                the file that it was read from is never replaced
     overwrite   whether a run in the result folder is replaced; otherwise it is an error (FileError)
     progress    True prints what the program prints, and the simulated time on a terminal; a function is called as
                 progress(time, line) with the simulated time in s and a line of the program, or None as time goes on
@@ -134,8 +137,9 @@ def _environment(ranks):
 
 def _execute(task, scene, ranks, values, out, overwrite, progress, executable, words):
     """Runs the program, returns what it prints, raises the exception for its exit code."""
+    written, before = None, None
     if isinstance(scene, Scene):
-        scene = scene.write(out.with_name(out.name + ".toml"))
+        scene, written, before = _written(scene, out.with_name(out.name + ".toml"))
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     command += [program(executable), task, str(scene), *words]
     if task != "inspect":
@@ -152,9 +156,30 @@ def _execute(task, scene, ranks, values, out, overwrite, progress, executable, w
             if process.poll() is None:
                 process.terminate()
     output = "\n".join(lines)
+    if process.returncode == FILES_EXIT_CODE and written is not None:
+        _put_back(written, before)
     if process.returncode != 0:
         raise error_of(process.returncode, output, out if out.exists() else None)
     return output
+
+
+def _written(scene, path):
+    """The file of a scene for the program; the same where this call has written it, and what was in it before."""
+    if not scene.is_read_from(path):
+        before = path.read_bytes() if path.exists() else None
+        return scene.write(path), path, before
+    if tomllib.loads(path.read_text()) != tomllib.loads(scene.toml()):
+        raise FileExistsError(f"the scene was read from {path} and has changed: its file would be replaced; choose "
+                              "another result folder with out")
+    return path, None, None
+
+
+def _put_back(path, content):
+    """Of a run that is refused: OUT.toml goes on belonging to what is in OUT."""
+    if content is None:
+        path.unlink()
+    else:
+        path.write_bytes(content)
 
 
 def _follow(process, result, lines, say):

@@ -30,6 +30,11 @@ def read_csv(path):
     return pandas.read_csv(io.StringIO(text[: text.rfind("\n") + 1]), float_precision="round_trip")
 
 
+def path_parts(path):
+    """The names of a path such as joint."rock.hard".cohesion, in which those with dots are quoted."""
+    return tuple("".join(found) for found in re.findall(r"\"([^\"]*)\"|'([^']*)'|([^.\s\"']+)", path))
+
+
 def trial_folder(factor):
     """Name of the folder of a trial of `gcpdda fos`."""
     return f"F{factor:.9g}"
@@ -156,13 +161,14 @@ class Result(Folder):
         return [*ended.values(), *last]
 
     def set_by_stages(self, time):
-        """Values of the scene that stages which began before a time in s have set: {path: value}."""
+        """Values of the scene that stages which began before a time in s have set, by the parts of their paths:
+        {("joint", "default", "cohesion"): value}."""
         begins = dict(zip(self.stages["name"], self.stages["begin"]))
         values = {}
         for name, stage in self._stage_tables.items():
             begin = begins.get(name)
             if begin is not None and (begin == 0.0 or begin < time - 1e-9 * max(time, 1.0)):
-                values |= stage.get("set", {})
+                values |= {path_parts(path): value for path, value in stage.get("set", {}).items()}
         return values
 
     @property

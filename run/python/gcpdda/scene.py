@@ -59,7 +59,7 @@ class Scene:
     """
 
     def __init__(self, name="scene", folder=".", **run):
-        self.name, self.folder = name, pathlib.Path(folder)
+        self.name, self.folder, self.file = name, pathlib.Path(folder), None
         self.tables = {"run": dict(run)}
 
     @classmethod
@@ -67,6 +67,7 @@ class Scene:
         """The scene of a TOML file. Comments are not kept."""
         path = pathlib.Path(path)
         scene = cls(path.stem, path.parent)
+        scene.file = path
         scene.tables = tomllib.loads(path.read_text())
         return scene
 
@@ -75,22 +76,26 @@ class Scene:
 
     def table(self, name, /, **keys):
         """Adds keys to the table [name], such as output or region.slope, and returns it."""
+        return self._add(name.split("."), keys)
+
+    def _add(self, path, keys):
         table = self.tables
-        for part in name.split("."):
+        for part in path:
             table = table.setdefault(part, {})
         table.update(keys)
         return table
 
     def add(self, name, /, **keys):
-        """Appends a table [[name]], such as joint_set, wall, opening or bolt, and returns it."""
-        self.tables.setdefault(name, []).append(keys)
+        """Appends a table [[name]], such as joint_set, wall, bolt or ensemble.vary, and returns it."""
+        *path, last = name.split(".")
+        self._add(path, {}).setdefault(last, []).append(keys)
         return keys
 
     def material(self, name, /, **keys):
-        return self.table(f"material.{name}", **keys)
+        return self._add(["material", name], keys)
 
     def joint(self, name="default", /, **keys):
-        return self.table(f"joint.{name}", **keys)
+        return self._add(["joint", name], keys)
 
     def block(self, name, vertices, material, **keys):
         return self.add("block", name=name, material=material, vertices=vertices, **keys)
@@ -117,6 +122,10 @@ class Scene:
             else:
                 parts.insert(0, f"{_key(name)} = {toml_value(value)}\n")
         return "\n".join(parts)
+
+    def is_read_from(self, path):
+        """Whether a file is the one that the scene was read from."""
+        return self.file is not None and pathlib.Path(path).exists() and self.file.exists() and self.file.samefile(path)
 
     def write(self, path):
         """Writes the scene as TOML and returns the path. Files it names are found from the new place, too."""

@@ -12,10 +12,9 @@ PRESSURE = LinearSegmentedColormap.from_list("pressure", ["#b9dcf2", "#2f7fd6", 
 def waters(result, time):
     """The water tables of a scene as they are at a time, with what stages have set: {name: keys}."""
     tables = {name: dict(keys) for name, keys in result.scene.get("water", {}).items()}
-    for path, value in result.set_by_stages(time).items():
-        parts = path.split(".")
-        if parts[0] == "water" and len(parts) >= 3 and ".".join(parts[1:-1]) in tables:
-            tables[".".join(parts[1:-1])][parts[-1]] = value
+    for parts, value in result.set_by_stages(time).items():
+        if parts[0] == "water" and len(parts) == 3 and parts[1] in tables:
+            tables[parts[1]][parts[2]] = value
     return tables
 
 
