@@ -41,6 +41,24 @@ def test_names_areas_and_centroids(opening):
     assert monitored["y[m]"].iloc[-1] == pytest.approx(row["y"], abs=1e-9)
 
 
+def test_names_where_walls_and_pyramids_alternate(tmp_path):
+    scene = tmp_path / "alternating.toml"
+    bricks = 'material = "rock"\nrows = 2\nblock_size = [1.0, 0.5]\n'
+    scene.write_text('[run]\nduration = 0.01\n[material.rock]\ndensity = 2600.0\n[joint.default]\n'
+                     'normal_stiffness = 1e9\nfriction_angle_deg = 31.0\n'
+                     f'[[wall]]\ncolumns = 2\norigin = [0, 0]\n{bricks}'
+                     f'[[pyramid]]\nname = "p"\norigin = [5, 0]\n{bricks}'
+                     f'[[wall]]\ncolumns = 3\norigin = [12, 0]\nbond = 0.0\n{bricks}'
+                     '[[block]]\nmaterial = "rock"\nfixed = true\nvertices = [[-3, -1], [25, -1], [25, 0], [-3, 0]]\n'
+                     '[[monitor]]\nblock = "p.1.0"\n[[monitor]]\nblock = "wall1.1.2"\n')
+    result = gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    blocks = result.frame("first").blocks
+    assert list(blocks["name"].iloc[[1, 6, 9]]) == ["wall0.0.0", "p.0.0", "wall1.0.0"]
+    for name in ("p.1.0", "wall1.1.2"):
+        start = result.history(name).iloc[0]
+        assert blocks.loc[blocks["name"] == name, ["x", "y"]].values[0] == pytest.approx(start[["x[m]", "y[m]"]].values)
+
+
 def test_profiles_are_lines_of_points(leaning, opening):
     assert leaning.profiles == ["chain"] and "chain" not in leaning.histories and not opening.profiles
     table = leaning.history("chain")

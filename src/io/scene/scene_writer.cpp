@@ -48,29 +48,32 @@ public:
 
   // Values stand before sub-tables, as TOML demands.
   void write(const toml::table &table, const std::string &path) {
-    std::vector<std::pair<Origins::Order, std::pair<std::string, const toml::node *>>> entries;
+    std::vector<std::pair<Origins::Order, std::string>> values;
+    std::vector<std::pair<Origins::Order, Part>> parts;
     for (const auto &[key, node] : table) {
-      entries.emplace_back(origins_->order(key.source()), std::pair(std::string(key.str()), &node));
-    }
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const auto &a, const auto &b) { return a.first < b.first; });
-    for (const auto &[order, entry] : entries) {
-      if (!is_table(*entry.second)) {
-        text_ += fmt::format("{} = {}\n", key_text(entry.first), value_text(*entry.second));
+      const Origins::Order order = origins_->order(key.source());
+      const std::string name = key_text(std::string(key.str()));
+      const std::string below = path.empty() ? name : path + "." + name;
+      if (const auto *sub_table = node.as_table()) {
+        const bool has_header = !path.empty() || !holds_only_tables(*sub_table); // [material] needs none
+        parts.emplace_back(order, Part{has_header ? fmt::format("[{}]", below) : "", below, sub_table});
+      } else if (node.is_array_of_tables()) { // those of two arrays may alternate
+        for (const toml::node &element : *node.as_array()) {
+          parts.emplace_back(origins_->order(element.source()),
+                             Part{fmt::format("[[{}]]", below), below, element.as_table()});
+        }
+      } else {
+        values.emplace_back(order, fmt::format("{} = {}\n", name, value_text(node)));
       }
     }
-    for (const auto &[order, entry] : entries) {
-      const std::string below = path.empty() ? key_text(entry.first) : path + "." + key_text(entry.first);
-      if (const auto *sub_table = entry.second->as_table()) {
-        if (path.empty() && holds_only_tables(*sub_table)) {
-          write(*sub_table, below); // [material] itself needs no header
-        } else {
-          write_below(fmt::format("[{}]", below), *sub_table, below);
-        }
-      } else if (is_table(*entry.second)) {
-        for (const toml::node &element : *entry.second->as_array()) {
-          write_below(fmt::format("[[{}]]", below), *element.as_table(), below);
-        }
+    for (const auto &[order, text] : sorted(std::move(values))) {
+      text_ += text;
+    }
+    for (const auto &[order, part] : sorted(std::move(parts))) {
+      if (part.header.empty()) {
+        write(*part.table, part.path);
+      } else {
+        write_below(part.header, *part.table, part.path);
       }
     }
   }
@@ -78,6 +81,19 @@ public:
   [[nodiscard]] std::string take_text() { return std::move(text_); }
 
 private:
+  struct Part {
+    std::string header; ///< empty where the parts of the table have headers alone
+    std::string path;
+    const toml::table *table;
+  };
+
+  template <class T>
+  static std::vector<std::pair<Origins::Order, T>> sorted(std::vector<std::pair<Origins::Order, T>> entries) {
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const auto &a, const auto &b) { return a.first < b.first; });
+    return entries;
+  }
+
   static bool is_table(const toml::node &node) { return node.is_table() || node.is_array_of_tables(); }
 
   static bool holds_only_tables(const toml::table &table) {

@@ -446,6 +446,18 @@ TEST(SceneReader, ResolvedTextReadsBackToTheSameScene) {
   EXPECT_EQ(scene.materials[3].name, "aaa");
 }
 
+// Numbers of blocks follow the order of the file: a restart reads the resolved text.
+TEST(SceneReader, ResolvedTextKeepsTheOrderInWhichWallsAndPyramidsAlternate) {
+  const std::string bricks = "material = \"granite\"\norigin = [5, 0]\nrows = 2\nblock_size = [1, 1]\n";
+  const std::string wall = "[[wall]]\ncolumns = 2\n" + bricks;
+  const Scene scene = good(small_scene + wall + "[[pyramid]]\n" + bricks + wall);
+  const Scene again = good(scene.resolved);
+  ASSERT_EQ(again.generators.size(), 3U);
+  EXPECT_EQ(again.generators[1].kind, BrickGenerator::Kind::pyramid);
+  EXPECT_EQ(again.generators[2].name, "wall1");
+  EXPECT_EQ(scene.resolved, again.resolved);
+}
+
 TEST(SceneReader, ResolvedTextIsAsAPersonWouldWriteIt) {
   EXPECT_EQ(
       good(small_scene, {"run.scheme=newmark-dda", "block.slider.fixed=true", "run.safety=0.1"}).resolved,
