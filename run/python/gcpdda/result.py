@@ -163,7 +163,8 @@ class Result(Folder):
     def set_by_stages(self, time):
         """Values of the scene that stages which began before a time in s have set, by the parts of their paths:
         {("joint", "default", "cohesion"): value}."""
-        begins = dict(zip(self.stages["name"], self.stages["begin"]))
+        stages = self.stages
+        begins = dict(zip(stages["name"], stages["begin"]))
         values = {}
         for name, stage in self._stage_tables.items():
             begin = begins.get(name)
@@ -329,7 +330,7 @@ class Result(Folder):
 
 
 class Safety(Folder):
-    """The result folder of `gcpdda fos`: factor, holds, fails; trials and blocks as tables."""
+    """The result folder of `gcpdda fos`: factor, holds, fails, bound; trials and blocks as tables."""
 
     @property
     def summary(self):

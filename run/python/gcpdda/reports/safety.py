@@ -136,7 +136,7 @@ def _mechanism(page, search, mechanism, frames):
         turn = np.degrees(np.mean([abs(entry["rotation"]) for entry in moving]))
         angle = np.degrees(np.arctan2(y, x))
         page.text(f"{len(moving)} blocks move in the trial with the smallest factor that fails, "
-                  f"{search.fails or 0:.5g}: on average in the direction of {angle:.0f} degrees from the x axis, "
+                  f"{search.fails or 0:.5g}: on average in the direction of {round(angle)} degrees from the x axis, "
                   f"counter-clockwise, and they turn by {turn:.2g} degrees.")
     stills = limited(mechanism, frames)
     if stills:
