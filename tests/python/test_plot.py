@@ -136,6 +136,11 @@ def test_blocks_that_are_gone(opening, tmp_path):
     with pytest.raises(ValueError, match="no blocks to draw"):
         result.plot.field()
     assert "No block is left" in gcpdda.report(result.path, frames=2).read_text()
+    for frame in result.frames[:-1]:
+        frame.path.unlink()
+    alone = gcpdda.Result(result.path)
+    assert not len(alone.frame("first").joints)
+    assert "No block is left" in gcpdda.report(result.path, frames=0).read_text()
 
 
 def test_states_of_joints_need_contacts(tmp_path):

@@ -19,6 +19,8 @@ def find_joints(frame, gap=5e-3):
     """The joints of a frame: pairs of edges of opposite direction, not farther from each other than `gap` median block
     sizes. Fixed blocks have no joints with each other."""
     points, offsets = frame.points, frame.offsets
+    if not len(frame.ids):
+        return Joints(np.empty((0, 2), dtype=int), np.empty((0, 2, 2)))
     counts = np.diff(offsets)
     owner = np.repeat(np.arange(len(counts)), counts)
     following = np.arange(1, len(points) + 1)
@@ -73,7 +75,7 @@ def affine_maps(old, new):
     strain. Returns rows in `new` (-1 for a block that is missing there) by row in `old`, matrices, centres in `old`,
     centres in `new`."""
     row_of = {block: row for row, block in enumerate(new.ids.tolist())}
-    rows = np.array([row_of.get(block, -1) for block in old.ids.tolist()])
+    rows = np.array([row_of.get(block, -1) for block in old.ids.tolist()], dtype=int)
     there = np.flatnonzero(rows >= 0)
     matrices, centres_old, centres_new = np.zeros((len(rows), 2, 2)), np.zeros((len(rows), 2)), np.zeros((len(rows), 2))
     if not len(there):
@@ -96,7 +98,7 @@ def track(joints, first, frame):
     """Joints of the first frame in another one: their lines on the edges of the two blocks, openings and shear
     displacements, and which of the joints are left, whose two blocks are both there."""
     rows, matrices, old, new = affine_maps(first, frame)
-    position = np.full(int(first.ids.max()) + 1, -1)
+    position = np.full(int(first.ids.max(initial=-1)) + 1, -1)
     position[first.ids] = np.arange(len(first.ids))
     a, b = position[joints.blocks[:, 0]], position[joints.blocks[:, 1]]
     there = np.flatnonzero((rows[a] >= 0) & (rows[b] >= 0))

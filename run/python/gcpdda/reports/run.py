@@ -28,7 +28,7 @@ def picture(figure):
 def run_page(result, title, frames):
     page = Page(title)
     _head(page, result)
-    if result.frames:
+    if result.frames and len(result.frame("first").ids):
         _motion(page, result, frames)
     _warnings(page, result)
     add_scene(page, result.scene, result)
@@ -98,8 +98,9 @@ def _motion(page, result, frames):
 
 
 def limited(result, most):
-    """Stills for the player, fewer of them where they are large."""
-    if most == 0 or len(result.frames) < 2:
+    """Stills for the player, fewer of them where they are large; none where no block is left, since all that it shows
+    may be empty."""
+    if most == 0 or len(result.frames) < 2 or not len(result.frame("last").ids):
         return []
     size = max(len(image) for _, image in result.plot.stills(most=2, dpi=80))
     return list(result.plot.stills(most=max(2, min(most, PLAYER_BYTES // size)), dpi=80))

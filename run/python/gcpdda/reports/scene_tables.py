@@ -41,7 +41,7 @@ def named(tables):
 def add_scene(page, scene, result=None):
     """Geometry, materials and laws, loads of a scene; with its first frame if there is a result."""
     page.section("Geometry")
-    if result is not None and result.frames:
+    if result is not None and result.frames and len(result.frame("first").ids):
         page.table([{"part": name, "value": value} for name, value in sizes(result).items()])
     if scene.get("block"):
         page.heading("Single blocks")
