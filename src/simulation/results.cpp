@@ -3,6 +3,7 @@
 #include "io/results/id_slabs.hpp"
 
 #include "dynamics/deformable.hpp"
+#include "dynamics/water_pressure.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -68,18 +69,35 @@ BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 sta
   return row;
 }
 
+/// int f x^T of what acts on a rigid row beside its contacts: loads, water and fixed points, N.
+Mat2 dyad_of_loads(const RunState &run, std::size_t index) {
+  const BlockSystem &blocks = run.blocks;
+  const RigidDof &trial = blocks.trial[index];
+  const Rotation turn = Rotation::of(trial.r);
+  Mat2 dyad;
+  for (const MaterialLoad &load : blocks.loads_of(index)) {
+    dyad += outer(run.loads.force_of(load), turn(load.point));
+  }
+  for (const Anchor &anchor : blocks.anchors_of(index)) {
+    const Vec2 arm = turn(anchor.point);
+    dyad += outer(-anchor.stiffness * (trial.u + arm - anchor.point - anchor.held), arm);
+  }
+  if (!run.scene.water.empty()) {
+    TrialOutline outline;
+    dyad += water_load(blocks, index, run.scene.water, -run.loads.gravity(run.scene.run).y, outline).dyad;
+  }
+  return dyad;
+}
+
 /// (1/area) int sym(x f) of a rigid row's contacts and loads: on an edge under load half of it is the load's.
 std::array<double, 3> mean_rigid_stress(Simulation &simulation, std::size_t index) {
   const BlockSystem &blocks = simulation.blocks();
   std::array<double, 3> stress = contact_digest(simulation.state()).mean_stress(blocks, index);
-  const Rotation turn = Rotation::of(blocks.trial[index].r);
+  const Mat2 dyad = dyad_of_loads(simulation.state(), index);
   const double area = blocks.properties[index].area;
-  for (const MaterialLoad &load : blocks.loads_of(index)) {
-    const Mat2 dyad = outer(turn(load.point), simulation.state().loads.force_of(load));
-    stress[0] += dyad.xx / area;
-    stress[1] += dyad.yy / area;
-    stress[2] += 0.5 * (dyad.xy + dyad.yx) / area;
-  }
+  stress[0] += dyad.xx / area;
+  stress[1] += dyad.yy / area;
+  stress[2] += 0.5 * (dyad.xy + dyad.yx) / area;
   return stress;
 }
 

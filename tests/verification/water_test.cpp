@@ -2,6 +2,7 @@
 
 #include "geometry/polygon.hpp"
 #include "problem.hpp"
+#include "simulation/results.hpp"
 #include "support/contact_regions.hpp"
 
 #include <fmt/format.h>
@@ -43,6 +44,37 @@ TEST(Water, SubmergedSquareHasItsBuoyancy) {
     // Local damping leaves the last digits of the motion.
     expect_value(fmt::format("water: {} square on a floor, force of the joint, N/m", is_wet ? "wet" : "dry"),
                  weight, regions_of(simulation)[0].normal_force, 1e-6);
+  }
+}
+
+// Hung by the middle of its top in water, and touching nothing: the water presses on it as at its centre, and its
+// weight in water hangs half its height above the centre. Both kinds of blocks have this mean stress.
+TEST(Water, HungSquareHasTheStressOfWaterAndOfWhatHoldsIt) {
+  constexpr double top = 7.0;
+  constexpr double centre = 2.5;
+  for (const std::string fidelity : {"rigid", "deformable"}) {
+    const std::string toml = head({.duration = 2.0,
+                                   .run_keys = "local_damping = 0.8\n",
+                                   .fidelity = fidelity,
+                                   .youngs_modulus = 1e10,
+                                   .poissons_ratio = 0.25}) +
+                             water_toml({{-9.0, top}, {9.0, top}}) +
+                             block_toml("floor", rectangle({-3.0, -1.0}, {3.0, 0.0}), "fixed = true") +
+                             block_toml("square", rectangle({-0.5, centre - 0.5}, {0.5, centre + 0.5}),
+                                        "fixed_points = [[0.0, 3.0]]");
+    Simulation simulation(Communicator::self(), scene_of(toml));
+    run(simulation);
+    const SimulationFrame frame(simulation);
+    std::vector<FrameRow> rows;
+    std::vector<Vec2> vertices;
+    frame.append(0, 2, rows, vertices);
+    ASSERT_EQ(rows.size(), 2U);
+    const double pressure = unit_weight * (top - centre);
+    const double hanging = 0.5 * (rock_density - water_density) * earth_gravity;
+    // Rock that deforms strains by the pressure over its modulus, 4e-6, and so do area and depth.
+    expect_value("water: hung square, horizontal stress, " + fidelity, -pressure, rows[1].stress[0], 1e-5);
+    expect_value("water: hung square, vertical stress, " + fidelity, hanging - pressure, rows[1].stress[1],
+                 1e-5);
   }
 }
 
