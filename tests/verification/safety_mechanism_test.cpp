@@ -65,6 +65,22 @@ TEST(SafetyMechanism, ASmallBlockDoesNotGovernTheFactor) {
   }
 }
 
+// A bound without trials knows no mechanism, and says so.
+TEST(SafetyMechanism, ABoundIsThatOfAnyBlock) {
+  const std::string toml = head({.friction_deg = friction_deg}) +
+                           block_on_plane("small", {0.0, 0.0}, steep_deg, 1.0) +
+                           block_on_plane("large", {60.0, 0.0}, flat_deg, 6.0);
+  const SafetyOutcome outcome =
+      search_quietly(scene_of(without_duration(toml) +
+                              "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n[fos]\nignore_area = 2.0\n"),
+                     true);
+  expect_value("bound of two blocks on two planes", factor_of_small, outcome.report.bound.value_or(0.0),
+               3e-3);
+  const std::string text = to_text(outcome.report);
+  EXPECT_NE(text.find("the bound is that of any block"), std::string::npos) << text;
+  EXPECT_EQ(text.find("none fails at any factor tried"), std::string::npos) << text;
+}
+
 // What is larger than the area to ignore governs as before.
 TEST(SafetyMechanism, ALargerBlockDoes) {
   expect_value("factor of the first mechanism above 0.5 m2", factor_of_small,

@@ -240,7 +240,9 @@ std::string to_text(const SafetyReport &report) {
   }
   text += mechanism_text(report);
   if (report.first_block) {
-    text += words_on_first_block(*report.first_block);
+    text += report.is_bound_alone
+                ? "the bound is that of any block: fos.ignore_area and fos.region have no part in it\n"
+                : words_on_first_block(*report.first_block);
   }
   const double settled_at = report.settled.factor;
   text += fmt::format("settled state{}: t = {:.4g} s, {} steps, {} evaluations, {:.2f} CPU s\n",
