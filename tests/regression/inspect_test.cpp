@@ -443,8 +443,8 @@ TEST(Reference, HasEveryKeyAndIsThePageThatShips) {
       {"[blocks]", {"file"}},
       {"[output]", {"interval", "history_interval", "checkpoint_interval", "contacts"}},
       {"[fos]",
-       {"families", "from", "to", "tolerance", "limit", "patience", "failure_motion", "local_damping",
-        "ignore_area", "region"}},
+       {"families", "from", "to", "tolerance", "limit", "patience", "failure_motion", "largest_motion",
+        "local_damping", "ignore_area", "region"}},
       {"[[monitor]]", {"block", "name", "point", "along", "points"}}};
   for (const auto &[title, keys] : contract) {
     const std::string text = section(title);

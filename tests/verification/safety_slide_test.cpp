@@ -139,10 +139,11 @@ TEST(SafetySlides, AreasAndRegionsCountAsInFailures) {
   for (const std::string watched :
        {"ignore_area = 2.0\n", "region = [[50, -40], [90, -40], [90, 10], [50, 10]]\n"}) {
     const SafetyReport report = search_before_stops(largest + watched);
-    expect_value("the same of the first mechanism, " + watched.substr(0, watched.find(' ')), factor_of_large,
+    const std::string by = watched.substr(0, watched.find(' '));
+    expect_value("factor of the first mechanism that slides to a stop, " + by, factor_of_large,
                  middle_of(report), 0.01);
     ASSERT_TRUE(report.first_block && report.first_block->holds && report.first_block->fails);
-    expect_value("the same of the first block beside it", factor_of_small,
+    expect_value("factor of the first block beside it that does, " + by, factor_of_small,
                  0.5 * (*report.first_block->holds + *report.first_block->fails), 0.01);
   }
 }
