@@ -23,7 +23,7 @@ def ensemble_page(ensemble, title):
     else:
         trials = summary["holds"] + summary["fails"] + summary["undecided"]  # members that cannot run are none
         page.verdict(f"Probability of failure {probability:.3g}: {summary['fails']} of {trials} members fail; with "
-                     f" {100 * summary['confidence']:.0f} % confidence it lies between {summary['low']:.3g} and "
+                     f"{100 * summary['confidence']:.0f} % confidence it lies between {summary['low']:.3g} and "
                      f"{summary['high']:.3g}.",
                      "open" if summary["undecided"] else "good" if summary["fails"] == 0 else "bad")
     page.cards({"members": f"{summary['done']} of {summary['count']}", "hold": str(summary["holds"]),
