@@ -47,8 +47,8 @@ TEST(Water, SubmergedSquareHasItsBuoyancy) {
   }
 }
 
-// Hung by the middle of its top in water, and touching nothing: the water presses on it as at its centre, and its
-// weight in water hangs half its height above the centre. Both kinds of blocks have this mean stress.
+// Hung by the middle of its top in water, and touching nothing: the water presses on it as at its centre, and
+// its weight in water hangs half its height above the centre. Both kinds of blocks have this mean stress.
 TEST(Water, HungSquareHasTheStressOfWaterAndOfWhatHoldsIt) {
   constexpr double top = 7.0;
   constexpr double centre = 2.5;
