@@ -115,14 +115,20 @@ void find_static_motion(RunState &run) {
   }
 }
 
-/// The iteration of a stage that begins, or goes on after a restart.
-void open_statics(RunState &run) {
-  statics::IterationRules rules;
+/// Blocks of all ranks that can move. Collective.
+std::int64_t count_mobile(const RunState &run) {
   std::int64_t num_mobile = 0;
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     num_mobile += run.blocks.properties[row].keeps_its_velocity() ? 0 : 1;
   }
   run.communicator.sum(std::span(&num_mobile, 1));
+  return num_mobile;
+}
+
+/// The iteration of a stage that begins, or goes on after a restart.
+void open_statics(RunState &run) {
+  statics::IterationRules rules;
+  const std::int64_t num_mobile = count_mobile(run);
   if (num_mobile == 0) { // nothing to wait for
     run.clock.state.verdict = Verdict::settled;
     run.clock.state.ended = true;
