@@ -25,8 +25,6 @@
 #include "simulation/simulation.hpp"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
@@ -143,16 +141,6 @@ ExitCode run(const Communicator &world, const Arguments &arguments) {
     tell_joint_sets(world, scene, options);
     return run_scene(world, scene, options);
   });
-}
-
-/// A default interval follows from the duration or the limits: a run that goes on with other ones keeps it.
-void keep_intervals(const OutputSettings &before, std::vector<std::string> &sets) {
-  const bool sets_output =
-      std::any_of(sets.begin(), sets.end(), [](const std::string &set) { return set.starts_with("output"); });
-  if (!sets.empty() && !sets_output) {
-    sets.push_back(fmt::format("output.interval={}", before.interval));
-    sets.push_back(fmt::format("output.history_interval={}", before.history_interval));
-  }
 }
 
 ExitCode restart(const Communicator &world, Arguments arguments) {

@@ -160,6 +160,15 @@ bool is_finished(const Communicator &communicator, const std::filesystem::path &
 
 } // namespace
 
+void keep_intervals(const OutputSettings &before, std::vector<std::string> &sets) {
+  const bool sets_output =
+      std::any_of(sets.begin(), sets.end(), [](const std::string &set) { return set.starts_with("output"); });
+  if (!sets.empty() && !sets_output) {
+    sets.push_back(fmt::format("output.interval={}", before.interval));
+    sets.push_back(fmt::format("output.history_interval={}", before.history_interval));
+  }
+}
+
 Diagnostics unfit_changes(const Scene &before, const Scene &after) {
   Diagnostics faults;
   compare_settings(before.run, after.run, faults);

@@ -8,6 +8,8 @@
 #include "gcpdda/parallel/communicator.hpp"
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace gcpdda {
 
@@ -25,5 +27,9 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after);
 /// @throws SceneError, FileError
 ExitCode restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
                        const std::filesystem::path &directory, RunOptions run = {});
+
+/// A default interval follows from the duration or the limits: a run that goes on with other settings (--set)
+/// keeps it, unless they say something of the output.
+void keep_intervals(const OutputSettings &before, std::vector<std::string> &sets);
 
 } // namespace gcpdda
