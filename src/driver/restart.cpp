@@ -1,6 +1,7 @@
 #include "driver/restart.hpp"
 
 #include "base/check.hpp"
+#include "base/text.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "io/checkpoint/checkpoint_reader.hpp"
 #include "io/results/result_directory.hpp"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iostream>
+#include <string_view>
 #include <utility>
 
 namespace gcpdda {
@@ -161,10 +163,19 @@ bool is_finished(const Communicator &communicator, const std::filesystem::path &
 } // namespace
 
 void keep_intervals(const OutputSettings &before, std::vector<std::string> &sets) {
-  const bool sets_output =
-      std::any_of(sets.begin(), sets.end(), [](const std::string &set) { return set.starts_with("output"); });
-  if (!sets.empty() && !sets_output) {
+  if (sets.empty()) {
+    return;
+  }
+  const auto names = [&](std::string_view key) {
+    return std::any_of(sets.begin(), sets.end(),
+                       [&](std::string_view set) { return trimmed(set.substr(0, set.find('='))) == key; });
+  };
+  const bool names_interval = names("output") || names("output.interval");
+  const bool names_history = names_interval || names("output.history_interval");
+  if (!names_interval) {
     sets.push_back(fmt::format("output.interval={}", before.interval));
+  }
+  if (!names_history) {
     sets.push_back(fmt::format("output.history_interval={}", before.history_interval));
   }
 }

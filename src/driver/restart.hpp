@@ -28,8 +28,8 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after);
 ExitCode restart_scene(const Communicator &communicator, const Scene &before, const Scene &after,
                        const std::filesystem::path &directory, RunOptions run = {});
 
-/// A default interval follows from the duration or the limits: a run that goes on with other settings (--set)
-/// keeps it, unless they say something of the output.
+/// Default intervals follow from the duration or the limits: a run that goes on with other settings (--set)
+/// keeps those that the settings do not name.
 void keep_intervals(const OutputSettings &before, std::vector<std::string> &sets);
 
 } // namespace gcpdda

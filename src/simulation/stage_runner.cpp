@@ -274,6 +274,20 @@ void plan_all_stages(RunState &run) {
   }
 }
 
+namespace {
+
+// The limit of the stage comes where the iteration may pause, because a restart may go on from there: after n
+// steps it has found n + 1 motions. What it has used up does not count for the damped motion that goes on.
+void lengthen_for_statics(RunState &run) {
+  constexpr std::int64_t every = statics::IterationRules{}.coarse_every;
+  run.clock.plan.lengthen(every - 1 - run.clock.plan.num_steps % every);
+  if (run.clock.state.iteration.is_left != 0) {
+    run.clock.plan.lengthen(run.clock.state.iteration.evaluations);
+  }
+}
+
+} // namespace
+
 void plan_stage(RunState &run) {
   const Stage &stage = run.clock.stage();
   RunSettings settings = run.scene.run;
@@ -289,9 +303,9 @@ void plan_stage(RunState &run) {
     run.clock.plan.duration = 0.0;
     run.clock.plan.num_steps = 0;
   }
-  if (const std::int64_t more = steps_of_weakening(run); more > 0) {
-    run.clock.plan.num_steps += more;
-    run.clock.plan.duration += static_cast<double>(more) * run.clock.plan.time_step;
+  run.clock.plan.lengthen(steps_of_weakening(run));
+  if (stage.solver == Solver::statics) {
+    lengthen_for_statics(run);
   }
   run.local_damping = stage.local_damping_or(run.scene.run.local_damping);
 }

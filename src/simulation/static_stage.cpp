@@ -61,6 +61,7 @@ std::string not_served(const RunState &run) {
 
 void leave_statics(RunState &run) {
   run.clock.state.iteration.is_left = 1;
+  run.clock.plan.lengthen(run.clock.state.iteration.evaluations);
   close_statics(run);
 }
 void leave_statics(RunState &run, const std::string &reason,
@@ -140,9 +141,6 @@ void open_statics(RunState &run) {
   rules.springs.reach = spring_reach * run.neighbours.base_skin;
   run.statics.emplace(run.communicator, rules);
   run.contacts.keep_details(true);
-  // The limit of the stage comes where the iteration may pause, because a restart may go on from there: after
-  // n steps it has found n + 1 motions.
-  run.clock.plan.num_steps += rules.coarse_every - 1 - run.clock.plan.num_steps % rules.coarse_every;
   if (run.clock.state.iteration.evaluations > 0) {
     const StaticState saved = std::exchange(run.saved_statics, {});
     refresh(run);

@@ -34,6 +34,13 @@ struct TimePlan {
   [[nodiscard]] bool checkpoint_due(std::int64_t step) const {
     return steps_per_checkpoint > 0 && step > 0 && (step % steps_per_checkpoint == 0 || step == num_steps);
   }
+  /// Put `more` steps at its end.
+  void lengthen(std::int64_t more) {
+    if (more > 0) {
+      duration = static_cast<double>(num_steps + more) * unit / static_cast<double>(steps_per_unit);
+      num_steps += more;
+    }
+  }
 };
 
 /// Choose the step: the scene's, lowered once if it does not divide the output intervals; or the largest that
