@@ -6,6 +6,7 @@
 #include "geometry/aabb.hpp"
 #include "geometry/polygon.hpp"
 #include "simulation/plausible_ranges.hpp"
+#include "simulation/short_traces.hpp"
 
 #include <fmt/format.h>
 
@@ -255,6 +256,25 @@ void judge_cutters(Doubts &doubts) {
   }
 }
 
+/// What ends in the rock cuts nothing there.
+void warn_of_short_traces(Doubts &doubts) {
+  const std::vector<ShortTrace> found = short_traces(doubts.scene().region);
+  if (found.empty()) {
+    return;
+  }
+  const auto widest = std::max_element(
+      found.begin(), found.end(), [](const ShortTrace &a, const ShortTrace &b) { return a.gap < b.gap; });
+  doubts.warn(widest->where,
+              fmt::format("{} ends at [{:g}, {:g}], {:.2g} m short of another line{}", widest->path,
+                          widest->end.x, widest->end.y, widest->gap,
+                          found.size() == 1
+                              ? ""
+                              : fmt::format(" ({} more {} by less)", found.size() - 1,
+                                            found.size() == 2 ? "end is short" : "ends are short")),
+              "a trace that ends in rock cuts nothing there",
+              "where it is to end at the line, let it end a little beyond");
+}
+
 void judge_region(Doubts &doubts) {
   const RockRegion &region = doubts.scene().region;
   if (!region.present()) {
@@ -281,6 +301,7 @@ void judge_region(Doubts &doubts) {
   for (const Layer &layer : region.layers) {
     expect_inside(doubts, "a layer", layer.outline, layer.where);
   }
+  warn_of_short_traces(doubts);
 }
 
 void judge_stress(Doubts &doubts) {

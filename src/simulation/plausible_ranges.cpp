@@ -102,6 +102,7 @@ Besides these values the following is warned of, each kind in one line with the 
 | gravity points upwards | y is up |
 | an interval of output, history or checkpoints, a ramp or the start of an earthquake beyond the end of the run | it never comes |
 | faults, maps, openings or layers that lie outside the region | they cut nothing |
+| a fault or a trace of a map that ends short of another line by less than 1/1000 of its length | it ends in the rock and cuts nothing there |
 | a joint law or material that nothing uses; the nearest name is suggested | `--set joint.defualt.cohesion=0` makes a new law |
 | gravity acts and nothing is fixed, held or driven; no block can move | everything falls; nothing happens |
 | contacts at rest overlap by more than 1 % of the median block | blocks sink into each other; names the stiffness that would do |
