@@ -38,7 +38,7 @@ void take_work(const Communicator &communicator, const Simulation &simulation, s
 
 } // namespace
 
-void take_facts(const Communicator &communicator, const Simulation &simulation, std::int64_t first_step,
+void take_facts(const Communicator &communicator, Simulation &simulation, std::int64_t first_step,
                 RunSummary &summary) {
   const TimePlan &plan = simulation.plan();
   summary.ranks = communicator.size();

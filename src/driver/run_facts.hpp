@@ -12,7 +12,7 @@ namespace gcpdda {
 /// Collective.
 /// @param first_step  of this part of the run
 /// @param summary  gets all that follows from the simulation alone
-void take_facts(const Communicator &communicator, const Simulation &simulation, std::int64_t first_step,
+void take_facts(const Communicator &communicator, Simulation &simulation, std::int64_t first_step,
                 RunSummary &summary);
 
 } // namespace gcpdda

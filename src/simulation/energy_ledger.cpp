@@ -280,7 +280,7 @@ Terms current_terms(RunState &run) {
 }
 
 /// Blocks that have just been set to rest are no longer damped: then that of their verdict. Collective.
-double ratio_of_row(const RunState &run) {
+double ratio_of_row(RunState &run) {
   const StageState &stage = run.clock.state;
   const bool has_ended =
       run.clock.is_staged && run.clock.stage().takes_steps() && std::ssize(stage.results) > stage.index;

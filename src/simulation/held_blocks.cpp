@@ -3,6 +3,7 @@
 #include "dynamics/deformable.hpp"
 #include "simulation/stage_runner.hpp"
 #include "simulation/static_stage.hpp"
+#include "simulation/unbalanced.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,14 @@ double held_force(const RunState &run) {
   const bool looks_for_rest = stage.kind == StageKind::settle || stage.is_trial();
   const bool holds = run.clock.is_staged && looks_for_rest && !is_static(run);
   return holds ? held_ratio(stage) * run.clock.state.memory.last.force : 0.0;
+}
+
+double held_share(const RunState &run) {
+  return most_times * held_ratio(run.clock.stage()) * norm(run.scene.run.gravity);
+}
+
+bool is_held_by(const BlockProperties &block, double force, double of_all, double share) {
+  return force <= of_all && (share == 0.0 || force <= share * block.heavy_mass());
 }
 
 bool is_at_rest(const BlockSystem &blocks, std::size_t row) {
@@ -52,8 +61,10 @@ void hold_at_look(RunState &run) {
     return;
   }
   const double motion = held_motion * run.clock.state.memory.last.overlap;
+  const double share = held_share(run);
   const auto hardly_moves = [&](std::size_t row) {
-    return run.looks[row].unbalanced <= force && run.looks[row].motion <= motion;
+    return is_held_by(run.blocks.properties[row], run.looks[row].unbalanced, force, share) &&
+           run.looks[row].motion <= motion;
   };
   std::array<std::int64_t, 2> counts{};
   auto &[moving, mobile] = counts;
@@ -79,8 +90,10 @@ void hold_at_look(RunState &run) {
 
 void hold_after_statics(RunState &run) {
   const double force = held_force(run);
+  const double share = held_share(run);
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
-    if (!run.blocks.properties[row].keeps_its_velocity() && net_force(run.blocks, row) <= force) {
+    const BlockProperties &block = run.blocks.properties[row];
+    if (!block.keeps_its_velocity() && is_held_by(block, net_force(run.blocks, row), force, share)) {
       set_to_rest(run.blocks, row);
     }
   }

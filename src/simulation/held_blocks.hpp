@@ -25,6 +25,14 @@ namespace gcpdda {
 /// The same over the largest force anywhere. A trial that is confirmed has ten times the tolerance of others.
 [[nodiscard]] double held_ratio(const Stage &stage);
 
+/// That of a block over its mass, as verdicts measure one (unbalanced.hpp) on which only its weight acts,
+/// m/s2.
+[[nodiscard]] double held_share(const RunState &run);
+/// Whether a block stays on which that force acts.
+/// @param of_all  held_force()
+/// @param share   held_share()
+[[nodiscard]] bool is_held_by(const BlockProperties &block, double force, double of_all, double share);
+
 /// Velocity and acceleration are exactly zero.
 [[nodiscard]] bool is_at_rest(const BlockSystem &blocks, std::size_t row);
 /// What nothing balances on a row, in a measure of forces, N/m.

@@ -13,7 +13,7 @@
 namespace gcpdda {
 
 bool is_loose(const BlockLook &block, const Stage &stage, const StageLook &look) {
-  return block.unbalanced > stage.tolerance * look.force || block.motion > motion_at_rest * look.overlap;
+  return block.unbalanced > stage.tolerance * block.yardstick || block.motion > motion_at_rest * look.overlap;
 }
 
 // One reduction of integers: sums of them are exact.

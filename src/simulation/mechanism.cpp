@@ -83,7 +83,7 @@ StageLook look_at_others(const RunState &run, const StageLook &of_all) {
   }
   const LeftOut left_out = find_left_out(run, watched);
   std::array<double, 4> largest{};
-  auto &[unbalanced, motion, moved, moved_beyond_sag] = largest;
+  auto &[ratio, motion, moved, moved_beyond_sag] = largest;
   ExactSum kinetic;
   ExactSum resting;
   ExactSum loose;
@@ -94,7 +94,7 @@ StageLook look_at_others(const RunState &run, const StageLook &of_all) {
         (block.beyond_sag && left_out.has({block.moved, properties.id.value, properties.area}))) {
       continue;
     }
-    unbalanced = std::max(unbalanced, block.unbalanced);
+    ratio = std::max(ratio, block.yardstick > 0.0 ? block.unbalanced / block.yardstick : 0.0);
     motion = std::max(motion, block.motion);
     moved = std::max(moved, block.moved);
     moved_beyond_sag = std::max(moved_beyond_sag, block.beyond_sag ? block.moved : 0.0);
@@ -110,7 +110,7 @@ StageLook look_at_others(const RunState &run, const StageLook &of_all) {
     run.communicator.sum(sum->limbs());
   }
   StageLook look = of_all;
-  look.unbalanced_ratio = of_all.force > 0.0 ? unbalanced / of_all.force : 0.0;
+  look.unbalanced_ratio = ratio;
   look.motion = motion;
   look.kinetic = kinetic.value();
   look.moved = moved;

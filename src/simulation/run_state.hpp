@@ -60,6 +60,7 @@ struct FidelityReport {
 /// What a look at a stage sees of a block.
 struct BlockLook {
   double unbalanced = 0.0; ///< net force, local damping left out, N/m
+  double yardstick = 0.0;  ///< by what it is measured (unbalanced.hpp), N/m
   double load = 0.0;       ///< weight and applied force, N/m
   double motion = 0.0;     ///< since the look before, m
   double kinetic = 0.0;    ///< J/m
@@ -84,8 +85,11 @@ struct RunState {
   Scheme scheme;
   StepBound bound;
   FidelityReport fidelity;
-  std::vector<BlockLook> looks;               ///< at each owned block, of the last look at a stage
-  std::vector<std::int64_t> look_sums;        ///< scratch
+  std::vector<BlockLook> looks;          ///< at each owned block, of the last look at a stage
+  std::vector<std::int64_t> look_sums;   ///< scratch
+  std::vector<double> unbalanced_forces; ///< scratch of unbalanced.hpp, as those that follow
+  std::vector<double> yardsticks;
+  std::vector<double> contact_loads;
   std::optional<statics::PseudoTime> statics; ///< while a stage has the static solver
   StaticState saved_statics;                  ///< of the checkpoint it began with, until the first step
   double local_damping = 0.0;                 ///< of this stage

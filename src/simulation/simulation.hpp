@@ -47,7 +47,7 @@ public:
   [[nodiscard]] bool stage_is_over() const { return run_.fault || run_.clock.stage_is_over(); }
   void end_stage() { gcpdda::end_stage(run_); }
   void begin_next_stage() { gcpdda::begin_next_stage(run_); }
-  [[nodiscard]] std::vector<StageResult> stage_results() const { return gcpdda::stage_results(run_); }
+  [[nodiscard]] std::vector<StageResult> stage_results() { return gcpdda::stage_results(run_); }
   [[nodiscard]] bool is_removed(std::int64_t block) const {
     return gcpdda::is_removed(run_.clock.state, block);
   }

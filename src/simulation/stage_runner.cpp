@@ -55,10 +55,11 @@ void mark_stage(RunState &run) {
 /// Of all blocks, which leaves RunState::looks behind. Collective.
 StageLook look_at_blocks(RunState &run) {
   ExactSum kinetic;
-  std::array<double, 6> largest{};
-  auto &[unbalanced, acting, motion, moved, moved_beyond_sag, overlap] = largest;
+  std::array<double, 5> largest{};
+  auto &[acting, motion, moved, moved_beyond_sag, overlap] = largest;
   const std::span<BlockMark> marks = mark_rows(run.blocks);
-  run.looks.resize(run.blocks.num_owned);
+  run.looks.assign(run.blocks.num_owned, {});
+  run.unbalanced_forces.assign(run.blocks.num_owned, 0.0);
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     const BlockProperties &block = run.blocks.properties[row];
     if (block.keeps_its_velocity()) {
@@ -66,7 +67,7 @@ StageLook look_at_blocks(RunState &run) {
     }
     BlockLook &seen = run.looks[row];
     seen.unbalanced = unbalanced_force(run, row);
-    unbalanced = std::max(unbalanced, seen.unbalanced);
+    run.unbalanced_forces[row] = seen.unbalanced;
     const double weight = block.heavy_mass() * norm(run.scene.run.gravity);
     seen.load = weight + norm(applied_forces(run.blocks, row).load.u);
     acting = std::max(acting, acting_force(run, row));
@@ -93,13 +94,8 @@ StageLook look_at_blocks(RunState &run) {
   if (!is_static(run)) { // which has no velocities
     run.communicator.sum(kinetic.limbs());
   }
-  return {acting > 0.0 ? unbalanced / acting : 0.0,
-          motion,
-          overlap,
-          acting,
-          kinetic.value(),
-          moved,
-          moved_beyond_sag};
+  const double ratio = measure_looks(run, acting);
+  return {ratio, motion, overlap, acting, kinetic.value(), moved, moved_beyond_sag};
 }
 
 /// Looks at the stage at hand so far.
@@ -350,7 +346,7 @@ void judge_stage(RunState &run) {
 namespace {
 
 /// How the stage stands now, which ends or pauses between two looks. Collective.
-StageLook look_between(const RunState &run) {
+StageLook look_between(RunState &run) {
   StageLook look = run.clock.state.memory.last;
   look.unbalanced_ratio = unbalanced_ratio(run);
   ExactSum kinetic;
@@ -376,7 +372,7 @@ bool has_just_looked(const RunState &run) {
 
 } // namespace
 
-std::vector<StageResult> stage_results(const RunState &run) {
+std::vector<StageResult> stage_results(RunState &run) {
   std::vector<StageResult> results = run.clock.state.results;
   if (std::ssize(results) == run.clock.state.index) {
     std::int64_t contact_steps = run.counters.contact_steps;

@@ -28,7 +28,7 @@ void set_to_rest(RunState &run);
 void stop(RunState &run, std::size_t row);
 
 /// Of the stages that are over, and of this one as far as it has come. Collective.
-[[nodiscard]] std::vector<StageResult> stage_results(const RunState &run);
+[[nodiscard]] std::vector<StageResult> stage_results(RunState &run);
 /// A stage that is over gets its result. A settled pile is set to rest, under its own masses. A stage that
 /// reached its limit undecided stays as it is: with a longer limit a restart goes on with it. Collective.
 void end_stage(RunState &run);

@@ -4,7 +4,7 @@
 //
 // A stage is looked at every so many steps (a number that depends on the number of blocks alone). What is
 // seen is made of maxima and of an exact sum, so that every number of ranks sees the same:
-//     r   largest net force on a block over the largest force anywhere, local damping left out,
+//     r   largest net force on a block over what it is measured by (unbalanced.hpp), local damping left out,
 //     D   largest distance a point of a block has moved since the look before,
 //     d   largest overlap of a contact, the length by which contacts carry what they carry,
 //     T   kinetic energy,

@@ -270,13 +270,13 @@ void judge_static_trial(RunState &run) {
 // The dynamic step takes over where hardly a block would move in it at once, or soon.
 void judge_confirmation(RunState &run) {
   constexpr double most_moving = 1e-5; // of the mobile blocks
-  const double force = held_ratio(run.clock.stage()) * run.clock.state.memory.last.force;
+  const double ratio = held_ratio(run.clock.stage());
   std::array<std::int64_t, 2> counts{};
   auto &[moving, mobile] = counts;
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     if (!run.blocks.properties[row].keeps_its_velocity()) {
       ++mobile;
-      moving += run.looks[row].unbalanced > force ? 1 : 0;
+      moving += run.looks[row].unbalanced > ratio * run.looks[row].yardstick ? 1 : 0;
     }
   }
   run.communicator.sum(counts);

@@ -43,6 +43,7 @@ void StepRows::begin() {
   passed_ = 0;
   report_.clear();
   held_force_ = held_force(run_);
+  held_share_ = held_share(run_);
   run_.contacts.begin(run_.blocks, run_.neighbours.candidates);
 }
 
@@ -157,7 +158,7 @@ void StepRows::advance_rows(std::size_t first, std::size_t end) {
     first = advance_free(last, end);
   }
   for (const std::size_t row : held_) {
-    if (net_force(run_.blocks, row) <= held_force_) {
+    if (is_held_by(run_.blocks.properties[row], net_force(run_.blocks, row), held_force_, held_share_)) {
       hold(run_.blocks, row);
     }
   }

@@ -75,6 +75,7 @@ private:
   std::size_t passed_ = 0;        ///< spans of Neighbourhood::waiting below advanced_
   AdvanceReport report_;          ///< of the last step
   double held_force_ = 0.0;       ///< N/m, of this step
+  double held_share_ = 0.0;       ///< m/s2
   std::vector<std::size_t> held_; ///< rows that begin it at rest, of those at hand
 };
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 namespace gcpdda {
 
@@ -43,17 +45,83 @@ double acting_force(const RunState &run, std::size_t row) {
   return std::max(weight, norm(applied_forces(run.blocks, row).load.u));
 }
 
-double unbalanced_ratio(const RunState &run) {
-  std::array<double, 2> largest{0.0, run.contacts.sums().largest_force()};
-  auto &[unbalanced, acting] = largest;
-  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+namespace {
+
+/// The largest force of a contact on each owned row, N/m.
+void find_contact_loads(RunState &run, std::vector<double> &loads) {
+  loads.assign(run.blocks.num_owned, 0.0);
+  const std::vector<CandidatePair> &pairs = run.neighbours.candidates.pairs;
+  for_regions(run, 0, pairs.size(), [&](std::uint32_t pair, std::span<const RegionForce> regions) {
+    for (const BlockIndex row : {pairs[pair].lower, pairs[pair].higher}) {
+      for (const RegionForce &region : regions) {
+        if (row.value < loads.size()) {
+          loads[row.value] = std::max(loads[row.value], norm(region.force));
+        }
+      }
+    }
+  });
+}
+
+/// By what owned rows are measured, N/m. Where weight alone shows that a block is at rest, contacts on it are
+/// not looked at.
+/// @param largest     force anywhere, N/m
+/// @param unbalanced  force of each owned row, N/m
+std::span<const double> yardsticks(RunState &run, double largest, std::span<const double> unbalanced) {
+  std::vector<double> &measures = run.yardsticks;
+  measures.assign(run.blocks.num_owned, largest);
+  const double tolerance = run.clock.stage().tolerance;
+  const auto is_light = [&](std::size_t row) {
+    const BlockProperties &block = run.blocks.properties[row];
+    return !block.keeps_its_velocity() && most_times * acting_force(run, row) < largest &&
+           block.heavy_mass() * norm(run.scene.run.gravity) > 0.0;
+  };
+  bool asks_contacts = false;
+  for (std::size_t row = 0; row < measures.size(); ++row) {
+    if (is_light(row)) {
+      measures[row] = most_times * acting_force(run, row);
+      asks_contacts = asks_contacts || unbalanced[row] > tolerance * measures[row];
+    }
+  }
+  if (asks_contacts) {
+    find_contact_loads(run, run.contact_loads);
+    for (std::size_t row = 0; row < measures.size(); ++row) {
+      if (measures[row] < largest && unbalanced[row] > tolerance * measures[row]) {
+        measures[row] = std::min(largest, std::max(measures[row], most_times * run.contact_loads[row]));
+      }
+    }
+  }
+  return measures;
+}
+
+} // namespace
+
+double measure_looks(RunState &run, double largest) {
+  const std::span<const double> measures = yardsticks(run, largest, run.unbalanced_forces);
+  double ratio = 0.0;
+  for (std::size_t row = 0; row < run.blocks.num_owned && largest > 0.0; ++row) {
+    run.looks[row].yardstick = measures[row];
+    ratio = std::max(ratio, run.looks[row].unbalanced / measures[row]);
+  }
+  return run.communicator.max(ratio);
+}
+
+double unbalanced_ratio(RunState &run) {
+  std::vector<double> &forces = run.unbalanced_forces;
+  forces.assign(run.blocks.num_owned, 0.0);
+  double acting = run.contacts.sums().largest_force();
+  for (std::size_t row = 0; row < forces.size(); ++row) {
     if (!run.blocks.properties[row].keeps_its_velocity()) {
-      unbalanced = std::max(unbalanced, unbalanced_force(run, row));
+      forces[row] = unbalanced_force(run, row);
       acting = std::max(acting, acting_force(run, row));
     }
   }
-  run.communicator.max(largest);
-  return acting > 0.0 ? unbalanced / acting : 0.0;
+  acting = run.communicator.max(acting);
+  const std::span<const double> measures = yardsticks(run, acting, forces);
+  double ratio = 0.0;
+  for (std::size_t row = 0; row < forces.size() && acting > 0.0; ++row) {
+    ratio = std::max(ratio, forces[row] / measures[row]);
+  }
+  return run.communicator.max(ratio);
 }
 
 } // namespace gcpdda

@@ -28,12 +28,12 @@ std::string wall_and_pebbles(int columns, int pebbles, const std::string &stage_
   return toml + fmt::format("[[stage]]\nkind = \"settle\"\nlimit = {}\n", limit) + stage_keys;
 }
 
-StageResult result_of(const Simulation &simulation) {
+StageResult result_of(Simulation &simulation) {
   return simulation.stage_results().back();
 }
 
 /// Of the blocks of the wall, which stand behind floor and pebbles.
-double lowest_displacement(const Simulation &simulation, int pebbles) {
+double lowest_displacement(Simulation &simulation, int pebbles) {
   double lowest = 0.0;
   for (int id = 1 + pebbles; id <= pebbles + 1000; ++id) {
     lowest = std::min(lowest, displacement_of(simulation, id).u.y);
