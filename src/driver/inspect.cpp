@@ -198,7 +198,7 @@ private:
         line("step", fmt::format("{:.6g} s ({}), {} steps of {:g} s in all", plan.time_step,
                                  given ? "as given" : "automatic", plan.num_steps, plan.duration));
     if (bound.block < 0 || bound.omega_max <= 0.0) {
-      return text + line("", "nothing limits it: no mobile block can touch another one");
+      return text + line("", "nothing limits it: forces move no block");
     }
     return text +
            line("", fmt::format("at most {:.6g} s = safety {:g} x limit {:.4g} / omega_max {:.6g} rad/s, "

@@ -94,8 +94,9 @@ void find_bound(RunState &run) {
   std::int64_t minus_id = mine == omega_squared && omega_squared > 0.0 ? -limiting : -num_blocks(run.scene);
   run.communicator.max(std::span(&minus_id, 1));
   run.bound.block = minus_id == -num_blocks(run.scene) ? -1 : -minus_id;
-  // A block that is alone can never touch.
-  run.bound.omega_max = num_blocks(run.scene) > 1 ? std::sqrt(omega_squared) : 0.0;
+  // A single block has the bound that it would have among others: its fixed points and its elasticity need a
+  // short step although no block can touch it. It swings under gravity at less than sqrt(rho g/k_n) of it.
+  run.bound.omega_max = std::sqrt(omega_squared);
   run.bound.without_bolts =
       run.bolts.empty() ? run.bound.omega_max : std::sqrt(run.communicator.max(without_bolts));
 

@@ -9,7 +9,7 @@ namespace gcpdda {
 struct RunState;
 
 struct StepBound {
-  double omega_max = 0.0; ///< rad/s, 0 where nothing can touch
+  double omega_max = 0.0; ///< rad/s, 0 where forces move no block
   double limit = 2.0;     ///< stable W of scheme and damping; 2 stands in where every W is unstable
   bool always_unstable = false;
   /// run.safety; where a stage settles 0.9, unless run.safety is below its default; 1 where strong dashpots

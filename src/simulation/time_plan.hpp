@@ -46,7 +46,7 @@ struct TimePlan {
 /// Choose the step: the scene's, lowered once if it does not divide the output intervals; or the largest that
 /// divides them and meets the bound.
 ///
-/// @param bound  largest recommended step (s), infinite where nothing can touch
+/// @param bound  largest recommended step (s), infinite where forces move no block
 /// @param notes  gets a warning when the scene's step lies above the bound, an info when it was lowered or
 ///               when checkpoints fall on other times than asked for, an error when duration and intervals
 ///               have no common step
