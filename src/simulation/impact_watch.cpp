@@ -96,6 +96,12 @@ double ImpactWatch::turned_since_last_look(const Simulation &simulation) const {
   return energy.value();
 }
 
+/// Since the reference, on any rank. Collective.
+bool ImpactWatch::nothing_has_touched(const Simulation &simulation) const {
+  const bool has_touched = simulation.counters().contact_steps > contact_steps_;
+  return simulation.communicator().max(has_touched ? 1.0 : 0.0) == 0.0;
+}
+
 void ImpactWatch::note(const Simulation &simulation, const EnergyRow &row) {
   const BlockSystem &blocks = simulation.blocks();
   damping_loss_ = row.damping_loss;
@@ -114,6 +120,7 @@ void ImpactWatch::begin_at(const Simulation &simulation, Residual residual) {
   root_ = 0.0;
   damped_ = 0.0;
   time_ = simulation.time();
+  contact_steps_ = simulation.counters().contact_steps;
   residual_ = residual;
 }
 
@@ -125,7 +132,7 @@ std::optional<ImpactGain> ImpactWatch::look(const Simulation &simulation, const 
   const double per_step = simulation.plan().time_step * simulation.bound().omega_max;
   const double most_excess = std::min(row.contact_normal, 0.5 * per_step * per_step * row.kinetic);
   const Residual now{row.residual - std::max(row.excess, most_excess), row.residual - row.excess};
-  if (!has_reference_) {
+  if (!has_reference_ || nothing_has_touched(simulation)) {
     note(simulation, row);
     begin_at(simulation, now);
     return std::nullopt;
@@ -169,10 +176,10 @@ Diagnostic warning_of(const Simulation &simulation, const ImpactGain &gain) {
     const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
     return std::floor(value / unit) * unit;
   };
-  const std::string hint = simulation.scene().run.time_step > 0.0
-                               ? fmt::format("use run.time_step = {:.2g} or less", two_digits(longest))
-                               : fmt::format("use run.safety = {:.2g} or less",
-                                             two_digits(longest * bound.omega_max / bound.limit));
+  const bool in_seconds = simulation.scene().run.time_step > 0.0 || bound.omega_max == 0.0;
+  const std::string hint = in_seconds ? fmt::format("use run.time_step = {:.2g} or less", two_digits(longest))
+                                      : fmt::format("use run.safety = {:.2g} or less",
+                                                    two_digits(longest * bound.omega_max / bound.limit));
   return {
       Severity::warning,
       {},

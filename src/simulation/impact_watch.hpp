@@ -24,12 +24,16 @@
 // What an impact loses as it begins it may gain as it ends: rows in the middle of one are passed over, they
 // show themselves by their bounds, and a change is told when the next row confirms it.
 //
+// Rows between which no blocks have touched are passed over: whatever has changed their energy, such as the
+// vibration of a deformable block on a fixed point, is no impact.
+//
 // Nothing is done in a step. What is remembered is a velocity per block; it is neither migrated nor in a
 // checkpoint: the results do not depend on it.
 
 #include "gcpdda/io/run_summary.hpp"
 #include "simulation/simulation.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -72,13 +76,15 @@ private:
   void note(const Simulation &simulation, const EnergyRow &row);
   void begin_at(const Simulation &simulation, Residual residual);
   [[nodiscard]] double turned_since_last_look(const Simulation &simulation) const;
+  [[nodiscard]] bool nothing_has_touched(const Simulation &simulation) const;
 
   bool has_reference_ = false;
   bool has_told_ = false;
   bool is_suspected_ = false; ///< by the look before
   int waits_ = 0;             ///< looks since the reference that were not sharp
   double most_kinetic_ = 0.0;
-  double time_ = 0.0; ///< of the reference
+  double time_ = 0.0;              ///< of the reference
+  std::int64_t contact_steps_ = 0; ///< of the reference, Counters::contact_steps of this rank
   Residual residual_;
   double root_ = 0.0;   ///< of the energy that impacts since the reference have turned round
   double damped_ = 0.0; ///< since the reference, J/m

@@ -175,6 +175,25 @@ TEST(Impacts, AreNotToldWhereThereAreNone) {
   }
 }
 
+// A deformable bar hangs by a fixed point and swings: the error of its energy is that of its own vibrations.
+TEST(Impacts, AreNotToldOfABlockThatTouchesNothing) {
+  const WorkFolder folder;
+  const std::string bar =
+      "[run]\nduration = 1.0\nfidelity = \"deformable\"\n[material.rock]\ndensity = 2500\n"
+      "youngs_modulus = 1e9\npoissons_ratio = 0.2\n[joint.default]\nnormal_stiffness = 1e9\n"
+      "friction_angle_deg = 30\n" +
+      block_toml("bar", rectangle({-0.05, -1.0}, {0.05, 0.0}), "fixed_points = [[0, 0]]");
+  for (const char *time_step : {"\"auto\"", "0.01"}) {
+    folder.write("bar.toml", bar);
+    const Outcome outcome = run_gcpdda(0,
+                                       {"run", "bar.toml", "--out", "out", "--overwrite", "--set",
+                                        fmt::format("run.time_step={}", time_step)},
+                                       folder);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(count_of(outcome.err, "impacts"), 0) << outcome.err;
+  }
+}
+
 // A slope that has settled and goes on without damping: its contacts tremble by a thousandth of what they
 // have closed by.
 TEST(Impacts, AreNotToldOfRockAtRest) {
