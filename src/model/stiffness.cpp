@@ -47,16 +47,17 @@ double largest_sag(const Scene &scene, const SizeSurvey &survey, double median_w
   if (!(height > 0.0)) {
     return 0.0;
   }
-  double compliance = 0.0;
+  double of_joints = 0.0;
   for (const JointLaw &law : scene.joints.laws) {
-    compliance =
-        std::max(compliance, law.normal_stiffness > 0.0 ? 1.0 / (law.normal_stiffness * median_width) : 0.0);
+    of_joints = std::max(of_joints, law.normal_stiffness > 0.0
+                                        ? (height + median_width) / (law.normal_stiffness * median_width)
+                                        : 0.0);
   }
   double of_rock = 0.0;
   for (const Material &material : scene.materials) {
-    of_rock = std::max(of_rock, material.youngs_modulus > 0.0 ? 1.0 / material.youngs_modulus : 0.0);
+    of_rock = std::max(of_rock, material.youngs_modulus > 0.0 ? height / material.youngs_modulus : 0.0);
   }
-  return survey.densest * norm(scene.run.gravity) * height * height * (compliance + of_rock);
+  return survey.densest * norm(scene.run.gravity) * height * (of_joints + of_rock);
 }
 
 double corner_sinking(double load, double normal_stiffness, double tilt) {

@@ -35,13 +35,14 @@ SizeSurvey survey_sizes(const Scene &scene, std::span<const SceneBlock> blocks, 
 /// @param median_size  of the surveyed blocks, the (n/2)-th in ascending order from 0, m
 void resolve_stiffness(Scene &scene, const SizeSurvey &survey, double median_size);
 
-/// How far the top of a pile of the surveyed blocks may come down when it takes up its weight, m: a column
-/// that carries rho g h everywhere, twice what a real one does, in layers of height b with the softest joints
-/// and the softest rock between them,
+/// How far the top of a pile of the surveyed blocks may come down when it takes up its weight, m. A column of
+/// n = h/b layers of height b has n joints, which bear the weight of 1, 2 ... n layers and close together by
+/// rho g b n (n + 1)/(2 k_n); its rock bears rho g h/2 in the mean. Gravity that acts at once lets an
+/// undamped column swing twice as far as the place where it rests:
 ///
-///     rho g h^2 (1/(k_n b) + 1/E).
+///     rho g h ((h + b)/(k_n b) + h/E),
 ///
-/// 0 without gravity. Every joint has its stiffness by now.
+/// with the softest joints and the softest rock. 0 without gravity. Every joint has its stiffness by now.
 /// @param median_width  b, of the surveyed blocks, m
 double largest_sag(const Scene &scene, const SizeSurvey &survey, double median_width);
 

@@ -94,5 +94,32 @@ TEST(AllowedOverlap, MedianOfAnEvenCount) {
   EXPECT_GE(scene.joints.laws[0].normal_stiffness, at_one / 4.0 * (1.0 - rounding));
 }
 
+// The column is added up joint by joint and layer by layer: joint j bears the layers above it, and a layer
+// bears in the mean those above it and half of its own weight.
+TEST(LargestSag, IsTwiceThatOfAColumnOfAnyNumberOfLayers) {
+  constexpr double thickness = 1.5;
+  constexpr double normal_stiffness = 2e8;
+  constexpr double youngs_modulus = 3e8;
+  constexpr double layer_pressure = 2500.0 * 10.0 * thickness;
+  for (const int layers : {1, 2, 3, 10, 100}) {
+    Scene scene;
+    scene.materials = {{"rock", 2500.0, youngs_modulus, 0.2}};
+    scene.run.gravity = {0.0, -10.0};
+    JointLaw law;
+    law.normal_stiffness = normal_stiffness;
+    scene.joints.laws = {law};
+    double sag = 0.0;
+    for (int k = 0; k < layers; ++k) {
+      SceneBlock block;
+      block.vertices = rectangle({0.0, k * thickness}, {4.0, (k + 1) * thickness});
+      scene.blocks.push_back(block);
+      sag += layer_pressure * (layers - k) / normal_stiffness;
+      sag += layer_pressure * (layers - k - 0.5) * thickness / youngs_modulus;
+    }
+    const SizeSurvey survey = survey_sizes(scene, scene.blocks, false);
+    EXPECT_NEAR(largest_sag(scene, survey, thickness), 2.0 * sag, 1e-13 * sag) << layers << " layers";
+  }
+}
+
 } // namespace
 } // namespace gcpdda::stiffness_test

@@ -214,6 +214,20 @@ TEST(Stages, APyramidSettlesAtTheStepTheProgramTakes) {
   }
 }
 
+// Gravity acts at once: the large block goes past the place where it rests, nearly twice as far, and the
+// stone on it moves by more than half of its own size. It rides on the sag and does not fail.
+TEST(Stages, ASmallStoneOnALargeBlockSettlesWithIt) {
+  const std::string toml = "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2500.0\n[joint.default]\n"
+                           "allowed_overlap = 1e-3\nfriction_angle_deg = 30.0\n[output]\ninterval = 3.0\n" +
+                           block_toml("floor", rectangle({-50.0, -10.0}, {150.0, 0.0}), "fixed = true") +
+                           block_toml("large", rectangle({0.0, 0.0}, {100.0, 100.0})) +
+                           block_toml("stone", rectangle({50.0, 100.0}, {50.2, 100.2}));
+  Simulation simulation(Communicator::self(), scene_of(toml + settle));
+  run_stages(simulation);
+  EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled)
+      << simulation.stage_results().back().time;
+}
+
 // Where a stage settles the step need not be accurate; a safety below the default is heeded all the same.
 TEST(Stages, ASettleStageTakesLongStepsUnlessShortOnesAreAskedFor) {
   const std::string toml = stack(2) + "[[stage]]\nkind = \"settle\"\nlimit = 10.0\nlocal_damping = 0.0\n";
