@@ -3,6 +3,7 @@
 #include "base/check.hpp"
 #include "base/exact_sum.hpp"
 #include "driver/odd_blocks.hpp"
+#include "driver/run_words.hpp"
 #include "driver/svg.hpp"
 #include "model/stiffness.hpp"
 #include "partition/partition_cells.hpp"
@@ -148,10 +149,8 @@ private:
     std::string text;
     for (const JointLaw &law : simulation_.scene().joints.laws) {
       text += line("joint",
-                   fmt::format("'{}': k_n {:.6g} Pa/m{}, k_t/k_n {:g}, friction angle {:g} deg, "
-                               "cohesion {:g} Pa",
-                               law.name, law.normal_stiffness, origin_of_stiffness(law), law.tangential_ratio,
-                               std::atan(law.tan_friction) * 180.0 / std::numbers::pi, law.cohesion));
+                   fmt::format("'{}': k_n {:.6g} Pa/m{}, k_t/k_n {:g}, {}", law.name, law.normal_stiffness,
+                               origin_of_stiffness(law), law.tangential_ratio, words_on_strength(law)));
       text += sinking_line(law);
     }
     return text;

@@ -132,16 +132,23 @@ std::string words_on_time_step(const Simulation &simulation) {
 
 std::string words_on_law(const JointLaw &law) {
   return fmt::format(
-      "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, friction angle {:g} deg, "
-      "cohesion {:g} Pa",
-      law.name, law.normal_stiffness,
+      "joint '{}': normal stiffness {:.6g} Pa/m{}, tangential ratio {:g}, {}", law.name, law.normal_stiffness,
       law.allowed_overlap > 0.0
           ? fmt::format(" for an allowed overlap of {:g} block sizes", law.allowed_overlap)
       : law.rock_mass_modulus > 0.0
           ? fmt::format(" for a rock mass of {:g} Pa with joints every {:g} m in rock of {:g} Pa",
                         law.rock_mass_modulus, law.spacing, law.intact_modulus)
           : "",
-      law.tangential_ratio, std::atan(law.tan_friction) * 180.0 / std::acos(-1.0), law.cohesion);
+      law.tangential_ratio, words_on_strength(law));
+}
+
+std::string words_on_strength(const JointLaw &law) {
+  const double angle = std::atan(law.tan_friction) * 180.0 / std::acos(-1.0);
+  return law.is_barton_bandis
+             ? fmt::format("Barton-Bandis friction with jrc {:g}, jcs {:g} Pa and residual friction angle "
+                           "{:g} deg, cohesion {:g} Pa",
+                           law.roughness, law.strength, angle, law.cohesion)
+             : fmt::format("friction angle {:g} deg, cohesion {:g} Pa", angle, law.cohesion);
 }
 
 std::string words_on_stage(const std::string &name, const StageResult &result) {

@@ -20,7 +20,11 @@ std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_er
 /// The time step, how many there are, and what bounds it.
 std::string words_on_time_step(const Simulation &simulation);
 
+/// The stiffness and strength of a joint law.
 std::string words_on_law(const JointLaw &law);
+
+/// The strength of a joint law: its friction, Coulomb's or that of Barton and Bandis, and its cohesion.
+std::string words_on_strength(const JointLaw &law);
 
 /// How a stage has ended.
 std::string words_on_stage(const std::string &name, const StageResult &result);

@@ -210,9 +210,9 @@ private:
               fmt::format("for example {}", key == std::string("jrc") ? "jrc = 8.0" : "jcs = 50e6"));
       }
     }
-    values.tan_friction = residual_given_ ? values.residual_tan_friction : 0.0;
-    read_angle(law, "residual_friction_angle_deg", values.tan_friction);
-    values.residual_tan_friction = values.tan_friction;
+    // Without an angle of its own the law has that of [joint.default], whose values stand in `values`.
+    read_angle(law, "residual_friction_angle_deg", values.residual_tan_friction);
+    values.tan_friction = values.residual_tan_friction;
     note_residual_of_default(law, values);
     values.has_bonds = false;
     values.tension = 0.0;
@@ -318,7 +318,7 @@ std::span<const JointParameter> joint_parameters() {
     {{"joint.*.tension", Kind::number, optional, from_to(0, 1e20), "", "<none: no bonds>", "1e5", "[Pa] Tensile strength of the bonds, at most cohesion/tan(friction angle). A law with this key or a residual one has bonds: edges that lie on each other at the start hold together, with friction_angle_deg and cohesion in shear, until they break; then, and wherever else they touch, the residual values hold."},
      [](const JointLaw &law) { return law.tension; },
      {"", "Pa", 1e3, 2e9, 1e6, of_stress, "soil, mortar, concrete, rock and steel have", strength_sources}},
-    {{"joint.*.residual_friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "<friction_angle_deg>", "30.0", "[degrees] Friction angle without a bond, at most friction_angle_deg; of barton-bandis the angle that remains under high pressure."},
+    {{"joint.*.residual_friction_angle_deg", Kind::number, optional, from_below(0, 90), "", "<friction_angle_deg>", "30.0", "[degrees] Friction angle without a bond, at most friction_angle_deg; of barton-bandis the angle that remains under high pressure, by default that of [joint.default]: its residual_friction_angle_deg if given, else its friction_angle_deg."},
      [](const JointLaw &law) { return degrees_of(law.residual_tan_friction); },
      {"", "degrees", 3, 80, 30, of_angle, "wet clay gouge to rough fresh joints have", angle_sources}},
     {{"joint.*.residual_cohesion", Kind::number, optional, from_to(0, 1e20), "", "<0 of a law with bonds>", "1e4", "[Pa] Cohesion without a bond, at most cohesion; only in a law with bonds."},
