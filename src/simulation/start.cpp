@@ -191,6 +191,62 @@ void warn_of_lively_impacts(RunState &run) {
   }
 }
 
+/// Where the scene writes Young's modulus of a material, if it writes it alone: then no block of it can
+/// deform. A scene made in code has no places and gives all values.
+const SourcePosition *modulus_alone(const Scene &scene, std::int32_t material) {
+  const std::string path = "material." + scene.materials[static_cast<std::size_t>(material)].name;
+  const auto place = scene.places.find(path + ".youngs_modulus");
+  return place != scene.places.end() && !scene.places.contains(path + ".poissons_ratio") ? &place->second
+                                                                                         : nullptr;
+}
+
+/// @param scene  of the stage in which the block is looked at
+bool deforms(const Scene &scene, const JointLaws &joints, const SceneBlock &block) {
+  const Material &material = scene.materials[static_cast<std::size_t>(block.material)];
+  const double stiffness = stiffness_bound(joints, block.material, block.edge_joint).normal;
+  return choose_fidelity(block, signed_area(block.vertices), material, stiffness, scene.run).kind ==
+         BlockKind::deformable;
+}
+
+// With fidelity "auto" stiffness and size decide which blocks deform, also those that a stage sets free: the
+// reader of the scene does not know them. Collective.
+void expect_poissons_ratios(RunState &run, std::span<const SceneBlock> slab) {
+  const Scene &scene = run.scene;
+  const std::int64_t first = slab_begin(num_blocks(scene), run.communicator.size(), run.communicator.rank());
+  constexpr std::int64_t none = std::numeric_limits<std::int64_t>::min();
+  std::vector<std::int64_t> minus_ids(scene.materials.size(), none); // of the first block, by material
+  std::vector<bool> is_alone;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    is_alone.push_back(modulus_alone(scene, static_cast<std::int32_t>(m)) != nullptr);
+  }
+  for (std::size_t k = 0; k < slab.size(); ++k) {
+    const std::int64_t id = first + static_cast<std::int64_t>(k);
+    const auto deforms_in = [&](const Stage &stage) {
+      return slab[k].fixed && stage.after && id < std::ssize(stage.after->blocks) &&
+             modulus_alone(*stage.after, slab[k].material) != nullptr &&
+             deforms(*stage.after, scene.joints, stage.after->blocks[static_cast<std::size_t>(id)]);
+    };
+    const auto material = static_cast<std::size_t>(slab[k].material);
+    if ((is_alone[material] && deforms(scene, scene.joints, slab[k])) ||
+        std::any_of(run.clock.stages.begin(), run.clock.stages.end(), deforms_in)) {
+      minus_ids[material] = std::max(minus_ids[material], -id);
+    }
+  }
+  run.communicator.max(minus_ids);
+  for (std::size_t m = 0; m < minus_ids.size(); ++m) {
+    if (minus_ids[m] != none) {
+      const std::string &name = scene.materials[m].name;
+      const SourcePosition *place = modulus_alone(scene, static_cast<std::int32_t>(m));
+      run.notes.push_back({Severity::error, place == nullptr ? SourcePosition{} : *place,
+                           fmt::format("block '{}' is deformable but its material '{}' has no poissons_ratio",
+                                       block_name(scene, -minus_ids[m]), name),
+                           "a deformable block has its stiffness from both",
+                           fmt::format("for example poissons_ratio = 0.25 in [material.{}]", name)});
+    }
+  }
+  stop_on_errors(run.notes);
+}
+
 // Mobile blocks of the slab become owned rows, to be migrated; everybody gets all fixed ones.
 void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
   const std::int64_t first =
@@ -268,6 +324,7 @@ void distribute(RunState &run, const Beginning &beginning) {
   find_model_sizes(run, slab);
   place_monitors(run, slab);
   survey_blocks(run, slab);
+  expect_poissons_ratios(run, slab);
   doubt_blocks(run, slab);
   std::vector<Vec2> centroids;
   for (const SceneBlock &block : slab) {
