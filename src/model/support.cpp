@@ -66,6 +66,14 @@ Vec2 normal_at(const std::vector<Stop> &stops, double way) {
   return {std::cos(angle), std::sin(angle)};
 }
 
+double length_around(const std::vector<Vec2> &outline) {
+  double around = 0.0;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    around += norm(outline[(k + 1) % outline.size()] - outline[k]);
+  }
+  return around;
+}
+
 Vec2 point_at(const std::vector<Vec2> &outline, double way) {
   for (std::size_t k = 0;; ++k) {
     const Vec2 begin = outline[k % outline.size()];
@@ -83,11 +91,15 @@ struct Arc {
   double begin = 0.0;
   double end = 0.0;
 };
-Arc arc_between(const std::vector<Stop> &stops, double from_angle, double to_angle) {
+/// @param around  length of the whole outline, m
+Arc arc_between(const std::vector<Stop> &stops, double around, double from_angle, double to_angle) {
   constexpr double rounding = 1e-9; // a side whose normal is one of the two directions belongs to the arc
   const double from =
       from_angle + whole_turn * std::ceil((stops.front().angle - from_angle) / whole_turn - rounding);
   const double begin = way_at(stops, from - rounding, 0.0);
+  if (to_angle - from_angle > whole_turn * (1.0 - rounding)) { // the side where it begins counts once
+    return {begin, begin + around};
+  }
   return {begin, way_at(stops, from + (to_angle - from_angle) + rounding, begin)};
 }
 
@@ -96,7 +108,7 @@ Arc arc_between(const std::vector<Stop> &stops, double from_angle, double to_ang
 std::vector<BoltLine> bolts_of(const BoltPattern &pattern, const std::vector<Vec2> &outline) {
   expect(outline.size() >= 3 && pattern.to_angle > pattern.from_angle, "a pattern on an arc of an outline");
   const std::vector<Stop> stops = stops_of(outline);
-  const auto [begin, end] = arc_between(stops, pattern.from_angle, pattern.to_angle);
+  const auto [begin, end] = arc_between(stops, length_around(outline), pattern.from_angle, pattern.to_angle);
   const double arc = end - begin;
   const std::int64_t count =
       pattern.count > 0 ? pattern.count : std::max<std::int64_t>(1, std::llround(arc / pattern.spacing));
@@ -111,7 +123,7 @@ std::vector<BoltLine> bolts_of(const BoltPattern &pattern, const std::vector<Vec
 
 std::vector<Vec2> arc_of(const std::vector<Vec2> &outline, double from_angle, double to_angle) {
   expect(outline.size() >= 3 && to_angle > from_angle, "an arc of an outline");
-  const auto [begin, end] = arc_between(stops_of(outline), from_angle, to_angle);
+  const auto [begin, end] = arc_between(stops_of(outline), length_around(outline), from_angle, to_angle);
   std::vector<Vec2> path{point_at(outline, begin)};
   double way = 0.0;
   for (std::size_t k = 0; way < end; ++k) {

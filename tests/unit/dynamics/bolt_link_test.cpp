@@ -8,9 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace gcpdda::testing::bolt_link_test {
 namespace {
@@ -369,6 +372,26 @@ TEST(BoltPattern, StandsAtRightAnglesOnEachSideOfACorner) {
   // Right wall, roof and left wall: 12 m.
   const BoltPattern arch{3.0, 0.0, 180.0 * degree, 1.0, 0};
   EXPECT_EQ(bolts_of(arch, square).size(), 12U);
+}
+
+// The perimeter is 16 m. From 20 and from -45 degrees on the pattern begins at a corner, else at a side whose
+// normal is the first direction; a whole turn ends where it begins.
+TEST(BoltPattern, HasEverySideOnceOverAWholeTurn) {
+  const std::vector<Vec2> square = rectangle({-2.0, 0.0}, {2.0, 4.0});
+  for (const double begin : {-360.0, -90.0, -45.0, 0.0, 20.0, 90.0, 360.0}) {
+    const BoltPattern pattern{3.0, begin * degree, (begin + 360.0) * degree, 1.0, 0};
+    std::vector<std::pair<double, double>> heads;
+    for (const BoltLine &bolt : bolts_of(pattern, square)) {
+      heads.emplace_back(std::round(100.0 * bolt.from.x), std::round(100.0 * bolt.from.y));
+    }
+    EXPECT_EQ(heads.size(), 16U) << begin;
+    std::vector<std::pair<double, double>> expected;
+    for (const double along : {-150.0, -50.0, 50.0, 150.0}) {
+      expected.insert(expected.end(),
+                      {{along, 0.0}, {along, 400.0}, {-200.0, 200.0 + along}, {200.0, 200.0 + along}});
+    }
+    EXPECT_TRUE(std::is_permutation(heads.begin(), heads.end(), expected.begin(), expected.end())) << begin;
+  }
 }
 
 } // namespace
