@@ -36,8 +36,15 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return rows[a.size() % 3][b.size()];
 }
 
+/// Whether the two words have the same characters.
+inline bool is_rearranged(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
+}
+
 /// The candidate a person most likely meant by `word`, or "" when none is near: at most one edit in three
-/// characters.
+/// characters. Of several that are equally near the first one is taken, but one with swapped characters
+/// before one with another character: fingers change the order of characters more often than they find a
+/// wrong one.
 inline std::string nearest_word(std::string_view word, const std::vector<std::string> &candidates) {
   // A hint is not worth comparing thousands of words with thousands of words.
   constexpr std::size_t most_candidates = 256;
@@ -53,7 +60,10 @@ inline std::string nearest_word(std::string_view word, const std::vector<std::st
     const bool cut_short = word.size() >= 3 && candidate.starts_with(word);
     const std::size_t near = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
     const std::size_t distance = cut_short ? 1 : edit_distance(word, candidate);
-    if (distance <= near && distance < best_distance && distance < candidate.size()) {
+    const bool is_nearer =
+        distance < best_distance ||
+        (distance == best_distance && is_rearranged(word, candidate) && !is_rearranged(word, best));
+    if (distance <= near && is_nearer && distance < candidate.size()) {
       best = candidate;
       best_distance = distance;
     }

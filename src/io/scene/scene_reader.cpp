@@ -66,7 +66,7 @@ void read_parts(const SceneSource &source, const std::string &file, Scene &scene
   scene.bolts = read_bolts(source, scene);
   scene.liners = read_liners(source, scene);
   add_rollers(source, scene);
-  if (source.root.contains("stage")) {
+  if (has_stages(source.root)) {
     scene.run.duration = duration_of_stages(source);
   }
   scene.output = read_output(source, scene.run.duration);

@@ -9,6 +9,11 @@
 
 namespace gcpdda::scene_text {
 
+bool has_stages(const toml::table &root) {
+  const toml::node *stages = root.get("stage");
+  return stages != nullptr && !(stages->is_array() && stages->as_array()->empty());
+}
+
 double as_number(const toml::node &node) {
   if (const auto *integer = node.as_integer()) {
     return static_cast<double>(integer->get());

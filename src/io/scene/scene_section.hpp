@@ -29,6 +29,9 @@ struct SceneSource {
   Faults &faults;
 };
 
+/// Whether the scene has a stage. An empty list of stages means what none means: one run of run.duration.
+bool has_stages(const toml::table &root);
+
 double as_number(const toml::node &node);
 
 /// "'density' in [material.granite]"; without `in` at the top level.

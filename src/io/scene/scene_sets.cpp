@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -136,9 +137,17 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
   return tree;
 }
 
+constexpr std::array makers_of_blocks{"wall", "pyramid", "blocks", "region"};
+
 bool is_named_list(std::string_view key) {
   return key == "block" || key == "wall" || key == "pyramid" || key == "joint_set" || key == "fault" ||
          key == "opening" || key == "stage" || key == "bolt" || key == "bolt_pattern" || key == "liner";
+}
+
+/// Whether the scene has blocks that no [[block]] table describes.
+bool has_made_blocks(const toml::table &root) {
+  return std::any_of(makers_of_blocks.begin(), makers_of_blocks.end(),
+                     [&](const char *maker) { return root.contains(maker); });
 }
 
 // Finds the block, wall, joint set or other element with a name that path[1], or path[1] to path[k] joined by
@@ -169,6 +178,13 @@ toml::table *find_element(toml::table &root, Path &path, const toml::source_regi
     return nullptr;
   }
   const std::string near = nearest_word(name, names);
+  if (list == "block" && near.empty() && has_made_blocks(root)) {
+    faults.add(where, fmt::format("no [[block]] is named '{}'", shown(name)),
+               "values can be set of blocks that have a [[block]] table, not of those that walls, pyramids, "
+               "a block file or a region make",
+               "write the block as a [[block]] of its own");
+    return nullptr;
+  }
   faults.add(where, fmt::format("no {} is named '{}'", list, shown(name)), "",
              near.empty()
                  ? fmt::format("unnamed {}s are {}<n>, from 0 in file order", list, prefix_of_unnamed(list))
@@ -292,12 +308,15 @@ void apply_change(toml::table &root, const toml::key &dotted, toml::node &value,
       next = table->get(below.front());
     }
     if (next == nullptr || !next->is_table()) {
+      // Where the scene has no table [water] at all, the name is the next part of the path.
+      const std::string &missing =
+          below.size() == path->size() && path->size() > 1 ? (*path)[1] : below.front();
       const bool is_whole = below.size() == path->size() && !is_named_list(path->front()) &&
                             (path->front() == "in_situ" || path->front() == "region");
       faults.add(dotted.source(),
                  fmt::format("'{}' names no {} of the scene", shown(dotted.str()), path->front()),
                  is_whole ? fmt::format("[{}] is not there", path->front())
-                          : fmt::format("[{}.{}] is not there", path->front(), shown(below.front())),
+                          : fmt::format("[{}.{}] is not there", path->front(), shown(missing)),
                  is_whole ? "write the table into the scene" : "check the name");
       return;
     }

@@ -38,7 +38,7 @@ void check_scheme_keys(const SceneSource &source, const Section &run, SchemeKind
 
 void check_duration(const SceneSource &source, const Section &run) {
   const toml::node *duration = run.given("duration");
-  const bool staged = source.root.contains("stage");
+  const bool staged = has_stages(source.root);
   if (duration == nullptr && !staged && run.is_table() && source.root.contains("run")) {
     source.faults.add(run.source(), run.subject("duration") + " is missing", "it is required",
                       "for example duration = 2.0");

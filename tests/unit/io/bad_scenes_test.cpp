@@ -100,6 +100,14 @@ time_step = "fast")",
     {"TimeStepZero", 2, R"(duration = 2.0
 time_step = 0.0)",
      {R"(3:13: error: 'time_step' in [run] is 0, it must be above 0 and at most 1e+12, for example time_step = 1e-4)"}},
+    {"NoStages", 1, R"(stage = []
+[run]
+gravity = [0, 0]
+[output]
+interval = 1.0
+[fos])",
+     {R"(2:1: error: 'duration' in [run] is missing, it is required, for example duration = 2.0)",
+      R"(7:1: error: unknown key 'duration' in [fos], it belongs to [run])"}},
     {"SafetyAboveOne", 2, R"(duration = 2.0
 safety = 1.5)",
      {R"(3:10: error: 'safety' in [run] is 1.5, it must be above 0 and at most 1, for example safety = 0.55)"}},

@@ -3,6 +3,7 @@
 #include "base/edit_distance.hpp"
 #include "unit/scene_texts.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -103,6 +104,49 @@ TEST(SceneSets, FaultsComeAfterThoseOfTheFileInTheOrderOfTheSets) {
   EXPECT_EQ(reading.diagnostics[1].where.line, 0);
   EXPECT_EQ(reading.diagnostics[2].where.file, "--set run.safety=2");
   EXPECT_EQ(reading.diagnostics[3].where.file, "--set aaa=1");
+}
+
+/// What is said of two stages of which the second one has these values.
+std::vector<std::string> faults_of_stage(const std::string &scene, const std::string &values) {
+  return messages(read_scene(scene +
+                                 "[[stage]]\nkind = \"run\"\nduration = 1\n[[stage]]\nkind = "
+                                 "\"run\"\nduration = 1\nset = { " +
+                                 values + " }\n",
+                             "s.toml", {}));
+}
+
+TEST(StageSets, NameTheTableThatIsNotThere) {
+  const std::string scene = "[run]\n" + small_scene.substr(small_scene.find("[material"));
+  for (const auto &[table, key] :
+       {std::pair("water.lake", "density"), std::pair("support.bar", "axial_yield"),
+        std::pair("joint.fault", "cohesion"), std::pair("material.clay", "density")}) {
+    const std::vector<std::string> said = faults_of_stage(scene, fmt::format("\"{}.{}\" = 1.0", table, key));
+    ASSERT_EQ(said.size(), 1U) << table;
+    EXPECT_NE(said[0].find(fmt::format(", [{}] is not there, check the name", table)), std::string::npos)
+        << said[0];
+  }
+}
+
+TEST(StageSets, SayWhichBlocksHaveValues) {
+  const std::string scene = "[run]\n" + small_scene.substr(small_scene.find("[material")) +
+                            "[[wall]]\nname = \"w\"\nmaterial = \"granite\"\norigin = [5, 5]\nrows = "
+                            "4\ncolumns = 4\nblock_size = [1, 1]\n";
+  const std::vector<std::string> said = faults_of_stage(scene, "\"block.w.3.0.fixed\" = true");
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(
+      said[0].find("error: no [[block]] is named 'w.3.0', values can be set of blocks that have a [[block]] "
+                   "table, not of those that walls, pyramids, a block file or a region make, write the "
+                   "block as a [[block]] of its own"),
+      std::string::npos)
+      << said[0];
+  EXPECT_NE(faults_of_stage(scene, "\"block.slidr.fixed\" = true").at(0).find("did you mean 'slider'?"),
+            std::string::npos);
+}
+
+TEST(EditDistance, PrefersSwappedCharacters) {
+  EXPECT_EQ(nearest_word("jsc", {"jrc", "jcs"}), "jcs");
+  EXPECT_EQ(nearest_word("jsc", {"jcs", "jrc"}), "jcs");
+  EXPECT_EQ(nearest_word("jrx", {"jrc", "jcs"}), "jrc");
 }
 
 TEST(EditDistance, CountsEditsAndSwaps) {
