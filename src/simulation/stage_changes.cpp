@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <functional>
 #include <limits>
 #include <map>
@@ -288,6 +289,18 @@ void excavate(RunState &run, const std::vector<std::int64_t> &ids, double relax)
   }
   run.clock.state.removed.insert(run.clock.state.removed.end(), ids.begin(), ids.end());
   std::sort(run.clock.state.removed.begin(), run.clock.state.removed.end());
+}
+
+// Blocks move, and earlier stages take blocks away: what a stage excavates is known when it begins.
+void excavate(RunState &run, const Stage &stage) {
+  const std::vector<std::int64_t> ids = select_blocks(run, stage.excavated);
+  if (ids.empty()) {
+    run.notes.push_back(
+        {Severity::warning, stage.where, fmt::format("stage '{}' removes no blocks", stage.name),
+         "no block that is left has its centroid in 'region', belongs to 'openings' or is named in 'blocks'",
+         "move 'region' to where blocks are, or leave the stage out"});
+  }
+  excavate(run, ids, stage.relax);
 }
 
 Unloading unloading_of(const RunState &run, BlockId block) {

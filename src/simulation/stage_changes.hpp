@@ -30,6 +30,8 @@ void change_support(RunState &run, const std::vector<Bolt> &bolts, const std::ve
 /// Blocks are to be removed; what they put on others stays and goes. Collective.
 /// @param relax  s, over which their forces fall to zero; infinite where they stay
 void excavate(RunState &run, const std::vector<std::int64_t> &ids, double relax);
+/// The blocks that the stage excavates are to be removed; a warning says if there are none. Collective.
+void excavate(RunState &run, const Stage &stage);
 /// Rows of these blocks go. Collective.
 void remove_blocks(RunState &run, const std::vector<std::int64_t> &ids);
 

@@ -458,7 +458,7 @@ void begin_next_stage(RunState &run) {
     refresh(run);
     evaluate_still(run);
     if (stage.kind == StageKind::excavate) {
-      excavate(run, select_blocks(run, stage.excavated), stage.relax);
+      excavate(run, stage);
     } else {
       excavate(run, held_beyond_viscous_sides(run), std::numeric_limits<double>::infinity());
     }

@@ -198,6 +198,10 @@ TEST(PlausibleBlocks, AreMonitoredWhereTheyStay) {
       "[-2,2]]}]";
   expect_one(warnings_of(scene_of(tunnel, {by_polygon})),
              "which stage 'dig' excavates, its history ends there");
+  const std::string by_three_stages =
+      "stage=[{kind=\"settle\",limit=1.0},{name=\"dig\",kind=\"excavate\",region=[[-2,-2],[2,-2],[2,2],"
+      "[-2,2]]},{kind=\"excavate\",openings=[\"tunnel\"]},{kind=\"excavate\",openings=[\"tunnel\"]}]";
+  expect_one(warnings_of(scene_of(tunnel, {by_three_stages})), "which stage 'dig' excavates");
 }
 
 /// The value that a message proposes for region.min_width.

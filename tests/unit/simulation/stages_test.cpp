@@ -240,6 +240,25 @@ TEST(Stages, ASettleStageTakesLongStepsUnlessShortOnesAreAskedFor) {
   }
 }
 
+// The stage that finds nothing to take away is told of, and only that one.
+TEST(Stages, ExcavationsThatRemoveNothingAreToldOf) {
+  const std::string dig = "kind = \"excavate\"\nregion = [[-9, 0.2], [9, 0.2], [9, 9], [-9, 9]]\n";
+  Simulation simulation(Communicator::self(),
+                        scene_of(stack(2) +
+                                 "[[stage]]\nkind = \"run\"\nduration = 0.01\n[[stage]]\nname = "
+                                 "\"dig\"\n" +
+                                 dig + "[[stage]]\nname = \"again\"\n" + dig));
+  run_stages(simulation);
+  std::vector<std::string> warnings;
+  for (const Diagnostic &note : simulation.notes()) {
+    if (note.what.find("removes no blocks") != std::string::npos) {
+      EXPECT_EQ(note.severity, Severity::warning);
+      warnings.push_back(note.what);
+    }
+  }
+  EXPECT_EQ(warnings, std::vector<std::string>{"stage 'again' removes no blocks"});
+}
+
 const std::string settle_kinetically = settle + "kinetic_damping = true\n";
 
 // Sudden gravity on a touching block: half a swing about the overlap that bears it, fastest in its middle.
