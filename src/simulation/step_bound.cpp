@@ -125,10 +125,12 @@ void find_bound(RunState &run) {
   const bool settles =
       stage.kind == StageKind::settle && !stage.mass_scaling && run.scene.run.safety >= RunSettings{}.safety;
   run.bound.safety = settles ? std::max(run.scene.run.safety, safety_to_settle) : run.scene.run.safety;
-  const double locally_damped = stability_limit(run.scheme, run.bound.damping_ratio,
-                                                stage.local_damping_or(run.scene.run.local_damping));
+  const double local_damping = stage.local_damping_or(run.scene.run.local_damping);
+  const double locally_damped = stability_limit(run.scheme, run.bound.damping_ratio, local_damping);
+  const bool is_damped = stage.kind == StageKind::settle || local_damping > 0.0; // else as the scene asks
   const double undamped_share = undamped_limit / run.bound.limit;
-  if (locally_damped > 0.0 && run.bound.safety * run.bound.limit > safety_to_settle * locally_damped) {
+  if (is_damped && locally_damped > 0.0 &&
+      run.bound.safety * run.bound.limit > safety_to_settle * locally_damped) {
     run.bound.safety = safety_to_settle;
     run.bound.limit = locally_damped;
   }

@@ -240,6 +240,20 @@ TEST(Stages, ASettleStageTakesLongStepsUnlessShortOnesAreAskedFor) {
   }
 }
 
+// Only under local damping a share of the limit is kept back, whatever the scene asks for.
+TEST(Stages, ARunTakesTheSafetyThatIsGiven) {
+  const std::string stages = "[[stage]]\nkind = \"run\"\nduration = 1.0\n";
+  for (const double given : {0.25, 0.55, 0.95, 1.0}) {
+    const std::vector<std::string> sets{fmt::format("run.safety={}", given), "run.contact_damping=0"};
+    const Simulation plain(Communicator::self(), scene_of(stack(2) + stages, sets));
+    EXPECT_EQ(plain.bound().safety, given);
+    const Simulation damped(Communicator::self(),
+                            scene_of(stack(2) + stages + "local_damping = 0.8\n", sets));
+    const double most = 0.9 / std::sqrt(1.8); // 2/sqrt(1 + a) is the limit under local damping of share a
+    EXPECT_LT(damped.bound().time_step, (most + 0.01) * plain.bound().limit / plain.bound().omega_max);
+  }
+}
+
 // The stage that finds nothing to take away is told of, and only that one.
 TEST(Stages, ExcavationsThatRemoveNothingAreToldOf) {
   const std::string dig = "kind = \"excavate\"\nregion = [[-9, 0.2], [9, 0.2], [9, 9], [-9, 9]]\n";
