@@ -103,7 +103,7 @@ Besides these values the following is warned of, each kind in one line with the 
 | an interval of output, history or checkpoints, a ramp or the start of an earthquake beyond the end of the run | it never comes |
 | faults, maps, openings or layers that lie outside the region | they cut nothing |
 | a fault or a trace of a map that ends short of another line by less than 1/1000 of its length | it ends in the rock and cuts nothing there |
-| a joint law or material that nothing uses; the nearest name is suggested | `--set joint.defualt.cohesion=0` makes a new law |
+| a joint law or material that nothing uses; the nearest name is suggested | `--set joint.defualt.cohesion=0` makes a new law; a law that neither has `materials` nor is named by `edge_joints` is an error where the scene has neither a region nor a block file, because nothing can use it |
 | gravity acts and nothing is fixed, held or driven; no block can move | everything falls; nothing happens |
 | contacts at rest overlap by more than 1 % of the median block | blocks sink into each other; names the stiffness that would do |
 | parallel edges face each other across less than 5 % of a block, and more than rounding | drawn as touching, they do not touch |

@@ -290,7 +290,7 @@ std::span<const JointParameter> joint_parameters() {
   static const std::vector<JointParameter> parameters{
     {{"joint", Kind::named_tables, required, any, "", "", "[joint.default]", "Contact laws: default for every pair of materials, further ones for the pair they name or for the edges of blocks that name them."}, nullptr, {}},
     {{"joint.*", Kind::table, optional, any, "", "", "[joint.default]", "One contact law; keys missing in another law than default are taken from default."}, nullptr, {}},
-    {{"joint.*.materials", Kind::pair_of_names, optional, any, "", "<none: a law for edges that name it>", "[\"granite\", \"clay\"]", "The pair of materials that takes this law."}, nullptr, {}},
+    {{"joint.*.materials", Kind::pair_of_names, optional, any, "", "<none: a law for edges that name it>", "[\"granite\", \"clay\"]", "The pair of materials that takes this law. A law without it must be named by edge_joints of a block, or the scene must have a region or a block file, whose edges may name it."}, nullptr, {}},
     {{"joint.*.normal_stiffness", Kind::number, optional, above_to(0, 1e20), "", "<exactly one of this, allowed_overlap and rock_mass_modulus>", "1e9", "[Pa/m] Normal stiffness k_n = 2 p_n/H."},
      [](const JointLaw &law) { return law.normal_stiffness; },
      {"", "Pa/m", 1e6, 1e14, 5e9, {{1e6, "MPa/m"}, {1e9, "GPa/m"}}, "clay-filled to tight rock joints, and what stands for a rigid contact, have", "Bandis, Lumsden & Barton (1983); Lama & Vutukuri (1978)"}},
