@@ -76,7 +76,7 @@ private:
 
   ExitCode search() {
     const std::size_t at_once = choose_groups();
-    while (true) {
+    while (!confirms_in_vain()) {
       std::vector<double> factors = next_factors(
           range(), [&](double factor) { return verdict_of(factor); }, at_once);
       if (factors.empty() && watches_mechanism()) {
@@ -318,6 +318,7 @@ private:
           trial.evaluations += trials_[facts.factor].evaluations;
           trial.cpu_s += trials_[facts.factor].cpu_s;
           is_overturned = trial.verdict != trials_[facts.factor].verdict;
+          note_confirmation(facts, trial.verdict);
         }
         is_by_statics_alone(facts) ? void(unconfirmed_.insert(facts.factor))
                                    : void(unconfirmed_.erase(facts.factor));
@@ -333,6 +334,36 @@ private:
       }
     }
     return stopped;
+  }
+
+  /// Called before the verdict of the confirmation replaces that of the static solver.
+  void note_confirmation(const TrialFacts &facts, Verdict verdict) {
+    if (verdict != Verdict::undecided) {
+      has_confirmed_ = true;
+    } else if (facts.exit_code != exit_code::stopped) {
+      by_statics_.emplace(facts.factor, trials_.at(facts.factor).verdict);
+    }
+  }
+
+  /// Every end without a confirmed verdict sends the search to a lower one. Where the dynamic step comes to
+  /// no verdict at all, for want of time, it would try all factors down to the smallest.
+  [[nodiscard]] bool confirms_in_vain() const {
+    constexpr std::size_t most_undecided = 3;
+    return !has_confirmed_ && by_statics_.size() >= most_undecided;
+  }
+
+  /// The bracket that the static solver has found takes the place of one with confirmed ends.
+  void note_unconfirmed_bracket(std::vector<double> &decisive) {
+    const SafetySearch search = follow(range(), [&](double factor) {
+      const auto known = by_statics_.find(factor);
+      return known != by_statics_.end() ? std::optional(known->second) : verdict_of(factor);
+    });
+    const double limit = weakened_scene(scene_, report_.settled.factor).stages.back().drag_limit;
+    report_.unconfirmed =
+        UnconfirmedBracket{search.holds, search.fails, by_statics_.size(), limit, scene_.reduction.patience};
+    report_.holds.reset();
+    report_.fails.reset();
+    decisive.insert(decisive.end(), search.decisive.begin(), search.decisive.end());
   }
 
   static std::string word_of(Verdict verdict) {
@@ -372,6 +403,9 @@ private:
     report_.fails = search.fails;
     report_.undecided = search.undecided;
     std::vector<double> decisive = search.decisive;
+    if (confirms_in_vain()) {
+      note_unconfirmed_bracket(decisive);
+    }
     if (watches_mechanism()) {
       const SafetySearch first =
           follow(range(), [&](double factor) { return verdict_on_first_block(factor); });
@@ -379,11 +413,7 @@ private:
       report_.ignored_area = scene_.reduction.ignored_area;
       decisive.insert(decisive.end(), first.decisive.begin(), first.decisive.end());
     }
-    for (std::size_t i = 0; i < scene_.joints.laws.size(); ++i) {
-      if (is_weakened(scene_.reduction, i)) {
-        report_.families.push_back(scene_.joints.laws[i].name);
-      }
-    }
+    note_families();
     for (const auto &[factor, trial] : trials_) {
       report_.trials.push_back(trial);
       report_.trials.back().decisive =
@@ -414,6 +444,14 @@ private:
     }
   }
 
+  void note_families() {
+    for (std::size_t i = 0; i < scene_.joints.laws.size(); ++i) {
+      if (is_weakened(scene_.reduction, i)) {
+        report_.families.push_back(scene_.joints.laws[i].name);
+      }
+    }
+  }
+
   /// The least factor at which blocks hold no longer where they are but somewhere else. Of a mechanism it is
   /// not known: the motion of a trial is that of any block.
   void note_first_slide() {
@@ -441,7 +479,9 @@ private:
   std::int64_t num_blocks_ = 0;
   std::map<double, StrengthTrial> trials_; ///< by factor
   std::set<double> unconfirmed_;           ///< factors whose verdict is by the static solver alone
-  std::set<double> stopped_;               ///< factors of those without a verdict because the signal came
+  std::map<double, Verdict> by_statics_;   ///< verdicts of the static solver whose confirmation is undecided
+  bool has_confirmed_ = false; ///< the dynamic step has come to a verdict on an end of the bracket
+  std::set<double> stopped_;   ///< factors of those without a verdict because the signal came
   SafetyReport report_;
   std::string message_; ///< why there is no factor
 };

@@ -101,6 +101,13 @@ def verdicts(page):
     return re.findall(r'<p class="verdict (\w+)">([^<]*)</p>', html.unescape(page.read_text()))
 
 
+def test_of_a_search_whose_confirmations_are_undecided(search, tmp_path):
+    folder = changed(search, tmp_path / "unconfirmed", holds=None, fails=None, found=0, static_holds=1.2064,
+                     static_fails=None)
+    kind, words = verdicts(gcpdda.report(folder))[0]
+    assert kind == "open" and "by the static solver alone the blocks hold at 1.2064, and" in words
+
+
 def changed(search, folder, **values):
     """A copy of a search with other values in fos.json."""
     shutil.copytree(search.path, folder)

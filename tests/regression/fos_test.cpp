@@ -197,6 +197,71 @@ TEST(Fos, BeginsWithTheStateOfAnEarlierSearch) {
   EXPECT_FALSE(fs::exists(folder / "other"));
 }
 
+/// Two blocks on a slope of 30 degrees, which slide on joints of 35 and of 45 degrees.
+constexpr const char *two_sliders = R"([run]
+fidelity = "rigid"
+gravity = [4.905, -8.495709]
+[material.rock]
+density = 2600.0
+[joint.default]
+normal_stiffness = 2e8
+friction_angle_deg = 45.0
+[joint.weak]
+friction_angle_deg = 35
+[output]
+interval = 0.1
+[[block]]
+name = "slope"
+material = "rock"
+fixed = true
+vertices = [[-2, -1], [60, -1], [60, 0], [-2, 0]]
+[[block]]
+name = "small"
+material = "rock"
+vertices = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]
+edge_joints = ["weak", "", "", ""]
+[[block]]
+name = "big"
+material = "rock"
+vertices = [[20, 0], [24, 0], [24, 2], [20, 2]]
+[[stage]]
+name = "weight"
+kind = "settle"
+limit = 10.0
+[fos]
+limit = 0.05
+patience = 0
+)";
+
+// The static solver comes to its verdicts in any limit, the dynamic step does not. By limit equilibrium the
+// smaller block fails at tan(35)/tan(30) = 1.213.
+TEST(Fos, EndsWhereNoVerdictIsConfirmed) {
+  const WorkFolder folder;
+  folder.write("sliders.toml", two_sliders);
+  const Outcome alone = run_gcpdda(0, {"fos", "sliders.toml", "--out", "alone"}, folder);
+  EXPECT_EQ(alone.exit_code, 7) << alone.err;
+  EXPECT_NE(alone.out.find("by the static solver alone the blocks hold at 1.2064 and fail at no factor"),
+            std::string::npos)
+      << alone.out;
+  EXPECT_NE(alone.out.find("3 confirmations by the dynamic step are undecided in fos.limit = 0.05 s"),
+            std::string::npos)
+      << alone.out;
+  EXPECT_NE(alone.out.find("such as fos.limit = 0.5, or fos.patience = 8"), std::string::npos) << alone.out;
+  const fs::path report = folder / "alone/fos.json";
+  EXPECT_EQ(json_value(report, "holds"), "null");
+  EXPECT_EQ(json_value(report, "found"), "0");
+  EXPECT_EQ(std::stod(json_value(report, "static_holds")), 1.2064);
+  EXPECT_EQ(json_value(report, "static_fails"), "null");
+  EXPECT_LT(lines_of(file_text(folder / "alone/fos_trials.csv")).size(), 25U);
+
+  const Outcome together = run_gcpdda(2, {"fos", "sliders.toml", "--out", "together"}, folder);
+  EXPECT_EQ(together.exit_code, 7) << together.err;
+  EXPECT_EQ(lines_of(together.out).front(), lines_of(alone.out).front());
+  const Outcome longer =
+      run_gcpdda(0, {"fos", "sliders.toml", "--set", "fos.limit=0.5", "--set", "fos.patience=8"}, folder);
+  EXPECT_EQ(longer.exit_code, 0) << longer.out << "the remedy that the text names";
+}
+
 // On one rank, one trial after the other; the second gains speed so slowly that it takes a long time.
 TEST(Fos, TellsWhatItKnowsWhereTheSignalStopsIt) {
   const WorkFolder folder;

@@ -41,9 +41,28 @@ std::string bound_text(const SafetyReport &report) {
   return text;
 }
 
+std::string unconfirmed_text(const UnconfirmedBracket &bracket) {
+  constexpr int usual_patience = 8;
+  const std::string ends =
+      bracket.holds && bracket.fails
+          ? fmt::format("hold at {:.6g} and fail at {:.6g}", *bracket.holds, *bracket.fails)
+      : bracket.holds ? fmt::format("hold at {:.6g} and fail at no factor tried", *bracket.holds)
+      : bracket.fails ? fmt::format("fail at {:.6g} and hold at no factor tried", *bracket.fails)
+                      : std::string("neither hold nor fail at any factor tried");
+  return fmt::format("no factor of safety: by the static solver alone the blocks {}, and {} confirmations by "
+                     "the dynamic step are undecided in fos.limit = {:g} s; use a longer one, such as "
+                     "fos.limit = {:.2g}{}",
+                     ends, bracket.confirmations, bracket.limit, 10.0 * bracket.limit,
+                     bracket.patience < usual_patience ? fmt::format(", or fos.patience = {}", usual_patience)
+                                                       : std::string());
+}
+
 std::string factor_text(const SafetyReport &report) {
   if (report.is_bound_alone) {
     return bound_text(report);
+  }
+  if (report.unconfirmed) {
+    return unconfirmed_text(*report.unconfirmed);
   }
   if (report.holds && report.fails) {
     return fmt::format(
@@ -60,7 +79,7 @@ std::string factor_text(const SafetyReport &report) {
 }
 
 std::string undecided_text(const SafetyReport &report) {
-  if (report.undecided.empty()) {
+  if (report.undecided.empty() || report.unconfirmed) { // there is no bracket in which the factor lies
     return {};
   }
   return fmt::format(
@@ -182,6 +201,9 @@ std::string json_text(const SafetyReport &report) {
     object.add("first_block_holds", first->holds.value_or(none))
         .add("first_block_fails", first->fails.value_or(none))
         .add("ignore_area", report.ignored_area);
+  }
+  if (const auto &found = report.unconfirmed) {
+    object.add("static_holds", found->holds.value_or(none)).add("static_fails", found->fails.value_or(none));
   }
   std::vector<JsonObject> trials;
   std::transform(report.trials.begin(), report.trials.end(), std::back_inserter(trials), trial_object);

@@ -53,6 +53,15 @@ struct FirstBlock {
   std::vector<FailingBlock> blocks; ///< of `fails`, by BlockId
 };
 
+/// What the static solver has found where the dynamic step came to no verdict on any of it.
+struct UnconfirmedBracket {
+  std::optional<double> holds;
+  std::optional<double> fails;
+  std::size_t confirmations = 0; ///< dynamic runs without a verdict
+  double limit = 0.0;            ///< of a trial, s
+  std::int64_t patience = 0;     ///< fos.patience
+};
+
 /// SVG texts; empty where there is nothing to draw.
 struct SafetyPictures {
   std::string mechanism;
@@ -66,18 +75,19 @@ inline bool is_narrow(double width, double holds, double tolerance) {
 
 /// What gcpdda fos has found.
 struct SafetyReport {
-  std::vector<std::string> families;   ///< laws that were weakened
-  bool leaves_earthquake_out = false;  ///< of the scene
-  double tolerance = 0.0;              ///< asked for
-  std::optional<double> holds;         ///< largest factor at which the blocks settled
-  std::optional<double> fails;         ///< smallest one at which they failed
-  std::vector<double> undecided;       ///< factors between these two without a verdict
-  StrengthTrial settled;               ///< the run up to the settled state, at factor 1
-  std::vector<StrengthTrial> trials;   ///< by factor
-  std::optional<double> bound;         ///< upper bound by limit analysis, where it was asked for
-  std::optional<double> resting_bound; ///< the same for blocks that hold as they lie; no larger
-  bool is_bound_alone = false;         ///< no trials were to be run
-  std::vector<FailingBlock> mechanism; ///< of `fails`, by BlockId; empty without it
+  std::vector<std::string> families;             ///< laws that were weakened
+  bool leaves_earthquake_out = false;            ///< of the scene
+  double tolerance = 0.0;                        ///< asked for
+  std::optional<double> holds;                   ///< largest factor at which the blocks settled
+  std::optional<double> fails;                   ///< smallest one at which they failed
+  std::vector<double> undecided;                 ///< factors between these two without a verdict
+  StrengthTrial settled;                         ///< the run up to the settled state, at factor 1
+  std::vector<StrengthTrial> trials;             ///< by factor
+  std::optional<double> bound;                   ///< upper bound by limit analysis, where it was asked for
+  std::optional<double> resting_bound;           ///< the same for blocks that hold as they lie; no larger
+  bool is_bound_alone = false;                   ///< no trials were to be run
+  std::vector<FailingBlock> mechanism;           ///< of `fails`, by BlockId; empty without it
+  std::optional<UnconfirmedBracket> unconfirmed; ///< where the search has ended without confirmed ends
   std::optional<FirstBlock>
       first_block;           ///< where the factor is that of a mechanism (fos.ignore_area, fos.region)
   double ignored_area = 0.0; ///< m^2, fos.ignore_area

@@ -46,6 +46,11 @@ def safety_page(search, title, frames):
 def factor_words(summary):
     """What the trials say about the factor of safety, and whether that is good, bad or open."""
     holds, fails = summary["holds"], summary["fails"]
+    if "static_holds" in summary:
+        ends = [f"{word} at {summary[key]:.5g}" for word, key in (("hold", "static_holds"), ("fail", "static_fails"))
+                if summary[key] is not None]
+        return (f"No factor of safety: by the static solver alone the blocks {' and '.join(ends)}, and the dynamic "
+                "step confirms neither end within fos.limit. Use a longer fos.limit.", "open")
     if holds is None and fails is None:
         return "No trial came to a verdict.", "open"
     if fails is None:
