@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <utility>
 
 namespace gcpdda {
@@ -21,6 +22,8 @@ constexpr double trembling = 1e-6;
 constexpr double sharp = 0.1 * ImpactWatch::worth_telling;
 constexpr int most_waits = 20; ///< for a sharp row, where impacts follow each other without a pause
 constexpr double rounding_of_residual = 1e-11; ///< its error, as a share of the terms in it
+/// Positions are known to this share of their distance from the origin.
+constexpr double rounding_of_position = 10.0 * std::numeric_limits<double>::epsilon();
 
 /// A block that has changed its rank between two looks, as either of the ranks knows it.
 struct Migrant {
@@ -39,6 +42,23 @@ double size_of_terms(const EnergyRow &row) {
   return row.kinetic + row.strain + row.contact_normal + row.contact_stick + std::abs(row.gravity) +
          std::abs(row.friction_loss) + std::abs(row.damping_loss) + std::abs(row.boundary_work) +
          row.support + std::abs(row.support_loss);
+}
+
+/// Energy of the motion that round-off of positions causes: forces from it make blocks swing by that much.
+/// Where nothing acts this motion is all there is. Collective.
+double energy_of_rounding(const Simulation &simulation) {
+  const BlockSystem &blocks = simulation.blocks();
+  ExactSum energy;
+  for (std::size_t row = 0; row < blocks.num_owned; ++row) {
+    const BlockProperties &block = blocks.properties[row];
+    if (!block.keeps_its_velocity()) {
+      const double farthest = norm(blocks.centroid(row)) + block.radius;
+      const double speed = rounding_of_position * farthest * simulation.bound().omega_max;
+      energy.add(0.5 * block.mass * speed * speed);
+    }
+  }
+  simulation.communicator().sum(energy.limbs());
+  return energy.value();
 }
 
 } // namespace
@@ -150,7 +170,8 @@ std::optional<ImpactGain> ImpactWatch::look(const Simulation &simulation, const 
   const ImpactGain found{time_, simulation.time(), gain - loss, energy};
   const double least = std::max(worth_telling * energy, rounding_of_residual * size_of_terms(row));
   const double stored = row.strain + row.contact_normal + row.contact_stick;
-  if (std::abs(found.gained) <= least || energy <= std::max(dust * most_kinetic_, trembling * stored)) {
+  if (std::abs(found.gained) <= least || energy <= std::max(dust * most_kinetic_, trembling * stored) ||
+      energy <= energy_of_rounding(simulation)) {
     begin_at(simulation, now);
     return std::nullopt;
   }

@@ -194,6 +194,65 @@ TEST(Impacts, AreNotToldOfABlockThatTouchesNothing) {
   }
 }
 
+// Bolts and a liner around an opening join blocks on which nothing acts: what moves is round-off.
+TEST(Impacts, AreNotToldOfRoundOff) {
+  const WorkFolder folder;
+  folder.write("still.toml", R"([run]
+duration = 0.001
+gravity = [0, 0]
+fidelity = "rigid"
+[material.rock]
+density = 2000.0
+[joint.default]
+normal_stiffness = 1e9
+friction_angle_deg = 30
+[region]
+material = "rock"
+polygon = [[-20, -20], [20, -20], [20, 20], [-20, 20]]
+fixed = ["bottom"]
+min_width = 0
+slivers = "keep"
+[[opening]]
+name = "d"
+shape = "d"
+centre = [0, 0]
+width = 6
+height = 6
+excavated = true
+[support.b]
+kind = "grouted"
+axial_stiffness = 1e7
+active_length = 0.5
+[support.l]
+kind = "liner"
+thickness = 0.1
+youngs_modulus = 1e10
+[[joint_set]]
+dip_deg = 35
+spacing = 0.7
+[[joint_set]]
+dip_deg = 125
+spacing = 0.7
+[[bolt_pattern]]
+name = "p"
+support = "b"
+opening = "d"
+length = 3
+from_angle_deg = -90
+to_angle_deg = 270
+spacing = 1.5
+[[liner]]
+name = "l"
+support = "l"
+opening = "d"
+from_angle_deg = -90
+to_angle_deg = 270
+)");
+  const Outcome outcome = run_gcpdda(0, {"run", "still.toml", "--out", "out"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_of(outcome.err, "by the time step alone"), 0) << outcome.err;
+}
+
 // A slope that has settled and goes on without damping: its contacts tremble by a thousandth of what they
 // have closed by.
 TEST(Impacts, AreNotToldOfRockAtRest) {
