@@ -64,10 +64,11 @@ double energy_of_rounding(const Simulation &simulation) {
 } // namespace
 
 // The row at t = 0 is not in the middle of two configurations; on the way to rest speeds and their energies
-// are not physical.
+// are not physical. Contact forces by the linear potential have no energy that a ledger could hold.
 bool ImpactWatch::sees(const Simulation &simulation) {
   const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
-  return simulation.step_count() > 0 && stage.kind != StageKind::settle;
+  return simulation.step_count() > 0 && stage.kind != StageKind::settle &&
+         simulation.scene().run.potential == PotentialKind::exact;
 }
 
 // Those that have changed ranks meet at the rank whose slab has their id.

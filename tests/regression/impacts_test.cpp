@@ -253,6 +253,21 @@ to_angle_deg = 270
   EXPECT_EQ(count_of(outcome.err, "by the time step alone"), 0) << outcome.err;
 }
 
+// The linear potential halves the force on a flush face; a block at rest swings to twice the overlap. No
+// energy belongs to its forces, and the residual of the ledger holds what they work.
+TEST(Impacts, AreNotToldOfTheLinearPotential) {
+  const WorkFolder folder;
+  folder.write("cube.toml",
+               "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600\n[joint.default]\n"
+               "normal_stiffness = 1e9\nfriction_angle_deg = 30\n[output]\ninterval = 0.1\n" +
+                   block_toml("floor", rectangle({-2.0, -1.0}, {5.0, 0.0}), "fixed = true") +
+                   block_toml("cube", rectangle({0.0, 0.0}, {2.0, 2.0})) +
+                   "[[stage]]\nkind = \"settle\"\nlimit = 5\n[[stage]]\nkind = \"run\"\nduration = 0.5\n"
+                   "set = { \"run.potential\" = \"linear\" }\n");
+  const Outcome outcome = run_gcpdda(0, {"run", "cube.toml", "--out", "out"}, folder);
+  EXPECT_EQ(count_of(outcome.err, "by the time step alone"), 0) << outcome.err;
+}
+
 // A slope that has settled and goes on without damping: its contacts tremble by a thousandth of what they
 // have closed by.
 TEST(Impacts, AreNotToldOfRockAtRest) {

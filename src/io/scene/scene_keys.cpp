@@ -25,7 +25,7 @@ constexpr Key keys_before_joints[] = {
   {"run.scheme", Kind::choice, optional, any, "generalized-alpha newmark-dda central-difference explicit-generalized-alpha", "\"generalized-alpha\"", "\"generalized-alpha\"", "Time integration."},
   {"run.spectral_radius", Kind::number, optional, from_to(0, 1), "", "0.5", "0.5", "Spectral radius at infinite frequency of generalized-alpha and explicit-generalized-alpha: 1 keeps all high frequencies, 0 removes them in one step."},
   {"run.contact_time", Kind::choice, optional, any, "leapfrog start predictor predictor-end", "\"leapfrog\"", "\"leapfrog\"", "Where within the step generalized-alpha takes the contact force."},
-  {"run.potential", Kind::choice, optional, any, "exact linear", "\"exact\"", "\"exact\"", "Contact potential."},
+  {"run.potential", Kind::choice, optional, any, "exact linear", "\"exact\"", "\"exact\"", "Contact potential. The forces of `linear` work on closed paths: no energy belongs to them, the residual of energy.csv holds their work, and impacts are not watched."},
   {"run.fidelity", Kind::choice, optional, any, "auto rigid deformable", "\"auto\"", "\"auto\"", "How blocks deform; auto decides for each block by its stiffness and that of its joints."},
   {"run.accepted_error", Kind::number, optional, above_to(0, 1), "", "0.01", "0.01", "Relative error up to which fidelity \"auto\" computes a block as rigid."},
   {"run.initial_friction", Kind::choice, optional, any, "consistent zero", "\"consistent\"", "\"consistent\"", "Shear force of the contacts that exist at the start."},
