@@ -124,7 +124,8 @@ private:
     log_stage();
   }
 
-  /// Those that take no steps are over at once.
+  /// Those that take no steps are over at once. No step shows what the last of them has changed: its frame
+  /// and rows are written here.
   void begin_stages() {
     while (simulation_.is_staged() && simulation_.stage_is_over() && !simulation_.finished() &&
            !simulation_.stop_agreed()) {
@@ -134,6 +135,9 @@ private:
       tell_of_bolts();
       if (simulation_.stage_is_over()) {
         log_stage();
+        if (simulation_.finished()) {
+          write_due();
+        }
       }
     }
   }
@@ -189,7 +193,7 @@ private:
     frames_.emplace(communicator_, directory_, simulation_.num_blocks());
     frames_->continue_behind(facts.frame_times, facts.results);
     on_root(communicator_, [&] {
-      histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step,
+      histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step, facts.results,
                          SupportHistories::of(scene));
     });
     log_.emplace(communicator_.is_root(), directory_, std::ios::app);

@@ -1,6 +1,7 @@
 // A run in stages: what it writes, that a restart from any of them goes on with the same bits, its exit
 // codes.
 
+#include "io/results/frame_reader.hpp"
 #include "io/results/run_comparison.hpp"
 
 #include "child_process.hpp"
@@ -149,6 +150,36 @@ TEST(StagedRun, EveryStageEndsWithAHistoryRow) {
     EXPECT_EQ(run_gcpdda(5 - ranks, {"restart", name}, folder).exit_code, 0);
     EXPECT_EQ(compare_runs(folder / "whole", folder / name), none);
   }
+}
+
+// The excavation is the last stage: the frame and the row at its end show what it has left, at the time at
+// which the stage before ended. A restart from the end of that stage writes them again.
+TEST(StagedRun, ALastStageWithoutStepsHasAFrameAndARow) {
+  const WorkFolder folder;
+  folder.write("scene.toml", scene_of_stages(2));
+  for (const int ranks : {1, 2, 3}) {
+    const std::string name = fmt::format("on{}", ranks);
+    const Outcome outcome = run_gcpdda(ranks, {"run", "scene.toml", "--out", name}, folder);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(compare_runs(folder / "on1", folder / name), none);
+  }
+  const std::vector<double> times = times_of(folder / "on1/history/energy.csv");
+  ASSERT_GE(times.size(), 2U);
+  EXPECT_EQ(times.end()[-1], times.end()[-2]);
+  std::vector<fs::path> frames;
+  for (const fs::directory_entry &entry : fs::directory_iterator(folder / "on1/frames")) {
+    if (entry.path().filename().string().starts_with("frame_")) {
+      frames.push_back(entry.path());
+    }
+  }
+  std::sort(frames.begin(), frames.end());
+  ASSERT_GE(frames.size(), 2U);
+  EXPECT_EQ(read_frame(frames.end()[-2]).block.size(), 35U) << "the floor and rows of 8 and 9";
+  EXPECT_EQ(read_frame(frames.end()[-1]).block.size(), 30U)
+      << "two blocks of the lowest row and three above them";
+  const Outcome again = run_gcpdda(2, {"restart", "on3"}, folder);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(compare_runs(folder / "on1", folder / "on3"), none);
 }
 
 std::string two_blocks(const std::string &upper) {

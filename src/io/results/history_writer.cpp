@@ -69,22 +69,32 @@ void write_to(const std::filesystem::path &path, const std::string &text, std::i
   }
 }
 
-/// Whole rows of an earlier history up to a time; none where there is no history with this header: a monitor
-/// may be new.
-std::string rows_until(const std::filesystem::path &path, const std::string &header, double last_time) {
+/// Whole rows of an earlier history up to a time, at most so many; none where there is no history with this
+/// header: a monitor may be new.
+std::string rows_until(const std::filesystem::path &path, const std::string &header, double last_time,
+                       std::int64_t most) {
   std::ifstream stream(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!text.starts_with(header)) {
     return "";
   }
   std::size_t end = header.size();
-  for (std::size_t next = text.find('\n', end); next != std::string::npos; next = text.find('\n', end)) {
+  for (std::size_t next = text.find('\n', end); next != std::string::npos && most > 0;
+       next = text.find('\n', end)) {
     if (std::strtod(text.c_str() + end, nullptr) > last_time) {
       break;
     }
     end = next + 1;
+    --most;
   }
   return text.substr(header.size(), end - header.size());
+}
+
+/// Rows that a history had when the checkpoint was written; any number where the checkpoint does not know it.
+std::int64_t rows_of(const std::vector<ResultFile> &known, const std::string &name) {
+  const auto file = std::find_if(known.begin(), known.end(),
+                                 [&](const ResultFile &one) { return one.name == name && one.rows >= 0; });
+  return file == known.end() ? std::numeric_limits<std::int64_t>::max() : file->rows;
 }
 
 void note_appended(ResultFile &file, const std::string &rows) {
@@ -96,11 +106,11 @@ void note_appended(ResultFile &file, const std::string &rows) {
 
 HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors,
                              SupportHistories support)
-    : HistoryWriter(std::move(directory), std::move(monitors), -std::numeric_limits<double>::infinity(),
+    : HistoryWriter(std::move(directory), std::move(monitors), -std::numeric_limits<double>::infinity(), {},
                     support) {}
 
 HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time,
-                             SupportHistories support)
+                             const std::vector<ResultFile> &known, SupportHistories support)
     : directory_(std::move(directory)), monitors_(std::move(monitors)), tables_{energy_name} {
   if (support.bolts) {
     tables_.emplace_back(bolts_name);
@@ -130,7 +140,7 @@ HistoryWriter::HistoryWriter(std::filesystem::path directory, std::vector<Monito
     const std::string header = header_of(i);
     files_.push_back({"history/" + path_of(i).filename().string(), std::ssize(header), 0});
     if (std::isfinite(last_time)) {
-      const std::string rows = rows_until(path_of(i), header, last_time);
+      const std::string rows = rows_until(path_of(i), header, last_time, rows_of(known, files_.back().name));
       note_appended(files_.back(), rows);
       write_file(path_of(i), header + rows);
       if (i > first_of_.size()) {

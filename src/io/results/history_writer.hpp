@@ -43,8 +43,10 @@ public:
                 SupportHistories support = {});
   /// Go on with the histories of a run: rows later than `last_time` (s) are cut off, and a last row that was
   /// not written to its end.
+  /// @param known  files as they were when the checkpoint was written: rows behind those go, too, because a
+  ///               stage without steps may have added some at the same time
   HistoryWriter(std::filesystem::path directory, std::vector<Monitor> monitors, double last_time,
-                SupportHistories support = {});
+                const std::vector<ResultFile> &known, SupportHistories support = {});
   void write_monitor(std::size_t monitor, double time, const BlockHistoryRow &row);
   void write_energy(double time, const EnergyRow &row);
   void write_bolts(double time, const std::vector<BoltHistoryRow> &rows);

@@ -194,7 +194,7 @@ TEST_F(CutResults, HistoriesKeepWholeRowsUpToTheTime) {
   for (const std::string rest :
        {"", "0.3", "0.30000000000000004,1,2,3,4,0,0\n0.4,1,2,3,4,0,0\n", "0.2", "0.2,5"}) {
     write("history/roof.csv", header + kept + rest);
-    HistoryWriter writer(folder_, {point, fresh}, 0.2 + 0.5e-3);
+    HistoryWriter writer(folder_, {point, fresh}, 0.2 + 0.5e-3, {});
     EXPECT_EQ(file_text(folder_ / "history/roof.csv"), header + kept) << rest;
     EXPECT_EQ(file_text(folder_ / "history/fresh.csv"), header) << "a monitor that was not there before";
     writer.write_monitor(0, 0.5, {});
@@ -218,7 +218,7 @@ TEST_F(CutResults, HistoriesKeepTheirColumns) {
       "fx[N/m],fy[N/m]\n0,1,2,3,4,5,6,7,8,9,10,11\n";
   write("history/roof.csv", roof + "0.3,1,2,3,4\n");
   write("history/b0.csv", b0);
-  HistoryWriter writer(folder_, {point, block}, 0.25);
+  HistoryWriter writer(folder_, {point, block}, 0.25, {});
   writer.write_monitor(0, 0.5, {});
   writer.write_monitor(1, 0.5, {});
   writer.flush();
@@ -241,8 +241,11 @@ TEST_F(CutResults, AreToldByTheirSizesAndRows) {
   EXPECT_EQ(roof.rows, 3);
   const std::string text = file_text(folder_ / roof.name);
   EXPECT_EQ(roof.bytes, std::ssize(text));
-  const HistoryWriter resumed(folder_, {point}, 0.15);
+  const HistoryWriter resumed(folder_, {point}, 0.15, {});
   EXPECT_EQ(resumed.files().front().rows, 2);
+  const ResultFile at_checkpoint{roof.name, 0, 1};
+  const HistoryWriter behind(folder_, {point}, 0.15, {at_checkpoint});
+  EXPECT_EQ(behind.files().front().rows, 1) << "a row at the same time came after the checkpoint";
   const auto damage = [&](const std::string &now) {
     write(roof.name, now);
     return damage_of(folder_, roof);
@@ -307,7 +310,7 @@ TEST_F(CutResults, LoadsOfBoltsGoOnAsIfNeverStopped) {
   whole.flush();
   write_last(whole);
   expect_loads(whole.bolt_loads());
-  HistoryWriter resumed(folder_, {}, 0.2 + 0.5e-3, {true, false});
+  HistoryWriter resumed(folder_, {}, 0.2 + 0.5e-3, {}, {true, false});
   EXPECT_EQ(resumed.bolt_loads().size(), 2U);
   write_last(resumed);
   expect_loads(resumed.bolt_loads());
