@@ -81,6 +81,29 @@ def test_of_a_run_in_stages(opening, tmp_path):
     assert opening.summary["version"] in text and opening.summary["command"] in html.unescape(text)
 
 
+def test_of_stages_that_end_at_the_same_time(tmp_path):
+    """The stage `after` takes no time, since no block is left that can move: its frame has the time of `low`."""
+    scene = gcpdda.Scene(name="emptied", fidelity="rigid")
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=30)
+    scene.block("ground", [[-5, -1], [5, -1], [5, 0], [-5, 0]], material="rock", fixed=True)
+    scene.block("lower", [[-1, 0], [1, 0], [1, 1], [-1, 1]], material="rock")
+    scene.block("upper", [[-1, 1], [1, 1], [1, 2], [-1, 2]], material="rock")
+    scene.stage("weight", "settle", limit=1.0)
+    scene.stage("top", "excavate", blocks=["upper"], relax=0.1, set={"joint.default.friction_angle_deg": 35.0})
+    scene.stage("low", "settle", limit=1.0)
+    scene.stage("all", "excavate", region=[[-9, 0], [9, 0], [9, 9], [-9, 9]])
+    scene.stage("after", "settle", limit=1.0)
+    result = gcpdda.run(scene, ranks=1, out=tmp_path / "emptied")
+    ends = list(result.stages["end"])
+    assert ends[2] == ends[4] == result.frames[-1].time == result.frames[-2].time
+    assert [len(result.at_end_of(name).ids) for name in ("weight", "low", "after")] == [3, 2, 1]
+    assert [len(result.before(name).ids) for name in ("top", "all")] == [3, 2]
+    _, _, text = check(gcpdda.report(result.path, frames=2))
+    assert "excavates blocks upper; relax = 0.1 s; joint.default.friction_angle_deg = 35" in text
+    assert "excavates the blocks in region (-9, 0) (9, 0) (9, 9) (-9, 9)" in text
+
+
 def test_of_a_run_with_bolts_and_water(leaning, tmp_path):
     headings, _, text = check(gcpdda.report(leaning.path, tmp_path / "leaning.html", frames=4))
     assert "Bolts" in headings and "cable" in text and "Water pressure" in text

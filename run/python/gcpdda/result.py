@@ -218,11 +218,26 @@ class Result(Folder):
         return early[-1] if early else self.start
 
     def before(self, stage):
-        """The last frame that is not later than the beginning of a stage."""
-        stages = self.stages
-        if stage not in set(stages["name"]):
-            raise KeyError(f"no stage {stage}: there are {', '.join(stages['name']) or 'none'}")
-        return self.at(float(stages["begin"][stages["name"] == stage].iloc[0]))
+        """The last frame before a stage."""
+        place = self._place_of(stage)
+        return self.at(0.0) if place == 0 else self.at_end_of(self.stages["name"][place - 1])
+
+    def at_end_of(self, stage):
+        """The frame at the end of a stage. Frames of later stages that take no time have the same time but fewer
+        blocks."""
+        place, stages = self._place_of(stage), self.stages
+        end = float(stages["end"][place])
+        alike = [frame for frame in self.frames if abs(frame.time - end) <= 1e-9 * max(end, 1.0)]
+        if len(alike) < 2:
+            return self.at(end)
+        left = len(self.frame("first").ids) - stages["removed"].fillna(0)[:place + 1].sum()
+        return next((frame for frame in alike if len(frame.ids) == left), alike[0])
+
+    def _place_of(self, stage):
+        names = list(self.stages["name"])
+        if stage not in names:
+            raise KeyError(f"no stage {stage}: there are {', '.join(names) or 'none'}")
+        return names.index(stage)
 
     @property
     def times(self):

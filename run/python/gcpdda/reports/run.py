@@ -8,7 +8,7 @@ import numpy as np
 from ..plot import png
 from ..plot.over_time import energy_parts
 from ..plot.style import view
-from .page import Page
+from .page import Page, text_of
 from .scene_tables import add_provenance, add_scene
 
 DPI = 100
@@ -125,9 +125,12 @@ def _stages(page, result):
     if not len(stages):
         return
     page.section("Stages")
-    page.table(stages, {"name": "stage", "kind": "kind", "verdict": "verdict", "begin": "begin (s)", "end": "end (s)",
-                        "steps": "steps", "unbalanced_ratio": "unbalanced ratio (-)",
-                        "moved": "largest motion (block sizes)", "removed": "blocks removed"})
+    settings = {stage.get("name", f"stage{k}"): stage for k, stage in enumerate(result.scene.get("stage", []))}
+    rows = [row | {"changes": words_on_changes(settings.get(row["name"], {}))} for row in stages.to_dict("records")]
+    page.table(rows, {"name": "stage", "kind": "kind", "changes": "changes at its beginning",
+                      "verdict": "verdict", "begin": "begin (s)", "end": "end (s)", "steps": "steps",
+                      "unbalanced_ratio": "unbalanced ratio (-)",
+                      "moved": "largest motion (block sizes)", "removed": "blocks removed"})
     page.text("The unbalanced ratio is the largest net force over the largest force in the model; the motion is that "
               "within the stage. Settled: blocks have come to rest. Failed: a block moves on. Undecided: neither, when "
               "the stage ended.", "note")
@@ -135,12 +138,11 @@ def _stages(page, result):
     begin = result.frame("first").time if result.frames else np.inf
     shown = [row for row in stages.to_dict("records")
              if row["steps"] > 0 and row["end"] > row["begin"] and row["end"] >= begin]
-    settings = {stage.get("name", f"stage{k}"): stage for k, stage in enumerate(result.scene.get("stage", []))}
     for row in shown[:12]:
         page.heading(f"Stage {row['name']}: {row['verdict']}")
         if settings.get(row["name"], {}).get("set"):
             page.keys(settings[row["name"]]["set"])
-        number = result.at(row["end"]).number
+        number = result.at_end_of(row["name"]).number
         if not len(result.frame(number).ids):
             page.text("No block is left.")
             continue
@@ -151,6 +153,16 @@ def _stages(page, result):
         page.pictures(*pictures)
     if len(shown) > 12:
         page.text(f"The pictures of {len(shown) - 12} further stages are left out.", "note")
+
+
+def words_on_changes(stage):
+    """What a table [[stage]] excavates and sets, and over how long."""
+    words = [f"excavates {key} {', '.join(stage[key])}" for key in ("openings", "blocks") if stage.get(key)]
+    if stage.get("region"):
+        words.append("excavates the blocks in region " + " ".join(f"({x:g}, {y:g})" for x, y in stage["region"]))
+    words += [f"{key} = {stage[key]:g} s" for key in ("relax", "ramp") if stage.get(key)]
+    words += [f"{path} = {text_of(value)}" for path, value in stage.get("set", {}).items()]
+    return "; ".join(words)
 
 
 def draws_joints(result):
