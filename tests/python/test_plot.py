@@ -143,6 +143,23 @@ def test_blocks_that_are_gone(opening, tmp_path):
     assert "No block is left" in gcpdda.report(result.path, frames=0).read_text()
 
 
+def test_bolts_with_a_single_row_have_a_marker(tmp_path):
+    scene = gcpdda.Scene(name="bolted", fidelity="rigid")
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=30)
+    scene.block("ground", [[-5, -1], [5, -1], [5, 0], [-5, 0]], material="rock", fixed=True)
+    scene.block("block", [[-1, 0], [1, 0], [1, 2], [-1, 2]], material="rock")
+    scene.table("support.bar", kind="anchored", axial_stiffness=1e7, pretension=1e3)
+    for name, x, active in (("early", -0.5, True), ("late", 0.5, False)):
+        scene.add("bolt", name=name, support="bar", active=active, **{"from": [x, 1.0], "to": [x, -0.5]})
+    scene.stage("weight", "settle", limit=1.0)
+    scene.stage("bolt", "change", set={"bolt.late.active": True})
+    result = gcpdda.run(scene, ranks=1, out=tmp_path / "bolted")
+    (axes,) = result.plot.bolts().axes
+    markers = {line.get_label(): line.get_marker() for line in axes.lines}
+    assert markers["late"] == "o" and markers["early"] != "o"
+
+
 def test_states_of_joints_need_contacts(tmp_path):
     result = gcpdda.run(SOURCE / "run" / "scenes" / "incline.toml", ranks=1, out=tmp_path / "run",
                         set={"output.contacts": False})

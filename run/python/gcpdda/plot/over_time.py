@@ -191,7 +191,9 @@ def draw_bolts(result):
     colours = COLOURS if len(bolts) <= len(COLOURS) else [plt.get_cmap("turbo")(x)
                                                           for x in np.linspace(0.05, 0.95, len(bolts))]
     for colour, (name, rows) in zip(colours, bolts):
-        axes.plot(rows["time[s]"], rows["axial[N]"] * factor, color=colour, lw=1.0, label=name)
+        marker = "o" if len(rows) == 1 else None  # a single row, of a bolt that was put in at the end, has no line
+        axes.plot(rows["time[s]"], rows["axial[N]"] * factor, color=colour, lw=1.0, marker=marker, ms=3, label=name,
+                  clip_on=marker is None)
     axes.set_ylabel(f"tension ({unit})")
     axes.margins(x=0.0)
     mark_stages(axes, result)
