@@ -197,12 +197,14 @@ std::string words_on_loads(const std::vector<LinerLoad> &loads) {
   const LinerLoad thrust = most(&LinerLoad::compression);
   const LinerLoad moment = most(&LinerLoad::moment);
   const LinerLoad shear = most(&LinerLoad::shear);
+  const LinerLoad tension = most(&LinerLoad::tension);
   return fmt::format(
       "liners: largest thrust {:.4g} N/m in '{}', largest moment {:.4g} N in '{}', largest shear "
-      "{:.4g} N/m in '{}'; of {} elements {} cracked, {} yielded and {} broke",
+      "{:.4g} N/m in '{}', largest tension {:.4g} N/m in '{}'; of {} elements {} cracked, {} yielded and {} "
+      "broke",
       thrust.compression, thrust.last.name, moment.moment, moment.last.name, shear.shear, shear.last.name,
-      sum(&LinerHistoryRow::elements), sum(&LinerHistoryRow::cracked), sum(&LinerHistoryRow::yielded),
-      sum(&LinerHistoryRow::broken));
+      tension.tension, tension.last.name, sum(&LinerHistoryRow::elements), sum(&LinerHistoryRow::cracked),
+      sum(&LinerHistoryRow::yielded), sum(&LinerHistoryRow::broken));
 }
 
 void warn_of_thrust(const LinerLoad &load, const Scene &scene, std::vector<std::string> &words) {

@@ -112,6 +112,8 @@ def test_of_a_run_with_bolts_and_water(leaning, tmp_path):
 def test_of_a_run_with_liners(lined, tmp_path):
     headings, _, text = check(gcpdda.report(lined.path, tmp_path / "lined.html", frames=4))
     assert "Liners" in headings and "strong" in text and "largest thrust (N/m)" in text
+    tension = float(re.search(r"liners: .*largest tension (\S+) N/m in 'strong'", lined.log)[1])
+    assert tension == pytest.approx(max(liner["largest_tension"] for liner in lined.summary["liners"]), rel=1e-3)
 
 
 def test_of_a_search(search, tmp_path):

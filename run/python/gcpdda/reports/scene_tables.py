@@ -105,8 +105,8 @@ def add_provenance(page, folder, scene_file, facts, task="run"):
     for path in [scene_file, *_inputs(scene_file)]:
         rows.append({"what": f"SHA-256 of {path.name}", "value": hashlib.sha256(path.read_bytes()).hexdigest()})
     page.table(rows)
-    page.text("The scene below holds all values that were used, those of --set included. "
-              f"Compute it again with: gcpdda {task} {scene_file.name}", "note")
+    page.text("The scene below holds the values that were given, those of --set included; other keys had their "
+              f"defaults. Compute it again with: gcpdda {task} {scene_file.name}", "note")
     page.details(f"The scene ({scene_file.name})", scene_file.read_text())
 
 
