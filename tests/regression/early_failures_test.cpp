@@ -84,6 +84,12 @@ const std::vector<Failure> failures{
     {"FosFromNoState", {"fos", "s.toml", "--out", "o", "--settled", "none"}, 4, "none/scene.toml: error: cannot open"},
     {"FosOfARun", {"fos", "s.toml", "--out", "run"}, 4, "holds a run already"},
     {"EnsembleOfARun", {"ensemble", "s.toml", "--out", "run"}, 4, "holds a run or a search already"},
+    {"RunIntoASearch", {"run", "s.toml", "--out", "search"}, 4, "search holds a search for the factor of safety, choose another folder with --out\n"},
+    {"RunIntoAnEnsemble", {"run", "s.toml", "--out", "members"}, 4, "members holds an ensemble, choose another folder with --out\n"},
+    {"RunOverASearch", {"run", "s.toml", "--out", "search", "--overwrite"}, 4, "search holds a search for the factor of safety, choose another folder with --out\n"},
+    {"FosIntoAnEnsemble", {"fos", "s.toml", "--out", "members", "--overwrite"}, 4, "members holds an ensemble already, choose another folder with --out\n"},
+    {"EnsembleIntoASearch", {"ensemble", "s.toml", "--out", "search", "--overwrite"}, 4, "holds a run or a search already, choose another folder with --out\n"},
+    {"FosOfARunAndASearch", {"fos", "s.toml", "--out", "both"}, 4, "both holds a run already, choose another folder with --out\n"},
     {"RestartOfNoFolder", {"restart", "none"}, 4, "none/scene.toml: error: cannot open the scene"},
     {"RestartOfAFile", {"restart", "s.toml"}, 4, "s.toml/scene.toml: error: cannot open the scene"},
 };
@@ -96,6 +102,11 @@ TEST_P(EarlyFailure, LeavesNothing) {
   folder.write("s.toml", scene);
   fs::create_directory(folder / "run");
   folder.write("run/scene.toml", scene);
+  for (const char *other : {"search/settled", "members/members", "both/settled"}) {
+    fs::create_directories(folder / other);
+  }
+  folder.write("members/ensemble.toml", scene);
+  folder.write("both/scene.toml", scene);
   const std::vector<std::string> before = listing(folder.path());
   const Outcome outcome = run_gcpdda(0, GetParam().arguments, folder);
   EXPECT_EQ(outcome.exit_code, GetParam().exit_code) << outcome.err;

@@ -5,6 +5,7 @@
 #include "io/hdf5/durable_file.hpp"
 #include "io/hdf5/numbered_name.hpp"
 #include "io/results/json.hpp"
+#include "io/results/result_directory.hpp"
 
 #include <fmt/format.h>
 
@@ -279,11 +280,9 @@ void write_ensemble_report(const fs::path &directory, const EnsembleReport &repo
 
 std::vector<std::string> prepare_ensemble_directory(const fs::path &directory, bool overwrite,
                                                     const std::string &identity) {
-  for (const char *other : {"scene.toml", "fos.json", "settled"}) {
-    if (fs::exists(directory / other)) {
-      throw FileError(fmt::format("{} holds a run or a search already, choose another folder with --out",
-                                  directory.string()));
-    }
+  if (fs::exists(directory / "scene.toml") || holds_search(directory)) {
+    throw FileError(fmt::format("{} holds a run or a search already, choose another folder with --out",
+                                directory.string()));
   }
   if (overwrite) {
     remove_ensemble(directory);

@@ -79,6 +79,11 @@ bool holds_run(const fs::path &directory, const std::vector<fs::path> &found) {
 }
 
 void clear(const fs::path &directory, bool overwrite) {
+  if (holds_search(directory) || holds_ensemble(directory)) {
+    throw FileError(
+        fmt::format("{} holds {}, choose another folder with --out", directory.string(),
+                    holds_search(directory) ? "a search for the factor of safety" : "an ensemble"));
+  }
   std::vector<fs::path> found = own_files(directory);
   const fs::path scene = directory / "scene.toml";
   if (!holds_run(directory, found)) {
@@ -99,6 +104,15 @@ void clear(const fs::path &directory, bool overwrite) {
 }
 
 } // namespace
+
+bool holds_search(const fs::path &directory) {
+  return fs::exists(directory / "fos.json") || fs::exists(directory / "settled") ||
+         fs::exists(directory / "trials");
+}
+
+bool holds_ensemble(const fs::path &directory) {
+  return fs::exists(directory / "ensemble.toml");
+}
 
 void prepare_result_directory(const fs::path &directory, bool overwrite, const std::string &resolved_scene) {
   try {

@@ -10,8 +10,15 @@
 
 namespace gcpdda {
 
+/// Whether the folder holds a search for the factor of safety. Root only.
+bool holds_search(const std::filesystem::path &directory);
+
+/// Whether the folder holds an ensemble. Root only.
+bool holds_ensemble(const std::filesystem::path &directory);
+
 /// Makes the folder of a run, root only. A folder that holds a run is refused with FileError unless
-/// `overwrite`, which removes only what a run writes. Writes scene.toml (the resolved text).
+/// `overwrite`, which removes only what a run writes. A folder that holds a search or an ensemble is always
+/// refused: with a run in it neither could go on. Writes scene.toml (the resolved text).
 void prepare_result_directory(const std::filesystem::path &directory, bool overwrite,
                               const std::string &resolved_scene);
 

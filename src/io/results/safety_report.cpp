@@ -4,6 +4,7 @@
 #include "base/program_facts.hpp"
 #include "io/hdf5/durable_file.hpp"
 #include "io/results/json.hpp"
+#include "io/results/result_directory.hpp"
 
 #include <fmt/format.h>
 
@@ -248,6 +249,19 @@ std::string blocks_csv(const SafetyReport &report) {
   return text;
 }
 
+/// Only a search alone can be replaced: a run or an ensemble beside it would stay.
+void refuse_other_results(const fs::path &directory, bool overwrite) {
+  const bool is_run = fs::exists(directory / "scene.toml");
+  const bool cannot_be_replaced = is_run || holds_ensemble(directory);
+  if (cannot_be_replaced || (holds_search(directory) && !overwrite)) {
+    throw FileError(fmt::format("{} holds {} already, choose another folder with --out{}", directory.string(),
+                                is_run               ? "a run"
+                                : cannot_be_replaced ? "an ensemble"
+                                                     : "a search for the factor of safety",
+                                cannot_be_replaced ? "" : " or replace it with --overwrite"));
+  }
+}
+
 } // namespace
 
 std::string to_text(const SafetyReport &report) {
@@ -296,13 +310,7 @@ void write_safety_report(const fs::path &directory, const SafetyReport &report,
 }
 
 void prepare_safety_directory(const fs::path &directory, bool overwrite) {
-  const bool holds_search = fs::exists(directory / "fos.json") || fs::exists(directory / "settled") ||
-                            fs::exists(directory / "trials");
-  if (fs::exists(directory / "scene.toml") || (holds_search && !overwrite)) {
-    throw FileError(fmt::format("{} holds {} already, choose another folder with --out{}", directory.string(),
-                                holds_search ? "a search for the factor of safety" : "a run",
-                                holds_search ? " or replace it with --overwrite" : ""));
-  }
+  refuse_other_results(directory, overwrite);
   make_directory(directory);
   for (const char *name : own_names) {
     fs::remove(directory / name);

@@ -108,8 +108,8 @@ std::string to_text(const SafetyReport &report);
 void write_safety_report(const std::filesystem::path &directory, const SafetyReport &report,
                          const SafetyPictures &pictures);
 
-/// Makes the folder of a search. One that holds a search or a run is refused with FileError unless
-/// `overwrite`, which removes what a search writes. Root only.
+/// Makes the folder of a search. One that holds a run or an ensemble is refused with FileError, one that
+/// holds a search unless `overwrite`, which removes what a search writes. Root only.
 void prepare_safety_directory(const std::filesystem::path &directory, bool overwrite);
 
 } // namespace gcpdda
