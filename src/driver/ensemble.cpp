@@ -120,7 +120,7 @@ private:
     std::string rows;
     on_root(world_, [&] {
       for (const std::string &row :
-           prepare_ensemble_directory(options_.directory, options_.overwrite, options_.identity)) {
+           prepare_ensemble_directory(options_.directory, options_.overwrite, options_.identity, lock_)) {
         rows += row + "\n";
       }
     });
@@ -256,6 +256,7 @@ private:
   const Ensemble &ensemble_;
   const MemberScene &member_scene_;
   EnsembleOptions options_;
+  FolderLock lock_; ///< of the folder, until the report is written
   Communicator group_;
   std::size_t group_number_ = 0;
   bool stopped_ = false;

@@ -57,7 +57,7 @@ private:
     return code;
   }
 
-  void prepare_directory() const { prepare_safety_directory(options_.directory, options_.overwrite); }
+  void prepare_directory() { prepare_safety_directory(options_.directory, options_.overwrite, lock_); }
 
   ExitCode bound() {
     Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_directory()});
@@ -473,6 +473,7 @@ private:
   Communicator world_;
   const Scene &scene_;
   SafetyOptions options_;
+  FolderLock lock_; ///< of the folder, until the report is written
   std::optional<Communicator> group_;
   int group_number_ = 0;
   double start_time_ = 0.0; ///< of all trials, s

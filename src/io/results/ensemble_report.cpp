@@ -279,11 +279,13 @@ void write_ensemble_report(const fs::path &directory, const EnsembleReport &repo
 }
 
 std::vector<std::string> prepare_ensemble_directory(const fs::path &directory, bool overwrite,
-                                                    const std::string &identity) {
+                                                    const std::string &identity, FolderLock &lock) {
   if (fs::exists(directory / "scene.toml") || holds_search(directory)) {
     throw FileError(fmt::format("{} holds a run or a search already, choose another folder with --out",
                                 directory.string()));
   }
+  make_directory(directory);
+  lock.acquire_for_many_runs(directory);
   if (overwrite) {
     remove_ensemble(directory);
   }

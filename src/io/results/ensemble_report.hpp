@@ -3,6 +3,7 @@
 // What became of the members of an ensemble, and the files that tell of it.
 
 #include "gcpdda/model/ensemble.hpp"
+#include "io/results/folder_lock.hpp"
 #include "model/statistics.hpp"
 
 #include <array>
@@ -82,11 +83,13 @@ void write_ensemble_report(const std::filesystem::path &directory, const Ensembl
                            const std::string &picture);
 
 /// Makes the folder of an ensemble, or takes the members that are there. A folder that holds anything else of
-/// gcpdda, or an ensemble of another scene and not `overwrite`, is refused with FileError. Root only.
+/// gcpdda, an ensemble of another scene and not `overwrite`, or one in which another process works, is
+/// refused with FileError. Root only.
 /// @param identity  text that is the same for ensembles whose members are
+/// @param lock  keeps other processes out of the folder as long as it lives
 /// @return rows of the members that are done
 std::vector<std::string> prepare_ensemble_directory(const std::filesystem::path &directory, bool overwrite,
-                                                    const std::string &identity);
+                                                    const std::string &identity, FolderLock &lock);
 
 /// A member's row goes to the disk at once. Root of the ranks of that member only; throws FileError.
 void write_member(const std::filesystem::path &directory, const EnsembleMember &member);

@@ -309,9 +309,11 @@ void write_safety_report(const fs::path &directory, const SafetyReport &report,
   }
 }
 
-void prepare_safety_directory(const fs::path &directory, bool overwrite) {
+void prepare_safety_directory(const fs::path &directory, bool overwrite, FolderLock &lock) {
   refuse_other_results(directory, overwrite);
   make_directory(directory);
+  lock.acquire_for_many_runs(directory);
+  refuse_other_results(directory, overwrite); // another search may have ended in between
   for (const char *name : own_names) {
     fs::remove(directory / name);
   }

@@ -4,6 +4,7 @@
 
 #include "gcpdda/geometry/vec2.hpp"
 #include "gcpdda/model/stage.hpp"
+#include "io/results/folder_lock.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -108,8 +109,10 @@ std::string to_text(const SafetyReport &report);
 void write_safety_report(const std::filesystem::path &directory, const SafetyReport &report,
                          const SafetyPictures &pictures);
 
-/// Makes the folder of a search. One that holds a run or an ensemble is refused with FileError, one that
-/// holds a search unless `overwrite`, which removes what a search writes. Root only.
-void prepare_safety_directory(const std::filesystem::path &directory, bool overwrite);
+/// Makes the folder of a search. One that holds a run or an ensemble, or in which another process works, is
+/// refused with FileError, one that holds a search unless `overwrite`, which removes what a search writes.
+/// Root only.
+/// @param lock  keeps other processes out of the folder as long as it lives
+void prepare_safety_directory(const std::filesystem::path &directory, bool overwrite, FolderLock &lock);
 
 } // namespace gcpdda
