@@ -300,6 +300,9 @@ void MessageRound::finish() {
 }
 
 MpiScope::MpiScope(int &argc, char **&argv) {
+  // Files have no shared file pointers. The component of Open MPI 4 that keeps them in a file beside each
+  // file writes the path of that file behind the end of a field of 256 characters.
+  ::setenv("OMPI_MCA_sharedfp", "^lockedfile", 0);
   int provided = 0; // files are synced by a thread that does not call MPI
   check(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
 }
