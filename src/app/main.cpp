@@ -3,6 +3,7 @@
 #include "app/blocks.hpp"
 #include "app/condensed.hpp"
 #include "app/first_scenes.hpp"
+#include "app/output_paths.hpp"
 #include "app/report.hpp"
 #include "app/root_file.hpp"
 #include "app/versions.hpp"
@@ -258,7 +259,10 @@ ExitCode ensemble(const Communicator &world, Arguments arguments) {
 }
 
 ExitCode inspect(const Communicator &world, const Arguments &arguments) {
-  return with_scene(world, arguments, [&](const Scene &scene) {
+  return with_scene(world, arguments, [&](const Scene &scene) -> ExitCode {
+    if (!are_files_of_their_own(world, arguments.scene, scene, {{"--svg", arguments.svg}})) {
+      return exit_code::wrong_usage;
+    }
     judge_before_work(world, arguments, scene);
     const std::string report = inspect_scene(world, scene, {arguments.ranks, arguments.svg});
     if (world.is_root()) {
@@ -269,7 +273,12 @@ ExitCode inspect(const Communicator &world, const Arguments &arguments) {
 }
 
 ExitCode blocks(const Communicator &world, const Arguments &arguments) {
-  return with_scene(world, arguments, [&](const Scene &scene) {
+  return with_scene(world, arguments, [&](const Scene &scene) -> ExitCode {
+    if (!are_files_of_their_own(
+            world, arguments.scene, scene,
+            {{"--svg", arguments.svg}, {"--json", arguments.json}, {"--out", arguments.directory}})) {
+      return exit_code::wrong_usage;
+    }
     Scene region = scene; // nothing else is made
     region.blocks.clear();
     region.generators.clear();
