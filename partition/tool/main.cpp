@@ -3,6 +3,7 @@
 
 #include "base/check.hpp"
 #include "base/input_file.hpp"
+#include "base/standard_output.hpp"
 #include "gcpdda/base/diagnostic.hpp"
 #include "partition/domain_map.hpp"
 #include "partition/partition_cells.hpp"
@@ -130,10 +131,7 @@ void print_owners(const DomainMap &map) {
     const bool ends_row = (i + 1) % static_cast<std::size_t>(map.grid.columns) == 0;
     std::cout << map.owner[i] << (ends_row ? '\n' : ',');
   }
-  std::cout.flush();
-  if (!std::cout) {
-    throw FileError("stdout: cannot be written");
-  }
+  flush_standard_output();
 }
 
 void partition(const std::string &path, int num_parts) {

@@ -8,6 +8,7 @@
 #include "app/root_file.hpp"
 #include "app/versions.hpp"
 #include "base/check.hpp"
+#include "base/standard_output.hpp"
 #include "driver/ensemble.hpp"
 #include "driver/inspect.hpp"
 #include "driver/restart.hpp"
@@ -22,6 +23,7 @@
 #include "io/scene/scene_reference.hpp"
 #include "simulation/plausibility.hpp"
 #include "simulation/plausible_ranges.hpp"
+#include "simulation/rank_facts.hpp"
 #include "simulation/scene_size.hpp"
 #include "simulation/simulation.hpp"
 
@@ -479,7 +481,9 @@ int main(int argc, char **argv) {
     return exit_code::wrong_usage;
   }
   try {
-    return dispatch(world, argc, argv);
+    const ExitCode code = dispatch(world, argc, argv);
+    on_root(world, flush_standard_output);
+    return code;
   } catch (const FileError &error) { // agreed on by all ranks where it is thrown
     if (world.is_root()) {
       std::cerr << error.what() << '\n';

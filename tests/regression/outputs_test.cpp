@@ -1,6 +1,8 @@
-// Where the program writes what it is asked for: never over what it reads, nor over another output.
+// Where the program writes what it is asked for: never over what it reads, nor over another output, and it
+// says so where standard output takes nothing.
 
 #include "child_process.hpp"
+#include "support/plane_failure.hpp"
 #include "support/run_facts.hpp"
 
 #include <gtest/gtest.h>
@@ -14,6 +16,7 @@ using testing::file_text;
 using testing::listing;
 using testing::Outcome;
 using testing::run_gcpdda;
+using testing::run_program;
 using testing::WorkFolder;
 
 constexpr const char *scene = R"([run]
@@ -88,6 +91,31 @@ TEST_F(Outputs, DoNotReplaceEachOther) {
                  "--json same: error: this is the file of --svg");
   expect_refusal({"blocks", "s.toml", "--json", "same", "--out", "sub/../same"},
                  "--out sub/../same: error: this is the file of --json", 2);
+}
+
+/// gcpdda in a shell that lets standard output go to a place.
+Outcome run_into(const std::string &place, const std::string &arguments, const WorkFolder &folder) {
+  return run_program({"sh", "-c", std::string(GCPDDA_EXECUTABLE) + " " + arguments + " " + place},
+                     folder.path());
+}
+
+TEST_F(Outputs, OfStandardOutputAreNotLostInSilence) {
+  folder_.write("plane.toml", testing::plane_failure_toml(0.0));
+  for (const char *call :
+       {"reference", "reference --values", "--version", "--help", "run --help", "inspect s.toml",
+        "blocks s.toml", "new slope", "fos plane.toml --from 1.2 --to 1.6 --tolerance 0.3",
+        "ensemble plane.toml --count 1"}) {
+    if (std::string(call).starts_with("ensemble")) {
+      folder_.write("plane.toml", testing::plane_failure_toml(0.0) +
+                                      "[ensemble]\ncount = 1\n[[ensemble.vary]]\nkey = "
+                                      "\"joint.default.friction_angle_deg\"\ndistribution = "
+                                      "\"uniform\"\nmin = 39.0\nmax = 40.0\n");
+    }
+    const Outcome outcome = run_into("> /dev/full", call, folder_);
+    EXPECT_EQ(outcome.exit_code, 4) << call << ": " << outcome.err;
+    EXPECT_EQ(count_of(outcome.err, "stdout: cannot be written"), 1) << call << ": " << outcome.err;
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "results/plane_fos/fos.txt")) << "files are written all the same";
 }
 
 } // namespace
