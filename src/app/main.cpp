@@ -3,6 +3,7 @@
 #include "app/blocks.hpp"
 #include "app/condensed.hpp"
 #include "app/first_scenes.hpp"
+#include "app/launch.hpp"
 #include "app/output_paths.hpp"
 #include "app/report.hpp"
 #include "app/root_file.hpp"
@@ -29,7 +30,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
 #include <span>
 #include <sstream>
@@ -73,18 +73,6 @@ void print(const Communicator &world, const Diagnostics &diagnostics) {
       std::cerr << to_string(d) << '\n';
     }
   }
-}
-
-/// Number of processes the launcher of this very step announced; 1 without one.
-int announced_ranks() {
-  for (const char *name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
-    if (const char *value = std::getenv(name)) {
-      if (const int ranks = std::atoi(value); ranks > 1) {
-        return ranks;
-      }
-    }
-  }
-  return 1;
 }
 
 /// The scene of a text and the arguments goes to `work`; every fault of it becomes text and
@@ -135,7 +123,6 @@ std::filesystem::path result_folder(const Arguments &arguments, const std::strin
 }
 
 ExitCode run(const Communicator &world, const Arguments &arguments) {
-  catch_stop_signal();
   return with_scene(world, arguments, [&](const Scene &scene) {
     judge_before_work(world, arguments, scene);
     RunOptions options;
@@ -147,7 +134,6 @@ ExitCode run(const Communicator &world, const Arguments &arguments) {
 }
 
 ExitCode restart(const Communicator &world, Arguments arguments) {
-  catch_stop_signal();
   const std::filesystem::path scene = std::filesystem::path(arguments.directory) / "scene.toml";
   arguments.scene = scene.string();
   const bool has_other_maps =
@@ -191,7 +177,6 @@ double factor_of_settled(const Communicator &world, const std::string &folder, c
 
 /// What the command line says of the search goes the way of --set.
 ExitCode fos(const Communicator &world, Arguments arguments) {
-  catch_stop_signal();
   std::string families;
   for (const std::string &name : arguments.families) {
     families += (families.empty() ? "\"" : ", \"") + name + '"';
@@ -234,7 +219,6 @@ double copies_in(const Ensemble &ensemble, int ranks) {
 }
 
 ExitCode ensemble(const Communicator &world, Arguments arguments) {
-  catch_stop_signal();
   if (!arguments.count.empty()) {
     arguments.sets.push_back("ensemble.count=" + arguments.count);
   }
@@ -471,6 +455,9 @@ ExitCode dispatch(const Communicator &world, int argc, char **argv) {
 } // namespace
 
 int main(int argc, char **argv) {
+  if (heeds_stop_signal(argc, argv)) {
+    catch_stop_signal(); // before MPI starts, which takes a while
+  }
   const MpiScope mpi(argc, argv);
   const Communicator world = Communicator::world();
   if (world.size() == 1 && announced_ranks() > 1) {

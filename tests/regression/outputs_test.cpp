@@ -105,12 +105,6 @@ TEST_F(Outputs, OfStandardOutputAreNotLostInSilence) {
        {"reference", "reference --values", "--version", "--help", "run --help", "inspect s.toml",
         "blocks s.toml", "new slope", "fos plane.toml --from 1.2 --to 1.6 --tolerance 0.3",
         "ensemble plane.toml --count 1"}) {
-    if (std::string(call).starts_with("ensemble")) {
-      folder_.write("plane.toml", testing::plane_failure_toml(0.0) +
-                                      "[ensemble]\ncount = 1\n[[ensemble.vary]]\nkey = "
-                                      "\"joint.default.friction_angle_deg\"\ndistribution = "
-                                      "\"uniform\"\nmin = 39.0\nmax = 40.0\n");
-    }
     const Outcome outcome = run_into("> /dev/full", call, folder_);
     EXPECT_EQ(outcome.exit_code, 4) << call << ": " << outcome.err;
     EXPECT_EQ(count_of(outcome.err, "stdout: cannot be written"), 1) << call << ": " << outcome.err;
