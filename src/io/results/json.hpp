@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,10 +24,41 @@ inline std::string json(std::integral auto value) {
   return fmt::format("{}", value);
 }
 
+/// Bytes of the UTF-8 character that begins here, 0 where none does (RFC 3629).
+inline std::size_t length_of_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const std::size_t length = byte(0) < 0x80    ? 1
+                             : byte(0) < 0xc2  ? 0
+                             : byte(0) < 0xe0  ? 2
+                             : byte(0) < 0xf0  ? 3
+                             : byte(0) <= 0xf4 ? 4
+                                               : 0;
+  if (length < 2 || length > text.size()) {
+    return length == 1 ? 1 : 0;
+  }
+  // Longer forms than needed, halves of pairs of UTF-16, and numbers above 10FFFF are no characters.
+  const unsigned low = byte(0) == 0xe0 ? 0xa0 : byte(0) == 0xf0 ? 0x90 : 0x80;
+  const unsigned high = byte(0) == 0xed ? 0x9f : byte(0) == 0xf4 ? 0x8f : 0xbf;
+  bool is_whole = byte(1) >= low && byte(1) <= high;
+  for (std::size_t i = 2; i < length; ++i) {
+    is_whole = is_whole && byte(i) >= 0x80 && byte(i) <= 0xbf;
+  }
+  return is_whole ? length : 0;
+}
+
+/// A byte that is part of no UTF-8 character becomes U+FFFD: names of files may hold such bytes, JSON may
+/// not.
 inline std::string json(const std::string &text) {
   std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
+  std::size_t length = 0;
+  for (std::size_t at = 0; at < text.size(); at += std::max<std::size_t>(1, length)) {
+    const char c = text[at];
+    length = length_of_character(std::string_view(text).substr(at));
+    if (length == 0) {
+      quoted += "\\ufffd";
+    } else if (length > 1) {
+      quoted.append(text, at, length);
+    } else if (c == '"' || c == '\\') {
       quoted += '\\';
       quoted += c;
     } else if (static_cast<unsigned char>(c) < 0x20) {
