@@ -5,6 +5,8 @@ import html
 import html.parser
 import io
 import json
+import os
+import pathlib
 import re
 import shutil
 import subprocess
@@ -276,6 +278,44 @@ def test_command_line(search, tmp_path):
     assert "<title>My slope</title>" in out.read_text()
     done = subprocess.run([str(SOURCE / "run" / "report.py"), str(tmp_path)], capture_output=True, text=True)
     assert done.returncode == 4 and "not a result folder" in done.stderr and "Traceback" not in done.stderr
+
+
+def cut(path, part):
+    """Keeps the first bytes of a file, as many as the part says."""
+    whole = path.read_bytes()
+    path.write_bytes(whole[:int(part * len(whole))])
+
+
+@pytest.mark.parametrize("kind, name, damage", [
+    ("search", "fos.json", lambda path: cut(path, 0)),
+    ("search", "fos.json", lambda path: cut(path, 0.5)),
+    ("search", "settled/scene.toml", lambda path: cut(path, 0.01)),
+    ("search", "settled/scene.toml", lambda path: path.write_text(path.read_text() + "[run")),
+    ("members", "ensemble.json", lambda path: path.write_text("[]")),
+    ("members", "ensemble.toml", lambda path: cut(path, 0.05)),
+    ("members", "ensemble.toml", lambda path: path.write_text(path.read_text().split("[ensemble]")[0])),
+    ("members", "ensemble_members.csv", lambda path: path.write_text(re.sub(r"\.(\d)", r".x\1", path.read_text()))),
+    ("members", "ensemble_members.csv", lambda path: cut(path, 0)),
+    ("leaning", "scene.toml", lambda path: path.write_bytes(b"\xff" + path.read_bytes())),
+    ("leaning", "summary.json", lambda path: cut(path, 0.9)),
+    ("leaning", "history/energy.csv", lambda path: path.write_text(path.read_text().replace("e-0", "f-0")))])
+def test_damaged_results_are_named(kind, name, damage, request, tmp_path):
+    folder = tmp_path / "results"
+    shutil.copytree(request.getfixturevalue(kind).path, folder)
+    damage(folder / name)
+    done = subprocess.run([str(SOURCE / "run" / "report.py"), str(folder), "--frames", "0"], capture_output=True,
+                          text=True)
+    assert done.returncode == 4, done.stderr
+    assert str(folder / name) in done.stderr and "is damaged" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_the_folder_may_have_any_name(members, tmp_path):
+    """Names of files are bytes, and those of no text in particular."""
+    folder = os.fsencode(tmp_path) + b"/bad\xff\xfe"
+    shutil.copytree(os.fsencode(members.path), folder)
+    done = subprocess.run([str(SOURCE / "run" / "report.py"), folder], capture_output=True)
+    assert done.returncode == 0, done.stderr
+    check(pathlib.Path(os.fsdecode(folder)) / "report.html")
 
 
 def test_in_a_browser(opening, tmp_path):

@@ -130,5 +130,10 @@ def report(words=None, name="report.py"):
     except (OSError, ValueError) as error:
         print(f"{name}: error: {error}", file=sys.stderr)
         return 4
-    print(f"{out}, {out.stat().st_size / 1e6:.2f} MB")
+    except KeyError as error:
+        print(f"{name}: error: {chosen.directory} is damaged: {error} is missing in one of its files, no report is "
+              "written; compute the folder again, or restore its files from a copy", file=sys.stderr)
+        return 4
+    path = str(out).encode(errors="replace").decode()
+    print(f"{path}, {out.stat().st_size / 1e6:.2f} MB")
     return 0

@@ -23,11 +23,49 @@ STAGE_LINE = re.compile(r"stage '(.*)' (?:(\w+) )?at t = (\S+) s(?:, (\d+) block
 RESTART_LINE = re.compile(r"restart from .*: t = (\S+) s, step")
 
 
-def read_csv(path):
-    """A history as a table with the columns of the file. A row that is just being written is left out."""
+def _damaged(path, reason):
+    return ValueError(f"{path} is damaged: {reason}; compute its folder again, or restore the file from a copy")
+
+
+def read_csv(path, words=None):
+    """A history as a table with the columns of the file. A row that is just being written is left out.
+
+    words   names of the columns that hold words; those of all others are numbers, else the file is refused. Columns
+            are taken as they are if not given.
+    """
     import pandas
-    text = path.read_text()
-    return pandas.read_csv(io.StringIO(text[: text.rfind("\n") + 1]), float_precision="round_trip")
+    try:
+        text = path.read_text()
+        table = pandas.read_csv(io.StringIO(text[: text.rfind("\n") + 1]), float_precision="round_trip")
+    except ValueError as error:  # those of pandas and of text that is no UTF-8 are such errors
+        raise _damaged(path, error) from error
+    for name in [] if words is None or table.empty else table.columns.difference(words):
+        if not pandas.api.types.is_numeric_dtype(table[name]):
+            raise _damaged(path, f"a value in its column {name} is no number")
+    return table
+
+
+def read_json(path):
+    """The dictionary in a JSON file of the program."""
+    try:
+        found = json.loads(path.read_text())
+    except ValueError as error:
+        raise _damaged(path, error) from error
+    if not isinstance(found, dict):
+        raise _damaged(path, "it holds no JSON object")
+    return found
+
+
+def read_scene(path, tables=("run", "material", "joint")):
+    """The dictionary in a scene file of the program, in which these tables may not be missing."""
+    try:
+        found = tomllib.loads(path.read_text())
+    except ValueError as error:
+        raise _damaged(path, error) from error
+    for name in tables:
+        if name not in found:
+            raise _damaged(path, f"the table [{name}] is missing")
+    return found
 
 
 def path_parts(path):
@@ -43,7 +81,7 @@ def trial_folder(factor):
 def settled_folder(search):
     """Folder of the settled state of a search: in its own, or what --settled named; None where neither is there."""
     found = search / "fos.json"
-    named = json.loads(found.read_text())["settled"]["directory"] if found.exists() else search
+    named = read_json(found)["settled"]["directory"] if found.exists() else search
     return next((path for path in (search / "settled", pathlib.Path(named)) if (path / "frames").is_dir()), None)
 
 
@@ -55,7 +93,7 @@ class Folder:
 
     def _json(self, name):
         path = self.path / name
-        return json.loads(path.read_text()) if path.exists() else None
+        return read_json(path) if path.exists() else None
 
     def __repr__(self):
         return f"<{type(self).__name__} {self.path}>"
@@ -77,8 +115,7 @@ class Result(Folder):
 
     @functools.cached_property
     def scene(self):
-        with open(self.path / "scene.toml", "rb") as file:
-            return tomllib.load(file)
+        return read_scene(self.path / "scene.toml")
 
     @functools.cached_property
     def joint_names(self):
@@ -280,14 +317,14 @@ class Result(Folder):
         path = self.path / "history" / f"{name}.csv"
         if not path.exists():
             raise KeyError(f"no history {name}: there are {', '.join(self._monitors) or 'none'}")
-        return read_csv(path)
+        return read_csv(path, words=[])
 
     @property
     def energy(self):
         """Energies over time; empty before the first row."""
         import pandas
         path = self.path / "history" / "energy.csv"
-        return read_csv(path) if path.exists() else pandas.DataFrame()
+        return read_csv(path, words=[]) if path.exists() else pandas.DataFrame()
 
     @property
     def bolts(self):
@@ -404,7 +441,7 @@ class Ensemble(Folder):
 
     @property
     def members(self):
-        return read_csv(self.path / "ensemble_members.csv")
+        return read_csv(self.path / "ensemble_members.csv", words=["outcome", "message"])
 
     @property
     def probability_of_failure(self):

@@ -28,5 +28,5 @@ def report(directory, out=None, *, title=None, frames=40):
         page = run_page(folder, title, frames)
     out = pathlib.Path(out) if out is not None else folder.path / "report.html"
     out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(page.html(), encoding="utf-8")
+    out.write_text(page.html(), encoding="utf-8", errors="replace")  # names of folders need not be UTF-8
     return out

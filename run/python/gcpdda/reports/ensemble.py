@@ -1,11 +1,10 @@
 """The report of an ensemble."""
 
-import tomllib
-
 import matplotlib.pyplot as plt
 import numpy as np
 
 from ..plot import style
+from ..result import read_scene
 from .page import Page
 from .run import picture
 from .scene_tables import add_provenance, add_scene
@@ -45,7 +44,7 @@ def ensemble_page(ensemble, title):
     if len(members) > MOST_ROWS:
         page.text(f"The first {MOST_ROWS} of {len(members)} members; ensemble_members.csv has all.", "note")
     scene_file = ensemble.path / "ensemble.toml"
-    scene = tomllib.loads(scene_file.read_text())
+    scene = read_scene(scene_file, ["run", "material", "joint", "ensemble"])
     page.section("What varies")
     vary = scene["ensemble"].get("vary", [])
     page.table(vary)

@@ -7,6 +7,8 @@ import subprocess
 
 import numpy as np
 
+from ..result import read_scene
+
 GEOMETRY = ("region", "joint_set", "fault", "joint_map", "opening", "layer", "voronoi", "bricks", "wall", "pyramid",
             "blocks")
 LOADS = ("water", "in_situ", "earthquake", "support", "bolt", "bolt_pattern", "liner")
@@ -112,8 +114,7 @@ def add_provenance(page, folder, scene_file, facts, task="run"):
 
 def _inputs(scene_file):
     """Files that the scene names and that are still there."""
-    import tomllib
-    scene = tomllib.loads(scene_file.read_text())
+    scene = read_scene(scene_file)
     names = [scene.get("blocks", {}).get("file"), scene.get("earthquake", {}).get("record")]
     names += [table.get("file") for table in scene.get("joint_map", [])]
     paths = [scene_file.parent / name for name in names if name]
