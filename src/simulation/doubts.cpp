@@ -6,6 +6,7 @@
 #include "geometry/mean_width.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/id_slabs.hpp"
+#include "simulation/far_coordinates.hpp"
 #include "simulation/plausibility.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/stage_changes.hpp"
@@ -267,6 +268,17 @@ void doubt_stiffness(RunState &run, double pressure, double size) {
   }
 }
 
+/// Box of all blocks of all ranks.
+Aabb box_of_blocks(const Communicator &communicator, std::span<const SceneBlock> slab) {
+  Aabb box;
+  for (const SceneBlock &block : slab) {
+    box.include(bounding_box(block.vertices));
+  }
+  std::array<double, 4> largest{-box.low.x, -box.low.y, box.high.x, box.high.y};
+  communicator.max(largest);
+  return {{-largest[0], -largest[1]}, {largest[2], largest[3]}};
+}
+
 // The deepest contact of a pile bears its weight, or the in-situ stress if that is more.
 void doubt_sizes(RunState &run, std::span<const SceneBlock> slab) {
   const double gravity = norm(run.scene.run.gravity);
@@ -286,7 +298,8 @@ void doubt_sizes(RunState &run, std::span<const SceneBlock> slab) {
     }
   }
   run.communicator.max(largest);
-  if (total(run.communicator, std::ssize(sizes)) == 0) {
+  const std::int64_t num_mobile = total(run.communicator, std::ssize(sizes));
+  if (num_mobile == 0) {
     return;
   }
   const double size = agreed_median(run.communicator, sizes);
@@ -298,6 +311,12 @@ void doubt_sizes(RunState &run, std::span<const SceneBlock> slab) {
     }
   }
   doubt_stiffness(run, pressure, size);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const double own : sizes) {
+    smallest = std::min(smallest, own);
+  }
+  smallest = -run.communicator.max(-smallest);
+  doubt_coordinates(run, {box_of_blocks(run.communicator, slab), num_mobile, smallest, pressure});
   const Diagnostics doubts = implausible_size(run.scene, size);
   run.notes.insert(run.notes.end(), doubts.begin(), doubts.end());
 }

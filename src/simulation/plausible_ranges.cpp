@@ -106,6 +106,7 @@ Besides these values the following is warned of, each kind in one line with the 
 | a joint law or material that nothing uses; the nearest name is suggested | `--set joint.defualt.cohesion=0` makes a new law; a law that neither has `materials` nor is named by `edge_joints` is an error where the scene has neither a region nor a block file, because nothing can use it |
 | gravity acts and nothing is fixed, held or driven; no block can move | everything falls; nothing happens |
 | contacts at rest overlap by more than 1 % of the median block | blocks sink into each other; names the stiffness that would do |
+| coordinates so large that their rounding disturbs what a stage waits for, or the overlap by which the smallest block rests | the stage never settles; names a round offset to subtract from all coordinates |
 | parallel edges face each other across less than 5 % of a block, and more than rounding | drawn as touching, they do not touch |
 | a monitor follows a block that a stage excavates | its history ends there |
 | blocks thinner than 1/20 of the median width under in-situ stress, and those that it presses together by more than 5 % of their width, which is refused | names the `min_width` that merges them; by default it is 1/20 of the smallest mean spacing with [in_situ] |

@@ -124,54 +124,24 @@ void find_laws_on_edges(RunState &run, std::span<const SceneBlock> slab) {
   }
 }
 
-// A block rests by its overlap; where that is no more than the last digits of its coordinates, it is noise.
-void warn_of_rounding(RunState &run, double size, double farthest) {
-  double density = infinite;
-  for (const Material &material : run.scene.materials) {
-    density = std::min(density, material.density);
-  }
-  const double depth = density * norm(run.scene.run.gravity) * size / stiffest_joint(run.scene.joints);
-  const double rounding = std::numeric_limits<double>::epsilon() * farthest;
-  if (depth > 0.0 && depth < 10.0 * rounding) {
-    run.notes.push_back(
-        {Severity::warning,
-         {},
-         fmt::format("the smallest block rests by an overlap of {:.2g} m, and coordinates of {:g} m are "
-                     "rounded by {:.2g} m",
-                     depth, farthest, rounding),
-         "forces at rest will be rounding errors",
-         "lower joint.normal_stiffness or move the model to the origin"});
-  }
-}
-
-// What is thinnest, what is smallest, how far the model reaches.
+// What is thinnest and what is smallest.
 void survey_blocks(RunState &run, std::span<const SceneBlock> slab) {
-  Aabb region;
   double smallest_mobile = infinite;
   run.thinnest = infinite;
   std::int64_t num_mobile = 0;
   for (const SceneBlock &block : slab) {
-    region.include(bounding_box(block.vertices));
     run.thinnest = std::min(run.thinnest, narrowest_width(block.vertices));
     if (!block.fixed) {
       smallest_mobile = std::min(smallest_mobile, signed_area(block.vertices));
       ++num_mobile;
     }
   }
-  std::array<double, 6> largest{-region.low.x, -region.low.y,    region.high.x,
-                                region.high.y, -smallest_mobile, -run.thinnest};
-  run.communicator.max(largest);
   find_laws_on_edges(run, slab);
-  smallest_mobile = -largest[4];
-  run.thinnest = -largest[5];
+  smallest_mobile = -agreed_max(run.communicator, -smallest_mobile);
+  run.thinnest = -agreed_max(run.communicator, -run.thinnest);
   num_mobile = agreed_sum(run.communicator, num_mobile);
   constexpr double skin_per_size = 0.1;
   run.neighbours.base_skin = num_mobile > 0 ? skin_per_size * std::sqrt(smallest_mobile) : 0.0;
-  if (num_mobile > 0) {
-    const double farthest = *std::max_element(largest.begin(), largest.begin() + 4,
-                                              [](double a, double b) { return std::abs(a) < std::abs(b); });
-    warn_of_rounding(run, std::sqrt(smallest_mobile), std::abs(farthest));
-  }
 }
 
 // An impact keeps its energy to about (omega dt)^2; dashpots take more than that, but without them it may

@@ -146,6 +146,48 @@ TEST(PlausibleBlocks, FeelTheirLoads) {
   EXPECT_EQ(warnings_of(scene), std::vector<std::string>{});
 }
 
+/// A wall of 36 bricks on a floor, its lower left corner at `x`, which a stage settles.
+Scene wall_at(double x, const std::vector<std::string> &sets = {}) {
+  return scene_of(
+      "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2500\n[joint.default]\n"
+      "normal_stiffness = 1e11\nfriction_angle_deg = 35\n[output]\ninterval = 1.0\n"
+      "[[stage]]\nname = \"rest\"\nkind = \"settle\"\nlimit = 1.0\n" +
+          block_toml("floor", rectangle({x - 1.0, 499.0}, {x + 9.0, 500.0}), "fixed = true") +
+          fmt::format("[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [{}, 500]\nrows = 8\n"
+                      "columns = 4\nblock_size = [2, 1]\n",
+                      x),
+      sets);
+}
+
+// Measured: with these bricks and joints the wall settles up to coordinates of 6.5e4 m, and not beyond.
+TEST(PlausibleBlocks, LieWhereCoordinatesAreExactEnough) {
+  EXPECT_EQ(warnings_of(wall_at(3e4)), std::vector<std::string>{});
+  const std::vector<std::string> far = warnings_of(wall_at(450000.0));
+  expect_one(far,
+             "coordinates of 450009 m are rounded by 5.8e-11 m, and joints close by no more than 2e-06 m");
+  EXPECT_NE(
+      far.at(0).find("stage 'rest' may never reach its tolerance of 1e-05, subtract [450000, 0] from all "
+                     "coordinates, or use normal_stiffness = 1e+10 or less"),
+      std::string::npos)
+      << far.at(0);
+  expect_one(warnings_of(wall_at(-123456789.0)), "subtract [-123460000, 0] from all coordinates");
+  EXPECT_EQ(warnings_of(wall_at(-123456789.0 + 123460000.0)), std::vector<std::string>{});
+  EXPECT_EQ(warnings_of(wall_at(450000.0, {"joint.default.normal_stiffness=1e10"})),
+            std::vector<std::string>{});
+}
+
+// Without a stage nothing waits for rest, and the smallest block must still rest by more than rounding.
+TEST(PlausibleBlocks, RestByMoreThanRounding) {
+  const auto moving_at = [](double x) {
+    Scene scene = wall_at(x);
+    scene.stages.clear();
+    scene.run.duration = 1.0;
+    return scene;
+  };
+  EXPECT_EQ(warnings_of(moving_at(450000.0)), std::vector<std::string>{});
+  expect_one(warnings_of(moving_at(9e8)), "the smallest block rests by an overlap of 2.5e-07 m");
+}
+
 const std::string tunnel = R"([run]
 fidelity = "rigid"
 [material.rock]
