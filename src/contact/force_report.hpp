@@ -18,8 +18,9 @@ struct Fault {
   enum class Cause : std::int32_t { not_finite = 0, too_deep = 1, too_fast = 2 };
   Cause cause = Cause::not_finite;
   BlockId block;
-  BlockId other;      ///< invalid where no pair is involved
-  double value = 0.0; ///< overlap (m) or motion per step (m)
+  BlockId other; ///< invalid where no pair is involved
+  /// Overlap (m) or motion per step (m); where a state is not finite the largest strain of the other blocks.
+  double value = 0.0;
   double limit = 0.0;
 
   /// Which of several faults is reported: a choice that does not depend on the ranks.

@@ -23,6 +23,7 @@
 #include "simulation/results.hpp"
 #include "simulation/simulation.hpp"
 #include "simulation/static_stage.hpp"
+#include "simulation/strain_watch.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -307,6 +308,9 @@ private:
         log_->diagnostic(warning_of(simulation_, *gain));
       }
     }
+    if (const auto warning = strains_.look(simulation_.state())) {
+      log_->diagnostic(*warning);
+    }
     if (output_due) {
       const int index = num_frames_++;
       frames_->write(index, simulation_.time(), SimulationFrame(simulation_));
@@ -473,6 +477,7 @@ private:
   std::optional<EnergyLedger> ledger_;
   std::optional<CheckpointWriter> checkpoints_;
   ImpactWatch impacts_;
+  StrainWatch strains_;
   EnergyRow energy_;
   int num_frames_ = 0;
   std::size_t num_notes_ = 0; ///< that have been told

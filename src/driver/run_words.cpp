@@ -1,5 +1,7 @@
 #include "driver/run_words.hpp"
 
+#include "simulation/strain_watch.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -42,6 +44,13 @@ std::string fault_message(const Simulation &simulation) {
         where, fault.value, fault.limit, words_on_shorter_step(simulation));
   case Fault::Cause::not_finite:
     break;
+  }
+  if (fault.value > large_strain) {
+    return fmt::format(
+        "{}: its state is no longer finite, and deformable blocks are strained by up to {:.2g}, "
+        "for which linear elasticity is not meant; try a larger youngs_modulus, or check its "
+        "unit, Pa",
+        where, fault.value);
   }
   return fmt::format("{}: its state is no longer finite; try {}", where, words_on_shorter_step(simulation));
 }

@@ -1,5 +1,7 @@
 #include "simulation/step_report.hpp"
 
+#include "simulation/strain_watch.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -66,6 +68,9 @@ void agree_on_fault(RunState &run) {
     for (const Fault &fault : faults) {
       keep_first(run.fault, fault);
     }
+  }
+  if (run.fault && run.fault->cause == Fault::Cause::not_finite) {
+    run.fault->value = largest_strain(run.communicator, run.blocks).strain;
   }
 }
 
