@@ -269,6 +269,7 @@ ExitCode blocks(const Communicator &world, const Arguments &arguments) {
     region.blocks.clear();
     region.generators.clear();
     judge_before_work(world, arguments, region);
+    print(world, implausible_values(scene));
     cut_blocks(world, scene, {arguments.svg, arguments.json, arguments.directory});
     return exit_code::done;
   });

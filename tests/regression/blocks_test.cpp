@@ -188,6 +188,15 @@ TEST_F(Blocks, NeedARegion) {
   EXPECT_EQ(count_of(outcome.err, "wall.toml: error: the scene has no region"), 1) << outcome.err;
 }
 
+TEST_F(Blocks, TellWhatIsImplausible) {
+  folder_.write("far.toml", scene + "[[fault]]\nname = \"far\"\npoints = [[20, 0], [21, 5]]\n");
+  const Outcome outcome = run_gcpdda(2, {"blocks", "far.toml"}, folder_);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_of(outcome.err, "warning: fault.far lies from [20, 0] to [21, 5], outside of the region"),
+            1)
+      << outcome.err;
+}
+
 TEST_F(Blocks, AMonitorOfNoBlockIsAFault) {
   const Outcome outcome = run_gcpdda(0, {"run", "scene.toml", "--set", "monitor=[{block='b5000'}]"}, folder_);
   EXPECT_EQ(outcome.exit_code, 3);
