@@ -124,8 +124,9 @@ double integrate_distance(const Outline &region, std::span<const Vec2> vertex, s
 }
 
 /// Points of the world in a block's reference axes.
-Polygon to_reference(std::span<const Vec2> vertex, const DeformedFrame &frame) {
-  Polygon mapped;
+template <class Outline = Polygon>
+Outline to_reference(std::span<const Vec2> vertex, const DeformedFrame &frame) {
+  Outline mapped;
   for (const Vec2 x : vertex) {
     mapped.push_back(frame.inverse(x - frame.centre));
   }
@@ -148,23 +149,47 @@ Outline common_part(Outline region, std::span<const Vec2> vertex, std::span<cons
   return region;
 }
 
+/// Points of the world where the field of `block` is the distance to its outline.
+template <class Outline> Outline to_field(std::span<const Vec2> vertex, const BlockView &block) {
+  return block.frame ? to_reference<Outline>(vertex, *block.frame) : Outline(vertex.begin(), vertex.end());
+}
+std::span<const Vec2> vertices_of_field(const BlockView &block) {
+  return block.frame ? block.frame->vertex : block.vertex;
+}
+std::span<const Vec2> normals_of_field(const BlockView &block) {
+  return block.frame ? block.frame->normal : block.normal;
+}
+
+/// int over the part of a convex outline in a convex block of the field of the block.
+template <class Outline> double convex_field_energy(const BlockView &block, const Outline &outline) {
+  const std::span<const Vec2> vertex = vertices_of_field(block);
+  const std::span<const Vec2> normal = normals_of_field(block);
+  const Outline region = common_part(outline, vertex, normal);
+  return region.size() < 3 ? 0.0 : integrate_distance(region, vertex, normal);
+}
+
+/// Each of the cuts, first by the other block's lines and then between the lines of one, adds a vertex at
+/// most.
+bool are_small(const BlockView &first, const BlockView &second) {
+  return 2 * (first.vertex.size() + second.vertex.size()) <= SmallPolygon::capacity;
+}
+
 /// int over the overlap of the field of `block`, over the world. There dA = J dA_ref, so J cancels and the
 /// integral is that of the reference distance over the overlap mapped back.
 double field_energy(const BlockView &block, const BlockView &other) {
-  const std::span<const Vec2> vertex = block.frame ? block.frame->vertex : block.vertex;
-  const std::span<const Vec2> normal = block.frame ? block.frame->normal : block.normal;
-  const Polygon outline = block.frame ? to_reference(other.vertex, *block.frame)
-                                      : Polygon(other.vertex.begin(), other.vertex.end());
+  if (block.is_convex && other.is_convex && are_small(block, other)) {
+    return convex_field_energy(block, to_field<SmallPolygon>(other.vertex, block));
+  }
+  const std::vector<Polygon> other_parts = convex_parts(to_field<Polygon>(other.vertex, block));
   double sum = 0.0;
   if (block.is_convex) {
-    for (const Polygon &part : convex_parts(outline)) {
-      const Polygon region = common_part(part, vertex, normal);
-      sum += region.size() < 3 ? 0.0 : integrate_distance(region, vertex, normal);
+    for (const Polygon &part : other_parts) {
+      sum += convex_field_energy(block, part);
     }
     return sum;
   }
-  const FieldEnergy field(vertex, normal);
-  const std::vector<Polygon> other_parts = convex_parts(outline);
+  const std::span<const Vec2> vertex = vertices_of_field(block);
+  const FieldEnergy field(vertex, normals_of_field(block));
   for (const Polygon &own_part : convex_parts(vertex)) {
     for (const Polygon &part : other_parts) {
       if (bounding_box(own_part).meets(bounding_box(part))) {
@@ -213,11 +238,8 @@ double overlap_energy(const BlockView &first, const BlockView &second) {
   if (!is_convex_and_rigid(first) || !is_convex_and_rigid(second)) {
     return field_energy(first, second) + field_energy(second, first);
   }
-  // Each of the cuts, first by the other block's lines and then between the lines of one, adds a vertex at
-  // most.
-  return 2 * (first.vertex.size() + second.vertex.size()) <= SmallPolygon::capacity
-             ? rigid_energy<SmallPolygon>(first, second)
-             : rigid_energy<Polygon>(first, second);
+  return are_small(first, second) ? rigid_energy<SmallPolygon>(first, second)
+                                  : rigid_energy<Polygon>(first, second);
 }
 
 } // namespace gcpdda
