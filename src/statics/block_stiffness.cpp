@@ -1,7 +1,6 @@
 #include "statics/block_stiffness.hpp"
 
-#include <Eigen/Dense>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -103,13 +102,49 @@ void add_springs_of_rigid(const ContactSpring &s, Vec2 arm, double *matrix, std:
   third[2] += k_n * lever_n * lever_n + k_t * lever_t * lever_t + s.bending;
 }
 
-void add_springs_of_deformable(const ContactSpring &s, Vec2 arm, double *matrix, std::size_t width) {
-  const Vec2 t = perp(s.normal);
-  std::array<double, 6> bend{};
-  add_force(bend.data(), true, {}, outer(s.normal, t));
-  add_square(forces_of(true, s.normal, arm), s.normal_stiffness, 6, matrix, width);
-  add_square(forces_of(true, t, arm + s.grip * t), s.tangential, 6, matrix, width);
-  add_square(bend, s.bending, 6, matrix, width);
+/// The products of two levers out of (1, a_x, a_y), a lower triangle line by line.
+using LeverProducts = std::array<double, 6>;
+
+LeverProducts products_of(double one, Vec2 arm) {
+  return {one, arm.x * one, arm.x * arm.x, arm.y * one, arm.y * arm.x, arm.y * arm.y};
+}
+
+/// What the springs of a region are to a deformable row, the lower triangle. A force d works on its freedoms
+/// (u_x, H_xx, H_xy) by d_x (1, a_x, a_y), and on the other three by d_y: parts of b b^T are products of two
+/// components of d and of two levers.
+void add_springs_of_deformable(const ContactSpring &s, Vec2 arm, double *matrix) {
+  constexpr std::array<std::size_t, 3> of_x{0, 2, 3};
+  constexpr std::array<std::size_t, 3> of_y{1, 4, 5};
+  const Vec2 n = s.normal;
+  const Vec2 t = perp(n);
+  const LeverProducts levers_n = products_of(1.0, arm);
+  const LeverProducts levers_t = products_of(1.0, arm + s.grip * t);
+  const LeverProducts levers_bent = products_of(0.0, t);
+  const auto part = [&](double nn, double tt) {
+    LeverProducts sum;
+    for (std::size_t k = 0; k < sum.size(); ++k) {
+      sum[k] = nn * (s.normal_stiffness * levers_n[k] + s.bending * levers_bent[k]) +
+               tt * s.tangential * levers_t[k];
+    }
+    return sum;
+  };
+  const LeverProducts xx = part(n.x * n.x, t.x * t.x);
+  const LeverProducts yx = part(n.y * n.x, t.y * t.x);
+  const LeverProducts yy = part(n.y * n.y, t.y * t.y);
+  const auto at = [&](std::size_t i, std::size_t j) -> double & {
+    return matrix[6 * std::max(i, j) + std::min(i, j)];
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const std::size_t k = i * (i + 1) / 2 + j;
+      at(of_x[i], of_x[j]) += xx[k];
+      at(of_y[i], of_y[j]) += yy[k];
+      at(of_y[i], of_x[j]) += yx[k];
+      if (i != j) {
+        at(of_y[j], of_x[i]) += yx[k];
+      }
+    }
+  }
 }
 
 } // namespace
@@ -122,7 +157,7 @@ void add_diagonal(const BlockSystem &system, std::span<const ContactSpring> spri
       return;
     }
     if (width == 6 && system.is_deformable(row)) {
-      add_springs_of_deformable(s, arm, matrices.of(row), width);
+      add_springs_of_deformable(s, arm, matrices.of(row));
     } else {
       add_springs_of_rigid(s, arm, matrices.of(row), width);
     }
@@ -135,19 +170,39 @@ void add_diagonal(const BlockSystem &system, std::span<const ContactSpring> spri
 
 namespace {
 
-template <int N> void invert_fixed(double *matrix, std::size_t width) {
-  using Square = Eigen::Matrix<double, N, N, Eigen::RowMajor>;
-  using Stride = Eigen::OuterStride<>;
-  Eigen::Map<Square, 0, Stride> map(matrix, Stride(static_cast<Eigen::Index>(width)));
-  const Square copy = map;
-  map = copy.ldlt().solve(Square::Identity());
+/// By sweeps of Gauss and Jordan, which need no other pivots where a matrix is positive.
+void invert_six(double *matrix) {
+  constexpr std::size_t size = 6;
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      matrix[j * size + i] = matrix[i * size + j];
+    }
+  }
+  for (std::size_t k = 0; k < size; ++k) {
+    double *const pivot_row = matrix + k * size;
+    const double per_pivot = 1.0 / pivot_row[k];
+    std::array<double, size> scaled{};
+    for (std::size_t j = 0; j < size; ++j) {
+      scaled[j] = per_pivot * pivot_row[j];
+    }
+    scaled[k] = per_pivot;
+    for (std::size_t i = 0; i < size; ++i) {
+      double *const row = matrix + i * size;
+      const double factor = row[k];
+      row[k] = 0.0;
+      for (std::size_t j = 0; j < size; ++j) {
+        row[j] -= factor * scaled[j];
+      }
+    }
+    std::copy(scaled.begin(), scaled.end(), pivot_row);
+  }
 }
 
 } // namespace
 
 void invert(double *matrix, std::size_t freedoms, std::size_t width) {
   if (freedoms == 6) {
-    invert_fixed<6>(matrix, width);
+    invert_six(matrix);
     return;
   }
   double *const m = matrix;

@@ -126,8 +126,8 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
     copy_row(system.pseudo[row].velocity.data(), width, p_.of(row));
   });
   border_.copy(p_);
-  springs_.take(springs, SlipSprings::none_tangential, width);
-  width == 3 ? multiply_by<4>(system, p_, q_, leave<4>) : multiply_by<8>(system, p_, q_, leave<8>);
+  springs_.take(system, springs, SlipSprings::none_tangential, width);
+  width == 3 ? multiply_by<4>(p_, q_, leave<4>) : multiply_by<8>(p_, q_, leave<8>);
   ExactSum strained;
   for_rows(moving_, [&](std::size_t row) {
     const double *const v = system.pseudo[row].velocity.data();
@@ -150,9 +150,9 @@ void StiffnessSolver::damp_strains(const BlockSystem &system, const ContactSprin
 }
 
 template <int places, class Visit>
-void StiffnessSolver::multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Visit &&visit) {
+void StiffnessSolver::multiply_by(LeanField &p, LeanField &y, Visit &&visit) {
   for_places(moving_, places, [&](std::size_t i) { y.values()[i] = 0.0F; });
-  springs_.add(system, p, y);
+  springs_.add(p, y);
   for_rows(moving_, [&](std::size_t row) {
     const LeanRow<places> of_row = row_of<places>(p, row);
     const LeanRow<places> product = row_of<places>(y, row) + product_of<places>(own_, row, of_row);
@@ -164,8 +164,8 @@ void StiffnessSolver::multiply_by(const BlockSystem &system, LeanField &p, LeanF
 void StiffnessSolver::multiply(const BlockSystem &system, const ContactSprings &springs, LeanField &p,
                                LeanField &y) {
   border_.copy(p);
-  springs_.take(springs, SlipSprings::all, mass_.width());
-  mass_.width() == 3 ? multiply_by<4>(system, p, y, leave<4>) : multiply_by<8>(system, p, y, leave<8>);
+  springs_.take(system, springs, SlipSprings::all, mass_.width());
+  mass_.width() == 3 ? multiply_by<4>(p, y, leave<4>) : multiply_by<8>(p, y, leave<8>);
 }
 
 template <int places>
@@ -205,15 +205,14 @@ StiffnessSolver::AlongQ StiffnessSolver::find_q_and_u(const BlockSystem &system,
   SumInUnits along_w(size);
   SumInUnits along_u(size);
   coarse_.clear_forces();
-  multiply_by<places>(system, p_, q_,
-                      [&](std::size_t row, const LeanRow<places> &p, const LeanRow<places> &q) {
-                        const LeanRow<places> u = product_of<places>(inverse_, row, q);
-                        along_p.add(dot_product<places>(p, q));
-                        along_w.add(dot_product<places>(row_of<places>(w_, row), q));
-                        along_u.add(dot_product<places>(u, q));
-                        coarse_.add_forces(row, deforms<places>(system, row), q.data());
-                        row_of<places>(q_, row) = u;
-                      });
+  multiply_by<places>(p_, q_, [&](std::size_t row, const LeanRow<places> &p, const LeanRow<places> &q) {
+    const LeanRow<places> u = product_of<places>(inverse_, row, q);
+    along_p.add(dot_product<places>(p, q));
+    along_w.add(dot_product<places>(row_of<places>(w_, row), q));
+    along_u.add(dot_product<places>(u, q));
+    coarse_.add_forces(row, deforms<places>(system, row), q.data());
+    row_of<places>(q_, row) = u;
+  });
   std::array<std::int64_t, 3> units{along_p.units(), along_w.units(), along_u.units()};
   border_.start(q_);
   coarse_.sum_forces(units);
@@ -272,7 +271,7 @@ std::int64_t StiffnessSolver::solve_by(const BlockSystem &system, const Field &f
 
 std::int64_t StiffnessSolver::solve(const BlockSystem &system, const ContactSprings &springs,
                                     const Field &force, Field &solution) {
-  springs_.take(springs, SlipSprings::all, mass_.width());
+  springs_.take(system, springs, SlipSprings::all, mass_.width());
   return mass_.width() == 3 ? solve_by<4>(system, force, solution) : solve_by<8>(system, force, solution);
 }
 

@@ -106,8 +106,7 @@ private:
   /// x + a p, and where the iteration goes on w - a u and the next p.
   template <int places> void advance(const BlockSystem &system, float step, float share, bool goes_on);
   /// y = (K + rho D) p with the springs at hand. visit(row, its p, its y).
-  template <int places, class Visit>
-  void multiply_by(const BlockSystem &system, LeanField &p, LeanField &y, Visit &&visit);
+  template <int places, class Visit> void multiply_by(LeanField &p, LeanField &y, Visit &&visit);
 
   Communicator communicator_;
   CoarseGrid coarse_;

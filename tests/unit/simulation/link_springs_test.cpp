@@ -85,7 +85,7 @@ double error_of_springs(Linked linked) {
   statics::ContactSprings springs;
   springs.set_links(linked.springs());
   statics::SpringProducts products;
-  products.take(springs, statics::SlipSprings::all, 6);
+  products.take(linked.system, springs, statics::SlipSprings::all, 6);
   double largest = 0.0;
   double error = 0.0;
   for (const std::size_t i : std::array<std::size_t, 9>{0, 1, 2, 6, 7, 8, 9, 10, 11}) {
@@ -100,7 +100,7 @@ double error_of_springs(Linked linked) {
     statics::LeanField unit(2, statics::lean_width(6));
     statics::LeanField product = unit;
     unit.of(i / 6)[i % 6] = 1.0F;
-    products.add(linked.system, unit, product);
+    products.add(unit, product);
     for (std::size_t k = 0; k < 12; ++k) {
       const double stiffness = -(ahead[k] - behind[k]) / (2.0 * step);
       largest = std::max(largest, std::abs(stiffness));

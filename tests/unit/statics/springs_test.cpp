@@ -79,9 +79,9 @@ statics::LeanField product_of(const BlockSystem &system, const statics::ContactS
                               std::size_t width, const statics::LeanField &p,
                               statics::SlipSprings of_slip = statics::SlipSprings::all) {
   statics::SpringProducts products;
-  products.take(springs, of_slip, width);
+  products.take(system, springs, of_slip, width);
   statics::LeanField product = lean_field(system, width);
-  products.add(system, p, product);
+  products.add(p, product);
   return product;
 }
 
