@@ -16,6 +16,7 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 namespace gcpdda {
 
@@ -298,7 +299,7 @@ double max_speed(const RunState &run) {
 
 } // namespace
 
-EnergyLedger::EnergyLedger(RunState &run) {
+EnergyLedger::EnergyLedger(RunState &run) : time_step_(run.clock.plan.time_step) {
   Terms terms = initial_terms(run);
   terms.agree(run.communicator);
   stick_at_start_ = terms.stick.value();
@@ -342,8 +343,11 @@ void EnergyLedger::note_end(RunState &run) {
   }
 }
 
+// A coming step of another length would end at another time: the row is that of the step at the end.
 void EnergyLedger::step_over(RunState &run) {
+  const double coming = std::exchange(run.clock.plan.time_step, time_step_);
   const EnergyRow now = row(run);
+  run.clock.plan.time_step = time_step_ = coming;
   before_.resize(carried.size());
   at_end_.resize(carried.size());
   for (std::size_t k = 0; k < carried.size(); ++k) {

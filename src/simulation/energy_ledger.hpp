@@ -33,7 +33,8 @@ public:
   explicit EnergyLedger(RunState &run);
   /// Of a run that goes on: what the first one found.
   explicit EnergyLedger(const RunFacts &facts)
-      : total_at_start_(facts.total_at_start), stick_at_start_(facts.stick_at_start) {
+      : total_at_start_(facts.total_at_start), stick_at_start_(facts.stick_at_start),
+        time_step_(facts.time_step) {
     const auto middle = facts.ledger.begin() + std::ssize(facts.ledger) / 2;
     before_.assign(facts.ledger.begin(), middle);
     at_end_.assign(middle, facts.ledger.end());
@@ -53,6 +54,7 @@ public:
 private:
   double total_at_start_ = 0.0;
   double stick_at_start_ = 0.0;
+  double time_step_ = 0.0; ///< of the stage at hand, s
   /// Columns that go on through such changes.
   static constexpr std::array<double EnergyRow::*, 6> carried{
       &EnergyRow::gravity,       &EnergyRow::friction_loss, &EnergyRow::damping_loss,

@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace gcpdda::stepwise_run_test {
 namespace {
@@ -65,6 +68,53 @@ TEST(StepwiseRun, GoesThroughAllStages) {
   // A settled stage is in balance to its tolerance, 1e-5 of the weight or what the scene asks for.
   EXPECT_NEAR(contacts[0].normal_force, density * gravity, 1e-4 * density * gravity);
   EXPECT_LE(std::abs(run.energy().kinetic), 1e-9 * density * gravity * sunk);
+}
+
+// Forces on a block that flies are zero: its energies are those of its velocity, to rounding, with any step.
+TEST(StepwiseRun, KeepsTheEnergyOfAFlightThroughAnotherStep) {
+  for (const std::string fidelity : {"rigid", "deformable"}) {
+    StepwiseRun run(Communicator::self(), testing::scene_of("[run]\nfidelity = \"" + fidelity + R"("
+gravity = [0.0, 0.0]
+time_step = 1e-3
+[material.rock]
+density = 2600.0
+youngs_modulus = 1e9
+poissons_ratio = 0.2
+[joint.default]
+normal_stiffness = 1e8
+friction_angle_deg = 30.0
+[output]
+interval = 0.1
+[[block]]
+name = "block"
+material = "rock"
+velocity = [3.0, -1.0, 0.0]
+vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+[[stage]]
+kind = "run"
+duration = 0.1
+[[stage]]
+kind = "run"
+duration = 0.1
+set = {"run.time_step" = 1e-4}
+[[stage]]
+kind = "run"
+duration = 0.1
+set = {"run.time_step" = 1e-3}
+)"));
+    const double kinetic = 0.5 * density * 10.0;
+    double residual = 0.0;
+    std::vector<double> steps;
+    while (!run.is_finished()) {
+      run.step();
+      residual = std::max(residual, std::abs(run.energy().residual));
+      if (steps.empty() || steps.back() != run.time_step()) {
+        steps.push_back(run.time_step());
+      }
+    }
+    EXPECT_EQ(steps, (std::vector<double>{1e-3, 1e-4, 1e-3}));
+    EXPECT_LE(residual, 1e-9 * kinetic) << fidelity;
+  }
 }
 
 TEST(StepwiseRun, StepsAsASimulationDoes) {
