@@ -21,6 +21,7 @@ namespace {
 struct LimitRegion {
   LimitJoint joint;
   double cohesion = 0.0; ///< Pa
+  double bonded = 0.0;   ///< length of it on which bonds are whole, that have joints of their own, m
   std::array<Vec2, 2> force{};
   std::array<double, 2> torque{};
 };
@@ -223,6 +224,21 @@ void add_open_joints(const Simulation &settled, const CandidatePair &pair, const
   }
 }
 
+/// The length of a region that lies on a bond of the same pair, m.
+double common_length(const RegionForce &region, const RegionForce &bond) {
+  constexpr double same_line = 0.98; // cosine
+  if (std::abs(dot(region.normal, bond.normal)) < same_line) {
+    return 0.0;
+  }
+  const Vec2 along = perp(region.normal);
+  const double middle = dot(bond.point - region.point, along);
+  const double sign = dot(region.normal, bond.normal) > 0.0 ? 1.0 : -1.0;
+  const double a = middle + sign * bond.extent_begin;
+  const double b = middle + sign * bond.extent_end;
+  return std::max(0.0, std::min(region.extent_end, std::max(a, b)) -
+                           std::max(region.extent_begin, std::min(a, b)));
+}
+
 /// @param slip  of each block, in sizes of it
 std::vector<LimitRegion> regions_of(Simulation &settled, double slip) {
   std::vector<std::vector<LimitRegion>> of_pair(settled.candidates().pairs.size());
@@ -232,6 +248,9 @@ std::vector<LimitRegion> regions_of(Simulation &settled, double slip) {
     const std::array<std::size_t, 2> rows{pair.lower.value, pair.higher.value};
     for (std::size_t k = 0; k < regions.size(); ++k) {
       LimitRegion region = closed_joint(settled, regions[k], settled.history().state(number, k), pair);
+      for (const RegionForce &other : regions) {
+        region.bonded += other.bonded && !regions[k].bonded ? common_length(regions[k], other) : 0.0;
+      }
       for (std::size_t side = 0; side < 2; ++side) {
         const ContactPart part = contact_part(regions[k], side == 0, blocks.motion[rows[side]].centroid);
         region.force[side] = part.force;
@@ -255,7 +274,8 @@ std::vector<LimitRegion> regions_of(Simulation &settled, double slip) {
     for (LimitRegion &region : of_pair[number]) {
       region.joint.first = id_of(pair.lower);
       region.joint.second = id_of(pair.higher);
-      region.joint.cohesion = region.cohesion * norm(region.joint.end - region.joint.begin);
+      const double length = norm(region.joint.end - region.joint.begin);
+      region.joint.cohesion = region.cohesion * std::max(0.0, length - region.bonded);
       found.push_back(region);
     }
   }

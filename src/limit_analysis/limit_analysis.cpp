@@ -122,16 +122,18 @@ bool can_hold(const LimitModel &model, double factor, Basis &basis) {
   Programme programme(model.blocks);
   for (const LimitJoint &joint : model.joints) {
     const double divided = joint.is_weakened ? factor : 1.0;
-    const Vec2 along = (joint.tan_friction / divided) * perp(joint.normal);
+    const double tan_friction = joint.tan_friction / divided;
+    const double tension = joint.tension / divided;
+    const Vec2 along = tan_friction * perp(joint.normal);
     for (const Vec2 end : {joint.begin, joint.end}) {
       programme.add(joint, end, joint.normal + along, 0.0, infinite);
       programme.add(joint, end, joint.normal - along, 0.0, infinite);
-      if (joint.tension > 0.0) {
-        programme.add(joint, end, joint.normal, -0.5 * joint.tension / divided, 0.0);
+      if (tension > 0.0) {
+        programme.add(joint, end, joint.normal, -0.5 * tension, -0.5 * tension);
       }
     }
-    if (joint.cohesion > 0.0) {
-      const double most = joint.cohesion / divided;
+    const double most = joint.cohesion / divided - tan_friction * tension;
+    if (most > 0.0) {
       programme.add(joint, joint.begin, perp(joint.normal), -most, most);
     }
   }

@@ -5,10 +5,10 @@
 // Blocks and the joints between them are taken as they lie. A joint is a straight piece that carries normal
 // forces n1, n2 >= 0 at its ends and shear along it. Written as a sum over the edges of the friction cones at
 // both ends, with the normal n and the tangent t of the joint and m = tan(phi),
-//     force = sum over ends k of (a_k (n + m t) + b_k (n - m t)) + s t + sum over ends of r_k n,
-//     a_k, b_k >= 0,   |s| <= c l,   -T l/2 <= r_k <= 0,
-// so that |shear| <= m N + c l, and tension up to T where the joint is bonded. These are all forces that the
-// law of the joint admits. The blocks can hold only if some of them balance the load of every block: three
+//     force = sum over ends k of (a_k (n + m t) + b_k (n - m t) - T l/2 n) + s t,
+//     a_k, b_k >= 0,   |s| <= (c - m T) l,
+// so that |shear| <= m N + c l, and N >= -T l/2 at each end, with the tensile strength T <= c/m of a bond.
+// These are all forces that the law of the joint admits. The blocks can hold only if some of them balance the load of every block: three
 // linear equations for each. The set of admissible forces shrinks where m, c and T are divided by a larger
 // factor, and the largest factor for which a balance exists is found by bisection, each time by a linear
 // programme: the largest share of the loads, up to all of them, that admissible forces balance.

@@ -92,6 +92,30 @@ TEST(SafetyLimits, ABlockThatLeavesACornerHasTheBoundOfThePlane) {
   EXPECT_NEAR(bounds.bound.value_or(0.0), limit_of_the_plane, 3e-3 * limit_of_the_plane);
 }
 
+// F = (c + N tan(phi))/S over a base of 4 m, N and S the forces of the weight on it. A bond bears the
+// pressure on its length: what is left of the strength when it has broken does not act beside it.
+TEST(SafetyLimits, ABondedBlockHasTheBoundOfItsBond) {
+  struct Law {
+    double friction_deg, cohesion, tension, residual_cohesion;
+  };
+  for (const Law &law : {Law{20.0, 20e3, 0.0, 20e3}, Law{20.0, 20e3, 5e3, 0.0}, Law{0.0, 20e3, 5e3, 20e3},
+                         Law{40.0, 5e3, 3e3, 0.0}}) {
+    const Scene scene = scene_of(
+        without_duration(head({.gravity = gravity_on(20.0 * degree), .friction_deg = law.friction_deg}) +
+                         fmt::format("[joint.glued]\nfriction_angle_deg = {}\ncohesion = {}\ntension = {}\n"
+                                     "residual_cohesion = {}\n",
+                                     law.friction_deg, law.cohesion, law.tension, law.residual_cohesion) +
+                         long_plane +
+                         block_toml("block", rectangle({0.0, 0.0}, {4.0, 1.0}),
+                                    "edge_joints = [\"glued\", \"\", \"\", \"\"]")) +
+        "[fos]\nto = 10.0\n[[stage]]\nkind = \"settle\"\nlimit = 10.0\n");
+    const double stress = rock_density * earth_gravity * std::sin(20.0 * degree);
+    const double exact =
+        law.cohesion / stress + std::tan(law.friction_deg * degree) / std::tan(20.0 * degree);
+    EXPECT_NEAR(search_quietly(scene, true).report.bound.value_or(0.0), exact, 3e-3 * exact);
+  }
+}
+
 // The block before it is taken away: the trials begin with fewer blocks than the scene has.
 TEST(SafetyLimits, InclineAfterAnExcavation) {
   const Scene scene = scene_of(

@@ -38,6 +38,15 @@ TEST(LimitAnalysis, BlockOnAPlane) {
               std::tan(40.0 * degree) / std::tan(30.0 * degree) + 0.5, 3e-6);
 }
 
+// Pressure and pull of a bond have one line of strength: the tension that it could bear adds no shear.
+TEST(LimitAnalysis, TensionDoesNotHoldABlockThatSlides) {
+  LimitJoint glued = base_of(2.0, 40.0 * degree);
+  glued.cohesion = 0.5 * std::sin(30.0 * degree);
+  glued.tension = 0.9 * glued.cohesion / glued.tan_friction;
+  EXPECT_NEAR(bound({block_on(30.0 * degree, 0.5)}, {glued}),
+              std::tan(40.0 * degree) / std::tan(30.0 * degree) + 0.5, 3e-6);
+}
+
 // Its weight passes outside of its base: no friction holds it, and the strength of a bond does. The bond
 // fails where T/2 at the upper end, with lever b, balances W (h/2 sin - b/2 cos).
 TEST(LimitAnalysis, BlockThatTopples) {
