@@ -194,8 +194,8 @@ private:
     const TimePlan &plan = simulation_.plan();
     const bool given = simulation_.scene().run.time_step > 0.0;
     std::string text =
-        line("step", fmt::format("{:.6g} s ({}), {} steps of {:g} s in all", plan.time_step,
-                                 given ? "as given" : "automatic", plan.num_steps, plan.duration));
+        line("step", fmt::format("{:.6g} s ({}), {}", plan.time_step, given ? "as given" : "automatic",
+                                 words_on_steps(simulation_)));
     if (bound.block < 0 || bound.omega_max <= 0.0) {
       return text + line("", "nothing limits it: forces move no block");
     }
@@ -349,12 +349,21 @@ private:
     const std::int64_t num_frames = plan.num_steps / plan.steps_per_output + 1;
     const auto frames = static_cast<double>(num_frames);
     return line("memory", fmt::format("{} of state, all ranks together", bytes_text(memory))) +
-           line("run time",
-                fmt::format("about {} of stepping on {} rank{} as it starts now",
-                            seconds_text(seconds_per_step() * static_cast<double>(plan.num_steps)),
-                            communicator_.size(), communicator_.size() == 1 ? "" : "s")) +
+           line("run time", words_on_run_time()) +
            line("output", fmt::format("{:.0f} frames of about {}, {} in all", frames, bytes_text(frame),
                                       bytes_text(frame * frames)));
+  }
+
+  std::string words_on_run_time() {
+    const bool is_static = begins_statically(simulation_);
+    const double count = is_static ? 100.0 : static_cast<double>(simulation_.plan().num_steps);
+    const std::string ranks =
+        fmt::format("on {} rank{}", communicator_.size(), communicator_.size() == 1 ? "" : "s");
+    const std::string seconds = seconds_text(seconds_per_step() * count);
+    return is_static ? fmt::format("about {} for a hundred evaluations of the static solver {} as it starts "
+                                   "now, and a stage needs one or a few hundred",
+                                   seconds, ranks)
+                     : fmt::format("about {} of stepping {} as it starts now", seconds, ranks);
   }
 
   double seconds_per_step() {

@@ -130,13 +130,23 @@ void tell_end(const Simulation &simulation, const std::filesystem::path &directo
   }
 }
 
+bool begins_statically(const Simulation &simulation) {
+  return simulation.is_staged() && simulation.state().clock.stage().solver == Solver::statics;
+}
+
+std::string words_on_steps(const Simulation &simulation) {
+  const TimePlan &plan = simulation.plan();
+  return begins_statically(simulation)
+             ? "for motion that takes over from the static solver"
+             : fmt::format("{} steps of {:.6g} s in all", plan.num_steps, plan.duration);
+}
+
 std::string words_on_time_step(const Simulation &simulation) {
   const StepBound &bound = simulation.bound();
-  return fmt::format(
-      "step {:.6g} s, {} steps of {:.6g} s in all; recommended at most {:.6g} s = safety {:g} x limit "
-      "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
-      simulation.plan().time_step, simulation.plan().num_steps, simulation.plan().duration, bound.time_step,
-      bound.safety, bound.limit, bound.omega_max);
+  return fmt::format("step {:.6g} s, {}; recommended at most {:.6g} s = safety {:g} x limit "
+                     "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
+                     simulation.plan().time_step, words_on_steps(simulation), bound.time_step, bound.safety,
+                     bound.limit, bound.omega_max);
 }
 
 std::string words_on_law(const JointLaw &law) {

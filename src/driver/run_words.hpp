@@ -17,6 +17,10 @@ std::string fault_message(const Simulation &simulation);
 /// Which blocks are rigid, and what that leaves out.
 std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_error);
 
+/// The stage at hand is the static solver's.
+bool begins_statically(const Simulation &simulation);
+/// How many time steps there are.
+std::string words_on_steps(const Simulation &simulation);
 /// The time step, how many there are, and what bounds it.
 std::string words_on_time_step(const Simulation &simulation);
 

@@ -157,6 +157,30 @@ TEST_F(Inspect, TellsAGivenStep) {
   EXPECT_EQ(count_of(given.out, "1e-06 s (as given), 1000000 steps of 1 s in all"), 1) << given.out;
 }
 
+// A settle stage of the static solver ends after some hundred evaluations, whatever its limit is.
+TEST(InspectPlan, TellsNoStepsOfAStageOfTheStaticSolver) {
+  const WorkFolder folder;
+  std::string toml = odd_scene();
+  toml.erase(toml.find("duration = 1.0\n"), 15);
+  const auto told = [&](const std::string &solver) {
+    folder.write("plan.toml",
+                 toml + "[[stage]]\nkind = \"settle\"\nlimit = 1e4\nsolver = \"" + solver + "\"\n");
+    return run_gcpdda(0, {"inspect", "plan.toml"}, folder).out;
+  };
+  const std::string of_motion = told("dynamic");
+  EXPECT_TRUE(
+      std::regex_search(of_motion, std::regex("run time +about \\S+ (s|min|h) of stepping on 1 rank")))
+      << of_motion;
+  const std::string of_statics = told("static");
+  EXPECT_TRUE(std::regex_search(of_statics,
+                                std::regex("step .*, for motion that takes over from the static solver\n")))
+      << of_statics;
+  EXPECT_TRUE(std::regex_search(
+      of_statics, std::regex("run time +about \\S+ (s|min) for a hundred evaluations of the static solver")))
+      << of_statics;
+  EXPECT_EQ(of_statics.find("of stepping"), std::string::npos) << of_statics;
+}
+
 TEST(InspectPlan, TellsStagesWaterAndBolts) {
   const WorkFolder folder;
   std::string toml = odd_scene();
