@@ -17,7 +17,7 @@ sigma_v a^2/(a^2 + R^2); R of a circle as large as the box is printed beside wha
 difference in rings about the opening.
 
 --deformable takes run/scenes/deformable_tunnel.toml instead, whose plate is loaded from outside, with blocks of several
-sizes and k_n L/E as it ships. A plate of radius R under sigma_v = sigma_h has (Lame) R^2/(R^2 - a^2) times the stresses of
+sizes and k_n L/E as it ships, and the smallest blocks with stiffer joints. A plate of radius R under sigma_v = sigma_h has (Lame) R^2/(R^2 - a^2) times the stresses of
 an endless one; R is again that of a circle as large as the plate. Writes kirsch_deformable.csv and kirsch_deformable.png.
 """
 
@@ -127,8 +127,8 @@ def run(gcpdda, out, name, **values):
     return folder, summary_of(folder)
 
 
-def run_deformable(gcpdda, out, size, k0, half, ratio=3.0, modulus=10e9):
-    folder = os.path.join(out, f"kirsch_deformable_{size:g}_{k0:g}")
+def run_deformable(gcpdda, out, size, k0, half, ratio, modulus=10e9):
+    folder = os.path.join(out, f"kirsch_deformable_{size:g}_{k0:g}_{ratio:g}")
     corners = [[-half, -half], [half, -half], [half, half], [-half, half]]
     sets = [f"region.polygon={corners}", f"bricks=[{{block_size=[{size}, {size}], bond=0.0}}]", f"in_situ.k0={k0}",
             f"region.min_width={0.2 * size}", f"joint.default.normal_stiffness={ratio * modulus / size}"]
@@ -154,14 +154,16 @@ def draw(ax, points, radial, hoop, k0, half):
 
 
 def deformable(gcpdda, out, quick):
-    """Convergence with the size of the blocks, and a picture of the finest at two ratios of stress."""
+    """Convergence with the size of the blocks, stiffer joints, and a picture of the finest at two ratios of stress."""
     half = 9.0 if quick else 15.0
     sizes = (1.0, 0.75) if quick else (1.0, 0.75, 0.5)
+    shipped, stiffer = 3.0, (50.0,) if quick else (10.0, 50.0, 200.0)
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), sharey=True)
     rows = []
     for k0, ax in ((1.0, axes[0]), (0.5, axes[1])):
-        for size in sizes if k0 == 1.0 else sizes[-1:]:
-            folder, summary = run_deformable(gcpdda, out, size, k0, half)
+        cases = [(size, shipped) for size in sizes] + [(sizes[-1], ratio) for ratio in stiffer]
+        for size, ratio in cases if k0 == 1.0 else [(sizes[-1], shipped)]:
+            folder, summary = run_deformable(gcpdda, out, size, k0, half, ratio)
             points, areas, stress = last_frame(folder)
             radial, hoop = polar(points, stress)
             plate = 1.0 / (1.0 - RADIUS**2 / (4.0 * half**2 / np.pi))
@@ -170,17 +172,19 @@ def deformable(gcpdda, out, quick):
             exact = kirsch(points, k0)
             errors = [float(np.sqrt(np.average((got - plate * want)[near] ** 2, weights=areas[near]))) / VERTICAL
                       for got, want in zip((radial, hoop), exact)]
-            rows.append((k0, size / RADIUS, summary["blocks"], summary["verdict"], *errors))
-            print(f"K0 = {k0:g}, L/a = {size / RADIUS:.3f}: {summary['blocks']} blocks {summary['verdict']}, 1 to 2 radii: rms "
-                  f"difference over sigma_v radial {errors[0]:.3f}, hoop {errors[1]:.3f}", flush=True)
-        draw(ax, points, radial, hoop, k0, half)
-        ax.set_title(f"$K_0$ = {k0:g}, {summary['blocks']} deformable blocks left")
+            rows.append((k0, size / RADIUS, ratio, summary["blocks"], summary["verdict"], *errors))
+            print(f"K0 = {k0:g}, L/a = {size / RADIUS:.3f}, k_n L/E = {ratio:g}: {summary['blocks']} blocks "
+                  f"{summary['verdict']}, 1 to 2 radii: rms difference over sigma_v radial {errors[0]:.3f}, "
+                  f"hoop {errors[1]:.3f}", flush=True)
+            if (size, ratio) == (sizes[-1], shipped):
+                draw(ax, points, radial, hoop, k0, half)
+                ax.set_title(f"$K_0$ = {k0:g}, {summary['blocks']} deformable blocks left")
     axes[0].set_ylabel("compressive stress over $\\sigma_v$")
     axes[0].legend(fontsize=8, title="markers: blocks; lines: Kirsch, endless plate,\nsolid beside, dashed above and below")
     figure.tight_layout()
     figure.savefig(os.path.join(out, "kirsch_deformable.png"), dpi=100)
     with open(os.path.join(out, "kirsch_deformable.csv"), "w") as file:
-        file.write("k0,L/a,blocks,verdict,rms radial,rms hoop\n")
+        file.write("k0,L/a,k_n L/E,blocks,verdict,rms radial,rms hoop\n")
         for row in rows:
             file.write(",".join(x if isinstance(x, str) else f"{x:.6g}" for x in row) + "\n")
 

@@ -225,7 +225,7 @@ def cost(runner, quick):
     rounds, slow_steps = (1, 1000) if quick else (5, 8000)
     found = scenes.cases(runner.work, quick)
     rows = []
-    for name in ("wall", "pyramid") if quick else ("wall", "pyramid", "slope_jointed"):
+    for name in ("wall", "pyramid") if quick else ("wall", "pyramid", "slope_jointed, 10 GPa", "slope_jointed"):
         case = found[name]
         steps = {way: runner.step(case, keys) for way, keys in WAYS.items()}
         ways = {way: (f"{keys}, tolerance = 1e-6", 0.0, 50 if way == "static" else 0) for way, keys in WAYS.items()}

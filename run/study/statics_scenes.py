@@ -89,14 +89,14 @@ def cases(work, quick):
     excavation = [settle("in_situ"), '{name = "tunnel", kind = "excavate", openings = ["tunnel"], relax = 0.0}',
                   settle("around_it")]
     water = [settle("weight"), settle("low_water", ', set = {"water.low.active" = true, "water.low.density" = 1000.0}')]
+    deformable = ["run.fidelity=deformable", "material.rock.youngs_modulus=10e9", "material.rock.poissons_ratio=0.25"]
     return found | {
         "slope_jointed": slope,
         "wet_slope": Case(SCENES / "wet_slope.toml", water, slow_water),
         "tunnel_jointed": Case(SCENES / "tunnel_jointed.toml", excavation, slow_excavation),
         "deformable_tunnel": Case(SCENES / "deformable_tunnel.toml", excavation, slow_excavation),
-        "tunnel_jointed, 10 GPa": Case(SCENES / "tunnel_jointed.toml", excavation, slow_excavation,
-                                       ["run.fidelity=deformable", "material.rock.youngs_modulus=10e9",
-                                        "material.rock.poissons_ratio=0.25"]),
+        "slope_jointed, 10 GPa": Case(SCENES / "slope_jointed.toml", [settle("weight")], slow_gravity, deformable),
+        "tunnel_jointed, 10 GPa": Case(SCENES / "tunnel_jointed.toml", excavation, slow_excavation, deformable),
         "deformable_slope, 1e11 Pa/m": Case(SCENES / "deformable_slope.toml", [settle("weight")], slow_gravity,
                                             [f"joint.{name}.normal_stiffness=1e11" for name in ("default", "bedding", "cross")]),
     }

@@ -217,6 +217,27 @@ void expect_poissons_ratios(RunState &run, std::span<const SceneBlock> slab) {
   stop_on_errors(run.notes);
 }
 
+// A block strains uniformly. Where many are held to each other by joints far stiffer than they are, none can
+// strain but with its neighbours.
+void doubt_stiff_joints(RunState &run) {
+  constexpr std::int64_t many = 20;
+  constexpr double stiff = 30.0;  // k_n L/E
+  constexpr double enough = 10.0; // up to which stresses hardly suffer
+  const double share = run.fidelity.worst_deformable;
+  const double ratio = share / (1.0 - share);
+  if (run.fidelity.num_deformable >= many && ratio > stiff) {
+    run.notes.push_back(
+        {Severity::warning,
+         {},
+         fmt::format("joints are up to {:.3g} times as stiff as the deformable blocks between them (k_n L/E)",
+                     ratio),
+         "each block strains uniformly, so that blocks held together by such joints are too stiff, and their "
+         "stresses less accurate",
+         fmt::format("a joint.normal_stiffness lower by {:.2g} times makes it {:g}; or cut smaller blocks",
+                     ratio / enough, enough)});
+  }
+}
+
 // Mobile blocks of the slab become owned rows, to be migrated; everybody gets all fixed ones.
 void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
   const std::int64_t first =
@@ -251,6 +272,7 @@ void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
   run.fidelity.num_deformable = agreed_sum(run.communicator, run.fidelity.num_deformable);
   run.fidelity.worst_rigid = agreed_max(run.communicator, run.fidelity.worst_rigid);
   run.fidelity.worst_deformable = agreed_max(run.communicator, run.fidelity.worst_deformable);
+  doubt_stiff_joints(run);
   if (!run.scene.earthquake.viscous.empty()) {
     run.notes.push_back(
         on_viscous_sides(run.scene, agreed_sum(run.communicator, std::ssize(run.blocks.dashpot))));

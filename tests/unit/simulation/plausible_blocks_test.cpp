@@ -138,6 +138,23 @@ TEST(PlausibleBlocks, TouchWhereAThinBlockFillsTheGap) {
   expect_one(warnings_of(scene_of(two_blocks(upper))), "face each other across a gap of 0.003 m");
 }
 
+// Bricks of 1 m with E = 1e9 Pa: k_n L/E = k_n/1e9.
+TEST(PlausibleBlocks, StrainBetweenTheirJoints) {
+  const auto wall = [](double stiffness, int rows) {
+    return scene_of(
+        fmt::format("[run]\nduration = 0.1\nfidelity = \"deformable\"\n[material.rock]\ndensity = "
+                    "2600\nyoungs_modulus = 1e9\npoissons_ratio = 0.25\n[joint.default]\n"
+                    "normal_stiffness = {}\nfriction_angle_deg = 30\n[[wall]]\nname = \"w\"\n"
+                    "material = \"rock\"\norigin = [0, 0]\nrows = {}\ncolumns = 5\n"
+                    "block_size = [1.0, 1.0]\n",
+                    stiffness, rows) +
+        block_toml("floor", rectangle({-5.0, -1.0}, {9.0, 0.0}), "fixed = true"));
+  };
+  expect_one(warnings_of(wall(5e10, 6)), "joints are up to 50 times as stiff as the deformable blocks");
+  EXPECT_TRUE(warnings_of(wall(1e10, 6)).empty());
+  EXPECT_TRUE(warnings_of(wall(5e10, 2)).empty()) << "few blocks";
+}
+
 TEST(PlausibleBlocks, FeelTheirLoads) {
   Scene scene = scene_of(two_blocks(""));
   scene.blocks[1].loads = {{{0.5, 1.0}, {0.0, -20.0}}};
