@@ -110,6 +110,35 @@ def test_joints_open_and_shear_as_their_blocks_move(opening):
     assert not set(names[joints["block_a"]]) & {"w.0.4", "w.0.5"}  # excavated
 
 
+def test_joints_between_blocks_of_very_different_sizes(tmp_path):
+    """Bricks of 0.2 m beside blocks of 50 m, of which one flies up by 10 micrometres, and seams 0.1 m thick between
+    these blocks, of which one does not reach all along them: joints are those of the edges that lie on each other."""
+    def box(left, right, low, high):
+        return [[left, low], [right, low], [right, high], [left, high]]
+
+    scene = gcpdda.Scene(name="sizes", fidelity="rigid", duration=0.01, gravity=[0.0, 0.0])
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e10, friction_angle_deg=35)
+    scene.block("floor", box(0, 200, -50, 0), "rock", fixed=True)
+    for k in range(3):
+        scene.block(f"big{k}", box(50 * k, 50 * k + 50, 0, 40), "rock")
+    scene.block("seam0", box(0, 50, 40, 40.1), "rock")
+    scene.block("cover0", box(0, 50, 40.1, 70), "rock")
+    scene.block("seam2", box(100, 120, 40, 40.1), "rock")
+    scene.block("cover2", box(100, 150, 40.1, 70), "rock")
+    scene.block("brick0", box(160, 160.2, 0, 0.1), "rock")
+    scene.block("brick1", box(160, 160.2, 0.1, 0.2), "rock", velocity=[0.0, 1e-3, 0.0])
+    frame = gcpdda.run(scene, ranks=1, out=tmp_path / "sizes").frame("last")
+    joints, names = frame.joints, frame.blocks["name"]
+    states = dict(zip(zip(names[joints["block_a"]], names[joints["block_b"]]), joints["state"]))
+    assert set(states) == {("floor", "big0"), ("floor", "big1"), ("floor", "big2"), ("big0", "big1"), ("big1", "big2"),
+                           ("big0", "seam0"), ("seam0", "cover0"), ("big2", "seam2"), ("seam2", "cover2"),
+                           ("floor", "brick0"), ("brick0", "brick1")}
+    assert states.pop(("brick0", "brick1")) == "open" and set(states.values()) == {"unloaded"}
+    lengths = np.hypot(joints["x1"] - joints["x0"], joints["y1"] - joints["y0"])
+    assert sorted(lengths) == pytest.approx([0.2, 0.2, 20, 20, 40, 40, 50, 50, 50, 50, 50])
+
+
 def test_strength_used_is_one_where_contacts_slip(opening):
     frame = opening.at(float(opening.stages["end"][2]))  # at rest: no dashpots
     used, state = strength_used(frame), frame.contacts["state"]

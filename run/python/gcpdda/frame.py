@@ -193,14 +193,15 @@ class Frame:
         contacts also where output.contacts = false leaves the settled state without."""
         start, now = self.result.start, self._pair_states
         before = start._pair_states if start.has_contacts else {}
-        closed = 1e-6 * float(np.median(np.sqrt(self.areas))) if len(table) else 0.0
+        rows = np.searchsorted(self.ids, table[["block_a", "block_b"]].to_numpy())
+        closed = 1e-6 * np.sqrt(self.areas)[rows].min(axis=1)
         states = []
-        for a, b, opening in zip(table["block_a"], table["block_b"], table["opening"]):
+        for a, b, is_closed in zip(table["block_a"], table["block_b"], table["opening"] < closed):
             state = now.get((a, b), 0)
             if before.get((a, b), 0) == 3 and state != 3:
                 states.append("broken")
             else:
-                states.append("unloaded" if state == 0 and opening < closed else STATES[state])
+                states.append("unloaded" if state == 0 and is_closed else STATES[state])
         return states
 
     @functools.cached_property

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 STATES = ("open", "stick", "slip", "bond")  # by the number of a contact's state; 0 is no contact
+LEAST_LENGTH = 1e-2  # of a joint, in sizes of the smaller block
 
 
 class Joints(NamedTuple):
@@ -16,8 +17,9 @@ class Joints(NamedTuple):
 
 
 def find_joints(frame, gap=5e-3):
-    """The joints of a frame: pairs of edges of opposite direction, not farther from each other than `gap` median block
-    sizes. Fixed blocks have no joints with each other."""
+    """The joints of a frame: pairs of edges of opposite direction, not farther from each other than `gap` times the
+    size of the smaller of their blocks, which is the root of its area, and of any block between them. Fixed blocks have
+    no joints with each other."""
     points, offsets = frame.points, frame.offsets
     if not len(frame.ids):
         return Joints(np.empty((0, 2), dtype=int), np.empty((0, 2, 2)))
@@ -29,18 +31,19 @@ def find_joints(frame, gap=5e-3):
     clockwise = _signed_areas(points, points[following], offsets) < 0.0
     turned = clockwise[owner]
     begin[turned], end[turned] = end[turned], points[turned]
-    size = float(np.median(np.sqrt(frame.areas)))
-    tolerance = gap * size
+    size = np.sqrt(frame.areas)[owner]
 
-    low, high = np.minimum(begin, end) - tolerance, np.maximum(begin, end) + tolerance
+    # The boxes of two edges that lie on each other meet where each is larger by the tolerance of its own block.
+    reach = gap * size[:, None]
+    low, high = np.minimum(begin, end) - reach, np.maximum(begin, end) + reach
     order = np.argsort(low[:, 0], kind="stable")
-    begin, end, owner, low, high = begin[order], end[order], owner[order], low[order], high[order]
+    begin, end, owner, size, low, high = begin[order], end[order], owner[order], size[order], low[order], high[order]
     fixed = frame.fixed[owner]
     along = end - begin
     length = np.hypot(*along.T)
     along = along / np.maximum(length, 1e-300)[:, None]
     last = np.searchsorted(low[:, 0], high[:, 0], side="right")
-    pairs, lines = [], []
+    edges, parts, distances = [], [], []
     for first in range(len(begin)):
         near = np.arange(first + 1, last[first])
         near = near[(low[near, 1] <= high[first, 1]) & (high[near, 1] >= low[first, 1]) & (owner[near] != owner[first])]
@@ -54,14 +57,41 @@ def find_joints(frame, gap=5e-3):
         s0, s1 = np.maximum(s[0], 0.0), np.minimum(s[1], length[first])
         slope = -(along[near] @ n)
         distance = np.abs(middle @ n + slope * (0.5 * (s0 + s1) - middle @ t))
-        for k in np.flatnonzero((s1 - s0 > 1e-2 * size) & (distance <= tolerance)):
-            pairs.append((owner[first], owner[near[k]]))
-            lines.append((begin[first] + s0[k] * t, begin[first] + s1[k] * t))
-    pairs = frame.ids[np.array(pairs, dtype=int).reshape(-1, 2)]
-    lines = np.array(lines).reshape(-1, 2, 2)
+        smaller = np.minimum(size[near], size[first])
+        for k in np.flatnonzero((s1 - s0 > LEAST_LENGTH * smaller) & (distance <= gap * smaller)):
+            edges.append((first, near[k]))
+            parts.append((s0[k], s1[k]))
+            distances.append(distance[k])
+    edges, parts = np.array(edges, dtype=int).reshape(-1, 2), np.array(parts).reshape(-1, 2)
+    first = edges[:, 0]
+    lines = begin[first, None] + parts[:, :, None] * along[first, None]
+    on_second = np.einsum("nki,ni->nk", lines - begin[edges[:, 1], None], along[edges[:, 1]])[:, ::-1]
+    places = np.concatenate([parts, on_second])
+    kept = ~_has_blocks_between(edges.T.ravel(), places, np.array(distances), size[edges].min(axis=1), gap)
+    pairs, lines = frame.ids[owner[edges[kept]]], lines[kept]
     swapped = pairs[:, 0] > pairs[:, 1]
     pairs[swapped], lines[swapped] = pairs[swapped][:, ::-1], lines[swapped][:, ::-1]
     return Joints(pairs, lines)
+
+
+def _has_blocks_between(edge, places, distance, size, gap):
+    """True for each pair of edges that is farther apart than a smaller block on the same part of one of them allows.
+    The first half of `edge` and `places`, its part in m along the edge, is of the first edges, the second half of the
+    others; `size` is that of the smaller block."""
+    pair = np.tile(np.arange(len(distance)), 2)
+    order = np.lexsort((places[:, 0], edge))
+    edge, (begin, end), pair = edge[order], places[order].T, pair[order]
+    between = np.zeros(len(distance), dtype=bool)
+    # Parts of one edge are sorted by their beginnings: row k is compared with row k + step while the two overlap.
+    ahead, step = np.arange(len(edge)), 0
+    while len(ahead):
+        step += 1
+        ahead = ahead[ahead + step < len(edge)]
+        ahead = ahead[(edge[ahead + step] == edge[ahead]) & (begin[ahead + step] < end[ahead])]
+        common = np.minimum(end[ahead], end[ahead + step]) - begin[ahead + step]
+        for one, other in ((pair[ahead], pair[ahead + step]), (pair[ahead + step], pair[ahead])):
+            between[one[(common > LEAST_LENGTH * size[other]) & (distance[one] > gap * size[other])]] = True
+    return between
 
 
 def _signed_areas(p, q, offsets):
