@@ -8,7 +8,7 @@ import pytest
 import gcpdda
 from gcpdda.joints import strength_used
 from gcpdda.plot.layers import Shown
-from gcpdda.plot.water import waters
+from gcpdda.plot.water import Pressure, waters
 from gcpdda.result import trial_folder
 
 
@@ -359,6 +359,23 @@ def test_strengths_and_water_of_stages_are_known_while_a_run_goes_on(tmp_path):
             used = 1e5 / ((1e6 + 2600 * 9.81) * np.tan(np.radians(friction)))
             assert strength_used(frame) == pytest.approx(used, rel=0.01)  # what still moves
             assert waters(one, frame.time)["low"]["phreatic"][0][1] == level
+
+
+def test_pictures_use_the_gravity_and_damping_that_stages_set(tmp_path):
+    """The pressure of water at the bottom of a block, 2 m below the phreatic line."""
+    scene = gcpdda.Scene(name="heavy", fidelity="rigid")
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e10, friction_angle_deg=35)
+    scene.block("floor", [[0, -1], [4, -1], [4, 0], [0, 0]], "rock", fixed=True)
+    scene.block("block", [[1, 0], [2, 0], [2, 1], [1, 1]], "rock")
+    scene.table("water.low", phreatic=[[0, 2], [4, 2]])
+    scene.stage("light", "settle", limit=3)
+    scene.stage("heavy", "settle", limit=3, set={"run.gravity": [0.0, -98.1], "water.low.density": 1100.0,
+                                                 "run.rayleigh": {"ratio": 0.05, "frequency": 5.0}})
+    result = gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    for frame, expected in ((result.before("heavy"), 1000 * 9.81 * 2), (result.frame("last"), 1100 * 98.1 * 2)):
+        assert Pressure().lines(Shown(frame))[1].max() == pytest.approx(expected, rel=1e-4)
+    assert result.plot.rayleigh().axes[0].texts[0].get_text() == "0.05 at 5 Hz"
 
 
 def test_fos_and_ensemble(search, members):

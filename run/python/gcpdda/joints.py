@@ -149,10 +149,7 @@ def track(joints, first, frame):
 
 def strength_laws(result, time):
     """The laws of a scene as they are at a time, with what stages have set: {name: keys}, keys of default filled in."""
-    laws = {name: dict(keys) for name, keys in result.scene["joint"].items()}
-    for parts, value in result.set_by_stages(time).items():
-        if parts[0] == "joint" and len(parts) == 3:
-            laws.setdefault(parts[1], {})[parts[2]] = value
+    laws = result.table_at("joint", time)
     default = laws.get("default", {})
     inherited = {key: value for key, value in default.items() if key != "materials"}
     # The law of rollers that the program adds has neither friction nor cohesion.

@@ -1,5 +1,6 @@
 """Result folders as tables. Everything is read when it is asked for, also while the run goes on."""
 
+import copy
 import functools
 import io
 import json
@@ -205,9 +206,19 @@ class Result(Folder):
         values = {}
         for name, stage in self._stage_tables.items():
             begin = begins.get(name)
-            if begin is not None and (begin == 0.0 or begin < time - 1e-9 * max(time, 1.0)):
+            if begin is not None and (begin == 0.0 or begin + 1e-9 * max(begin, 1.0) < time):
                 values |= {path_parts(path): value for path, value in stage.get("set", {}).items()}
         return values
+
+    def table_at(self, name, time):
+        """The table [name] of the scene as it is at a time in s, with what stages have set; empty without one."""
+        table = copy.deepcopy(self.scene.get(name, {}))
+        for parts, value in self.set_by_stages(time).items():
+            if parts[0] == name and len(parts) == 2:
+                table[parts[1]] = value
+            elif parts[0] == name and len(parts) == 3:
+                table.setdefault(parts[1], {})[parts[2]] = value
+        return table
 
     @property
     def frames(self):

@@ -153,7 +153,7 @@ class Plots:
         return _finished(over_time.draw_liners(self.result), out, dpi)
 
     def rayleigh(self, *, dpi=160, out=None):
-        """Damping ratio over frequency of run.rayleigh."""
+        """Damping ratio over frequency of run.rayleigh as it is at the end of the run."""
         return _finished(over_time.draw_rayleigh(self.result), out, dpi)
 
     def _frames(self, which):

@@ -224,8 +224,8 @@ def draw_liners(result):
 
 
 def draw_rayleigh(result):
-    """Damping ratio over frequency of run.rayleigh, and the shares of alpha and beta."""
-    rayleigh = result.scene["run"].get("rayleigh")
+    """Damping ratio over frequency of run.rayleigh as it is at the end of the run, and the shares of alpha and beta."""
+    rayleigh = result.table_at("run", np.inf).get("rayleigh")
     if rayleigh is None:
         raise ValueError(f"{result.path / 'scene.toml'} has no run.rayleigh")
     ratio, least = float(rayleigh["ratio"]), float(rayleigh["frequency"])

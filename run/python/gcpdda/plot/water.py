@@ -11,11 +11,7 @@ PRESSURE = LinearSegmentedColormap.from_list("pressure", ["#b9dcf2", "#2f7fd6", 
 
 def waters(result, time):
     """The water tables of a scene as they are at a time, with what stages have set: {name: keys}."""
-    tables = {name: dict(keys) for name, keys in result.scene.get("water", {}).items()}
-    for parts, value in result.set_by_stages(time).items():
-        if parts[0] == "water" and len(parts) == 3 and parts[1] in tables:
-            tables[parts[1]][parts[2]] = value
-    return tables
+    return result.table_at("water", time)
 
 
 class Water(Layer):
@@ -41,7 +37,7 @@ class Pressure(Coloured):
 
     def lines(self, shown):
         frame = shown.frame
-        gravity = float(np.hypot(*frame.result.scene["run"].get("gravity", [0.0, -9.81])))
+        gravity = float(np.hypot(*frame.result.table_at("run", frame.time).get("gravity", [0.0, -9.81])))
         following = np.arange(1, len(shown.points) + 1)
         following[shown.offsets[1:] - 1] = shown.offsets[:-1]
         mobile = ~np.repeat(frame.fixed, np.diff(shown.offsets))
