@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gcpdda
-from gcpdda.joints import strength_used
+from gcpdda.joints import strength_laws, strength_used
 from gcpdda.plot.layers import Shown
 from gcpdda.plot.water import Pressure, waters
 from gcpdda.result import trial_folder
@@ -206,7 +206,6 @@ def test_rollers_have_a_law_and_names(tmp_path):
 
 
 def test_strength_follows_the_stages_and_the_trial(opening, search):
-    from gcpdda.joints import strength_laws
     scene = dict(opening.scene)
     scene["stage"] = [dict(stage) for stage in scene["stage"]]
     scene["stage"][2]["set"] = {"joint.default.friction_angle_deg": 10.0}
@@ -359,6 +358,31 @@ def test_strengths_and_water_of_stages_are_known_while_a_run_goes_on(tmp_path):
             used = 1e5 / ((1e6 + 2600 * 9.81) * np.tan(np.radians(friction)))
             assert strength_used(frame) == pytest.approx(used, rel=0.01)  # what still moves
             assert waters(one, frame.time)["low"]["phreatic"][0][1] == level
+
+
+@pytest.mark.parametrize("last_stage", ["weak", "stone"])
+def test_the_last_frame_shows_what_closing_stages_set(tmp_path, last_stage):
+    """The run ends with a stage of kind change, or with an excavation after it: their frame has the time of the one
+    before."""
+    scene = bonded_block(1e5)
+    scene.tables["joint"]["default"] = {"normal_stiffness": 1e9, "friction_angle_deg": 35}
+    scene.table("water.low", phreatic=[[-10.0, 0.5], [10.0, 0.5]])
+    scene.block("stone", [[1.4, 0], [1.6, 0], [1.6, 0.2], [1.4, 0.2]], material="rock")
+    scene.stage("weak", "change", set={"joint.default.friction_angle_deg": 20.0, "water.low.active": False})
+    if last_stage == "stone":
+        scene.stage("stone", "excavate", blocks=["stone"])
+    result = gcpdda.run(scene, ranks=1, out=tmp_path / "run")
+    before, last = result.frames[-2:]
+    assert before.time == last.time and len(before.ids) - len(last.ids) == (last_stage == "stone")
+    assert result.at_end_of("shear") is before and result.before("weak") is before
+    assert result.at_end_of(last_stage) is last and result.at(last.time) is last
+    for frame, active, friction in ((before, True, 35.0), (last, False, 20.0)):
+        assert waters(result, frame)["low"].get("active", True) == active
+        assert strength_laws(result, frame)["default"]["friction_angle_deg"] == friction
+        assert bool(len(Pressure().lines(Shown(frame))[0])) == active
+    assert not waters(result, last.time)["low"]["active"]
+    ratio = strength_used(last)[0] / strength_used(before)[0]
+    assert ratio == pytest.approx(np.tan(np.radians(35.0)) / np.tan(np.radians(20.0)), rel=1e-9)
 
 
 def test_pictures_use_the_gravity_and_damping_that_stages_set(tmp_path):

@@ -147,9 +147,10 @@ def track(joints, first, frame):
     return np.stack([on_a, on_b], axis=1), opening, np.einsum("ni,ni->n", apart, tangent), there
 
 
-def strength_laws(result, time):
-    """The laws of a scene as they are at a time, with what stages have set: {name: keys}, keys of default filled in."""
-    laws = result.table_at("joint", time)
+def strength_laws(result, at):
+    """The laws of a scene as they are at a frame or a time in s, with what stages have set: {name: keys}, keys of
+    default filled in."""
+    laws = result.table_at("joint", at)
     default = laws.get("default", {})
     inherited = {key: value for key, value in default.items() if key != "materials"}
     # The law of rollers that the program adds has neither friction nor cohesion.
@@ -199,7 +200,7 @@ def pressed_bonds(data):
 def _strengths(frame, normal):
     """N tan phi + c l of each contact region in N/m, with the normal forces N in N/m."""
     data = frame._contact_data
-    laws = strength_laws(frame.result, frame.time)
+    laws = strength_laws(frame.result, frame)
     factor, families = frame.result.weakened
     length = np.hypot(*(data["lines"][:, 1] - data["lines"][:, 0]).T)
     strength = np.zeros(len(normal))

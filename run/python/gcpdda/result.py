@@ -74,6 +74,22 @@ def path_parts(path):
     return tuple("".join(found) for found in re.findall(r"\"([^\"]*)\"|'([^']*)'|([^.\s\"']+)", path))
 
 
+def _is_same_time(a, b):
+    return abs(a - b) <= 1e-9 * max(a, 1.0)
+
+
+def _takes_no_time(stage):
+    """True for a row of `Result.stages` that has ended when it began, as excavations do."""
+    return stage["verdict"] != "goes on" and _is_same_time(stage["begin"], stage["end"])
+
+
+def _is_later(frame):
+    """True for a frame that has the time of the frame before it: stages that take no time lie between the two."""
+    frames = frame.result.frames
+    place = [one.number for one in frames].index(frame.number)
+    return place > 0 and _is_same_time(frames[place - 1].time, frame.time)
+
+
 def trial_folder(factor):
     """Name of the folder of a trial of `gcpdda fos`."""
     return f"F{factor:.9g}"
@@ -198,22 +214,26 @@ class Result(Folder):
         last = [] if going_on is None else [{"name": going_on, "verdict": "goes on", "time": self.reached}]
         return [*ended.values(), *last]
 
-    def set_by_stages(self, time):
-        """Values of the scene that stages which began before a time in s have set, by the parts of their paths:
-        {("joint", "default", "cohesion"): value}."""
-        stages = self.stages
-        begins = dict(zip(stages["name"], stages["begin"]))
-        values = {}
-        for name, stage in self._stage_tables.items():
-            begin = begins.get(name)
-            if begin is not None and (begin == 0.0 or begin + 1e-9 * max(begin, 1.0) < time):
-                values |= {path_parts(path): value for path, value in stage.get("set", {}).items()}
+    def set_by_stages(self, at):
+        """Values of the scene that stages which began before a frame have set, by the parts of their paths:
+        {("joint", "default", "cohesion"): value}. A time in s stands for the last frame that is not later."""
+        time = at.time if isinstance(at, Frame) else at
+        tables, values = self._stage_tables, {}
+        for stage in self.stages.to_dict("records"):
+            begin = stage["begin"]
+            begun = begin == 0.0 or begin < time
+            if begin > 0.0 and _is_same_time(begin, time):
+                begun = _takes_no_time(stage) and _is_later(at if isinstance(at, Frame) else self.at(at))
+            if begun:
+                settings = tables.get(stage["name"], {}).get("set", {})
+                values |= {path_parts(path): value for path, value in settings.items()}
         return values
 
-    def table_at(self, name, time):
-        """The table [name] of the scene as it is at a time in s, with what stages have set; empty without one."""
+    def table_at(self, name, at):
+        """The table [name] of the scene as it is at a frame or a time in s, with what stages have set; empty without
+        one."""
         table = copy.deepcopy(self.scene.get(name, {}))
-        for parts, value in self.set_by_stages(time).items():
+        for parts, value in self.set_by_stages(at).items():
             if parts[0] == name and len(parts) == 2:
                 table[parts[1]] = value
             elif parts[0] == name and len(parts) == 3:
@@ -271,13 +291,16 @@ class Result(Folder):
         return self.at(0.0) if place == 0 else self.at_end_of(self.stages["name"][place - 1])
 
     def at_end_of(self, stage):
-        """The frame at the end of a stage. Frames of later stages that take no time have the same time but fewer
-        blocks."""
+        """The frame at the end of a stage. Where the last stages take no time, the frame of the last one has the time
+        of the frame before them. A stage between the two has the frame with the blocks that the stage leaves."""
         place, stages = self._place_of(stage), self.stages
         end = float(stages["end"][place])
-        alike = [frame for frame in self.frames if abs(frame.time - end) <= 1e-9 * max(end, 1.0)]
+        alike = [frame for frame in self.frames if _is_same_time(frame.time, end)]
         if len(alike) < 2:
             return self.at(end)
+        after = stages[place + 1:].to_dict("records")
+        if _takes_no_time(stages.iloc[place]) and not any(map(_takes_no_time, after[:1])):
+            return alike[-1]
         left = len(self.frame("first").ids) - stages["removed"].fillna(0)[:place + 1].sum()
         return next((frame for frame in alike if len(frame.ids) == left), alike[0])
 

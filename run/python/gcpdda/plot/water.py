@@ -9,18 +9,17 @@ from .layers import Coloured, Layer
 PRESSURE = LinearSegmentedColormap.from_list("pressure", ["#b9dcf2", "#2f7fd6", "#0b2a63"])
 
 
-def waters(result, time):
-    """The water tables of a scene as they are at a time, with what stages have set: {name: keys}."""
-    return result.table_at("water", time)
+def waters(result, at):
+    """The water tables of a scene as they are at a frame or a time in s, with what stages have set: {name: keys}."""
+    return result.table_at("water", at)
 
 
 class Water(Layer):
-    """Phreatic lines, level beyond their ends: dashed where there is water at the time of the frame, faint where
-    not."""
+    """Phreatic lines, level beyond their ends: dashed where there is water in the frame, faint where not."""
 
     def draw(self, axes, shown, window):
         left, right = window[0][0], window[1][0]
-        for table in waters(shown.frame.result, shown.time).values():
+        for table in waters(shown.frame.result, shown.frame).values():
             x, y = np.array(table["phreatic"], dtype=float).T
             at = np.concatenate(([left], x[(x > left) & (x < right)], [right]))
             active = table.get("active", True)
@@ -37,13 +36,13 @@ class Pressure(Coloured):
 
     def lines(self, shown):
         frame = shown.frame
-        gravity = float(np.hypot(*frame.result.table_at("run", frame.time).get("gravity", [0.0, -9.81])))
+        gravity = float(np.hypot(*frame.result.table_at("run", frame).get("gravity", [0.0, -9.81])))
         following = np.arange(1, len(shown.points) + 1)
         following[shown.offsets[1:] - 1] = shown.offsets[:-1]
         mobile = ~np.repeat(frame.fixed, np.diff(shown.offsets))
         edges = np.stack([shown.points, shown.points[following]], axis=1)[mobile]
         lines, values = [np.empty((0, 2, 2))], [np.empty(0)]
-        for table in waters(frame.result, frame.time).values():
+        for table in waters(frame.result, frame).values():
             if not table.get("active", True):
                 continue
             wetted = edges
