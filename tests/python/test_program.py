@@ -123,6 +123,34 @@ def test_files_of_a_scene_are_found_from_its_new_place(tmp_path):
     assert written["earthquake"]["record"] == str(SCENES / "seismic_slope.csv")
 
 
+def test_files_in_values_to_set_are_found_from_the_folder_of_the_scene(tmp_path):
+    """The record of a sweep, a table of an earthquake, mapped traces and a file of blocks."""
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    for name, speed in (("slow", 0.1), ("fast", 0.2)):
+        (folder / f"{name}.csv").write_text(f"0,0\n0.1,{speed}\n")
+    slider = sliding_block()
+    slider.table("output", interval=0.1)
+    slider.write(folder / "slider.toml")
+    scene = gcpdda.Scene.read(folder / "slider.toml")
+    scene.table("earthquake", record="slow.csv")
+    tables = []
+    for number, one in enumerate((scene, scene.write(folder / "path.toml"))):
+        values = {"earthquake.record": ["slow.csv", pathlib.Path("fast.csv")]}
+        tables.append(gcpdda.sweep(one, values, ranks=1, out=tmp_path / str(number)))
+        assert list(tables[-1]["message"]) == ["", ""] and list(tables[-1]["verdict"]) == ["completed"] * 2
+    moved = [list(table["largest_displacement"]) for table in tables]
+    assert moved[0] == moved[1] and moved[0][0] != moved[0][1]
+    gcpdda.inspect(scene, set={"earthquake": {"record": "fast.csv"}})
+
+    bench = gcpdda.Scene.read(SCENES / "jointed_bench.toml")
+    traces = bench.tables.pop("joint_map")
+    assert traces[0]["file"] == "jointed_bench_traces.csv"
+    found = bench.values_to_set({"joint_map": traces, "blocks.file": "b.h5"})
+    assert found["joint_map"] == [traces[0] | {"file": str(SCENES / traces[0]["file"])}]
+    assert found["blocks.file"] == str(SCENES / "b.h5") and traces[0]["file"] == "jointed_bench_traces.csv"
+
+
 def test_faults_of_a_scene_are_an_exception_with_their_lines(tmp_path):
     scene = sliding_block()
     scene.joint("default", friction_angle_deg=95.0)

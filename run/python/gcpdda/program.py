@@ -38,7 +38,8 @@ def program(path=None):
 def run(scene, ranks=2, set=None, out=None, *, overwrite=False, progress=False, program=None):
     """Runs a scene, a path or a `Scene`, and returns its `Result`.
 
-    set         values of the scene to replace, by path: {"joint.default.friction_angle_deg": 36}
+    set         values of the scene to replace, by path: {"joint.default.friction_angle_deg": 36}; files in them are
+                found from the folder of the scene
     out         result folder; results/<name of the scene> if not given. A `Scene` is written as OUT.toml beside it;
                 the file that it was read from is never replaced
     overwrite   whether a run in the result folder is replaced; otherwise it is an error (FileError)
@@ -139,6 +140,7 @@ def _execute(task, scene, ranks, values, out, overwrite, progress, executable, w
     """Runs the program, returns what it prints, raises the exception for its exit code."""
     written, before = None, None
     if isinstance(scene, Scene):
+        values = scene.values_to_set(values or {})
         scene, written, before = _written(scene, out.with_name(out.name + ".toml"))
     command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     command += [program(executable), task, str(scene), *words]

@@ -7,6 +7,8 @@ import pathlib
 import re
 import tomllib
 
+from .result import path_parts
+
 # Keys whose values are paths from the folder of the scene file.
 _PATHS = {("blocks", "file"), ("joint_map", "file"), ("earthquake", "record")}
 
@@ -127,15 +129,32 @@ class Scene:
         """Whether a file is the one that the scene was read from."""
         return self.file is not None and pathlib.Path(path).exists() and self.file.exists() and self.file.samefile(path)
 
+    def values_to_set(self, values):
+        """Values by path for --set, {"earthquake.record": "record.csv"}: files in them are found from any place."""
+        found = {}
+        for path, value in values.items():
+            *parts, last = path_parts(path) or (path,)
+            table = {last: copy.deepcopy(value)}
+            tables = table
+            for part in reversed(parts):
+                tables = {part: tables}
+            self._complete_paths(tables)
+            found[path] = table[last]
+        return found
+
+    def _complete_paths(self, tables):
+        """Replaces paths that start from the folder of the scene by those from the root."""
+        for name, key in _PATHS:
+            found = tables.get(name, [])
+            for table in found if isinstance(found, list) else [found]:
+                if isinstance(table, dict) and isinstance(table.get(key), (str, pathlib.PurePath)):
+                    table[key] = str((self.folder / table[key]).resolve())
+
     def write(self, path):
         """Writes the scene as TOML and returns the path. Files it names are found from the new place, too."""
         path = pathlib.Path(path)
         moved = self.copy()
-        for name, key in _PATHS:
-            tables = moved.tables.get(name, [])
-            for table in tables if isinstance(tables, list) else [tables]:
-                if key in table:
-                    table[key] = str((self.folder / table[key]).resolve())
+        self._complete_paths(moved.tables)
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(moved.toml())
         return path
