@@ -42,9 +42,18 @@ def test_a_scene_built_in_code_runs(tmp_path):
 
 def test_ranks_give_the_same_frames(tmp_path):
     one = gcpdda.run(SCENES / "opening.toml", ranks=1, out=tmp_path / "one")
-    two = gcpdda.run(SCENES / "opening.toml", ranks=2, out=tmp_path / "two")
+    two = gcpdda.run(SCENES / "opening.toml", ranks=np.int64(2), out=tmp_path / "two")
     assert two.summary["ranks"] == 2
     assert one.frame("last").blocks.equals(two.frame("last").blocks)
+
+
+@pytest.mark.parametrize("ranks", [0, -1, 2.0, True, "2", None])
+def test_ranks_are_a_positive_whole_number(tmp_path, ranks):
+    for start in (gcpdda.run, gcpdda.fos, gcpdda.ensemble,
+                  lambda scene, **options: gcpdda.sweep(scene, {"joint.default.friction_angle_deg": [30]}, **options)):
+        with pytest.raises(ValueError, match="try ranks=1"):
+            start(sliding_block(), ranks=ranks, out=tmp_path / "run")
+    assert not list(tmp_path.iterdir())
 
 
 def test_toml_holds_what_was_put_in():

@@ -1,6 +1,7 @@
 """Runs the program gcpdda and turns its exit codes into exceptions."""
 
 import itertools
+import numbers
 import os
 import pathlib
 import queue
@@ -38,6 +39,7 @@ def program(path=None):
 def run(scene, ranks=2, set=None, out=None, *, overwrite=False, progress=False, program=None):
     """Runs a scene, a path or a `Scene`, and returns its `Result`.
 
+    ranks       number of processes among which the blocks are divided, 1 or more
     set         values of the scene to replace, by path: {"joint.default.friction_angle_deg": 36}; files in them are
                 found from the folder of the scene
     out         result folder; results/<name of the scene> if not given. A `Scene` is written as OUT.toml beside it;
@@ -138,6 +140,9 @@ def _environment(ranks):
 
 def _execute(task, scene, ranks, values, out, overwrite, progress, executable, words):
     """Runs the program, returns what it prints, raises the exception for its exit code."""
+    if isinstance(ranks, bool) or not isinstance(ranks, numbers.Integral) or ranks < 1:
+        raise ValueError(f"ranks is {ranks!r}, which is no positive whole number, and the program cannot start on it; "
+                         "try ranks=1, or ranks=2")
     written, before = None, None
     if isinstance(scene, Scene):
         values = scene.values_to_set(values or {})
