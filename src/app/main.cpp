@@ -21,6 +21,7 @@
 #include "gcpdda/io/scene_reader.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "io/hdf5/unclosed_files.hpp"
+#include "io/scene/record_file.hpp"
 #include "io/scene/scene_reference.hpp"
 #include "simulation/plausibility.hpp"
 #include "simulation/plausible_ranges.hpp"
@@ -225,7 +226,9 @@ ExitCode ensemble(const Communicator &world, Arguments arguments) {
   const std::string text = read_scene_on_root(world, arguments.scene);
   return with_scene(world, arguments, text, [&](const Scene &scene) {
     judge_before_work(world, arguments, scene, copies_in(scene.ensemble, world.size()));
-    print(world, implausible_values(scene)); // members are quiet
+    Scene shaken = scene; // members are quiet, and tell of a record that cannot be read
+    open_record(world, shaken);
+    print(world, implausible_values(shaken));
     const auto member_scene = [&](const Communicator &group, const std::vector<double> &values) {
       std::vector<std::string> sets = arguments.sets;
       for (std::size_t i = 0; i < values.size(); ++i) {

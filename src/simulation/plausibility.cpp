@@ -2,10 +2,10 @@
 
 #include "io/scene/joint_parameters.hpp"
 
-#include "base/check.hpp"
 #include "geometry/aabb.hpp"
 #include "geometry/polygon.hpp"
 #include "simulation/plausible_ranges.hpp"
+#include "simulation/shaking_doubts.hpp"
 #include "simulation/short_traces.hpp"
 
 #include <fmt/format.h>
@@ -31,14 +31,6 @@ std::string name_in(const std::string &label) {
   const std::size_t first = label.find('\'');
   const std::size_t last = label.rfind('\'');
   return first < last ? label.substr(first + 1, last - first - 1) : label;
-}
-
-const PlausibleRange &range_of(std::string_view key) {
-  const std::span<const PlausibleRange> ranges = plausible_ranges();
-  const auto found =
-      std::find_if(ranges.begin(), ranges.end(), [&](const auto &row) { return row.key == key; });
-  expect(found != ranges.end(), "plausibility: a key has a range");
-  return *found;
 }
 
 bool is_normalised(const Scene &scene) {
@@ -85,7 +77,7 @@ public:
   /// A value that the scene gives at `path`, or that stands in a table which knows its place.
   void judge(std::string_view key, const std::string &path, double value,
              const SourcePosition &fallback = {}) {
-    const PlausibleRange &row = range_of(key);
+    const PlausibleRange &row = plausible_range(key);
     const auto place = place_of(path, fallback);
     const double size = std::abs(value);
     const bool judged = !only_ratios_ || row.unit.empty() || row.unit == "degrees";
@@ -106,6 +98,8 @@ public:
     }
     ++kind->second.count;
   }
+
+  void add(const Diagnostics &found) { others_.insert(others_.end(), found.begin(), found.end()); }
 
   void warn(const SourcePosition &where, std::string what, std::string why, std::string hint) {
     others_.push_back({Severity::warning, where, std::move(what), std::move(why), std::move(hint)});
@@ -367,27 +361,7 @@ void judge_earthquake(Doubts &doubts) {
   const Earthquake &earthquake = doubts.scene().earthquake;
   doubts.judge("earthquake.p_wave_speed", "earthquake.p_wave_speed", earthquake.p_wave_speed);
   doubts.judge("earthquake.s_wave_speed", "earthquake.s_wave_speed", earthquake.s_wave_speed);
-  double peak = 0.0;
-  for (const RecordRow &row : earthquake.record) {
-    peak = std::max(peak, std::abs(earthquake.scale) * norm(row.value));
-  }
-  const bool is_scaled = doubts.scene().places.contains("earthquake.scale") || earthquake.scale != 1.0;
-  const bool is_acceleration = earthquake.quantity == RecordQuantity::acceleration;
-  constexpr double weakest = 1.0;             // m/s2; a shaking that breaks nothing
-  constexpr double strongest[] = {5.0, 50.0}; // m/s and m/s2; twice what has been measured
-  const auto warn = [&](const char *why, const std::string &hint) {
-    doubts.warn(earthquake.where,
-                fmt::format("the peak of the record is {:.3g} {}", peak, is_acceleration ? "m/s2" : "m/s"),
-                why, hint);
-  };
-  if (is_acceleration && !is_scaled && peak > 0.0 && peak < weakest) {
-    warn("an earthquake of a tenth of gravity moves no rock",
-         "if the record is in g, set earthquake.scale = 9.81; if it is in m/s2, write scale = 1.0");
-  } else if (peak > strongest[is_acceleration ? 1 : 0]) {
-    warn("no earthquake has been measured that was half as strong",
-         fmt::format("if the record is in cm, set earthquake.scale = {:g}; in mm, {:g}",
-                     1e-2 * earthquake.scale, 1e-3 * earthquake.scale));
-  }
+  doubts.add(doubts_of_shaking(doubts.scene()));
 }
 
 /// What begins or comes round after the end of the run never does.

@@ -1,10 +1,12 @@
 
 #include "simulation/plausible_ranges.hpp"
 
+#include "base/check.hpp"
 #include "io/scene/joint_parameters.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 namespace gcpdda {
@@ -50,6 +52,8 @@ const std::vector<PlausibleRange> ranges_after_joints{
   {"in_situ.stress", "Pa", 5e3, 1e9, 5e6, of_stress, "a load on the surface to the rock of the deepest mines has", "EN 1991-1-1 table 6.2: crowds 5 kPa; Brown & Hoek (1978): 27 kPa for each metre of depth"},
   {"in_situ.k0", "", 0.05, 15, 1, of_share, "measurements have", "Brown & Hoek (1978): 0.3 + 100/depth to 0.5 + 1500/depth"},
   {"in_situ.density", "kg/m3", 300, 12000, 2500, of_density, "soil, concrete, rock and ore have", "EN 1991-1-1 annex A"},
+  {"earthquake.record.acceleration", "m/s2", 1, 20, 3, {{1e-2, "cm/s2"}, {1e-3, "mm/s2"}, {earth_gravity, "g"}}, "records of strong shaking have peaks of", "Strasser & Bommer (2009): few records exceed 2 g"},
+  {"earthquake.record.velocity", "m/s", 0, 3, 0.3, {{1e-2, "cm/s"}, {1e-3, "mm/s"}}, "records of strong shaking have peaks of", "Strasser & Bommer (2009): about 3 m/s at most"},
   {"earthquake.p_wave_speed", "m/s", 100, 1e4, 3000, {{1e3, "km/s"}}, "soil to fresh rock has", "Lama & Vutukuri (1978); Kramer (1996)"},
   {"earthquake.s_wave_speed", "m/s", 30, 7000, 1500, {{1e3, "km/s"}}, "soil to fresh rock has", "Lama & Vutukuri (1978); Kramer (1996)"},
   {"support.*.axial_stiffness", "N/m", 1e5, 1e11, 5e7, of_force_per_length, "bolts and cables have", bolt_sources},
@@ -93,7 +97,8 @@ Zero means "none" and is always plausible. Values that a scene leaves to their d
 normalised units has no unit slips: where gravity has the size 1, or all densities are 1, only angles and ratios are judged.
 `size` is the root of the area: of the median mobile block, of the region; of an opening it is its width. `velocity` and
 `spin` are those of `velocity`, `prescribed_velocity` and `velocity_table`; `gravity` is its size; `stress` is the larger of
-the principal values of [in_situ] at the level.
+the principal values of [in_situ] at the level. `record` is the peak of the record times `scale`; the lower bound of
+accelerations is judged where the scene does not give `scale`.
 
 Besides these values the following is warned of, each kind in one line with the number of places:
 
@@ -111,7 +116,9 @@ Besides these values the following is warned of, each kind in one line with the 
 | a monitor follows a block that a stage excavates | its history ends there |
 | blocks thinner than 1/20 of the median width under in-situ stress, and those that it presses together by more than 5 % of their width, which is refused | names the `min_width` that merges them; by default it is 1/20 of the smallest mean spacing with [in_situ] |
 | a load below 1/1000 of the weight of its block | N/m are meant, not kN/m |
-| a record of accelerations below 1 m/s2 without `scale`, or above 50 m/s2; of velocities above 5 m/s | g and cm are common units of records |
+| a record of velocities, without `quantity` in the scene, whose acceleration exceeds its range while its values are those of accelerations | accelerations are read as velocities |
+| a record that plays in a settle stage | the damping of the stage takes the motion that the record causes |
+| a record that is longer than what is left of the stages of kind `run`, or of the run | the rest of the record plays in a settle stage or not at all |
 
 ## Sources
 
@@ -131,6 +138,7 @@ Besides these values the following is warned of, each kind in one line with the 
 - Kramer, S. L. (1996): Geotechnical Earthquake Engineering, Prentice Hall.
 - Lama, R. D., Vutukuri, V. S. (1978): Handbook on Mechanical Properties of Rocks, Trans Tech.
 - Stillborg, B. (1994): Professional Users Handbook for Rock Bolting, 2nd ed., Trans Tech.
+- Strasser, F. O., Bommer, J. J. (2009): Strong ground motions - have we seen the worst? Bull. Seism. Soc. Am. 99, 2613-2637.
 - Taylor, R. N. (1995): Geotechnical Centrifuge Technology, Blackie.
 - Wyllie, D. C., Mah, C. W. (2004): Rock Slope Engineering, 4th ed., Spon.
 )";
@@ -150,6 +158,14 @@ std::span<const PlausibleRange> plausible_ranges() {
     return all;
   }();
   return ranges;
+}
+
+const PlausibleRange &plausible_range(std::string_view key) {
+  const std::span<const PlausibleRange> ranges = plausible_ranges();
+  const auto found =
+      std::find_if(ranges.begin(), ranges.end(), [&](const auto &row) { return row.key == key; });
+  expect(found != ranges.end(), "plausibility: a key has a range");
+  return *found;
 }
 
 std::string plausible_values_page() {

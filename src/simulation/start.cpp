@@ -347,13 +347,25 @@ void distribute(RunState &run, const Beginning &beginning) {
                                        run.communicator.size(), &run.neighbours.partition);
 }
 
+/// Warnings about values of the scene and of its stages, which the clock holds while it runs.
+Diagnostics doubts_of_values(RunState &run) {
+  if (!run.clock.is_staged) {
+    return implausible_values(run.scene);
+  }
+  std::swap(run.scene.stages, run.clock.stages);
+  Diagnostics doubts = implausible_values(run.scene);
+  std::swap(run.scene.stages, run.clock.stages);
+  return doubts;
+}
+
 } // namespace
 
 void start(RunState &run, const Beginning &beginning) {
-  run.notes = implausible_values(run.scene);
   run.loads.list_courses(run.scene, run.clock.stages);
   plan_all_stages(run);
   open_earthquake(run);
+  const Diagnostics doubts = doubts_of_values(run);
+  run.notes.insert(run.notes.begin(), doubts.begin(), doubts.end());
   stop_on_errors(run.notes);
   distribute(run, beginning);
   run.restored ? run.bolts.take_laws(run.scene) : change_support(run, {}, {});

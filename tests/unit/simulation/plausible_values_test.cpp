@@ -333,9 +333,14 @@ TEST(PlausibleValues, OfKeysThatExcludeOthers) {
 
 // A row without a test of its own would be found here.
 TEST(PlausibleValues, OfEveryRowAreTried) {
-  const std::set<std::string> elsewhere{
-      "run.contact_damping",   "joint.*.cohesion", "joint.*.friction_angle_deg",
-      "support.*.axial_yield", "block.*.size",     "region.size"};
+  const std::set<std::string> elsewhere{"earthquake.record.acceleration",
+                                        "earthquake.record.velocity",
+                                        "run.contact_damping",
+                                        "joint.*.cohesion",
+                                        "joint.*.friction_angle_deg",
+                                        "support.*.axial_yield",
+                                        "block.*.size",
+                                        "region.size"};
   for (const PlausibleRange &row : plausible_ranges()) {
     EXPECT_LT(row.low, row.high) << row.key;
     EXPECT_TRUE(row.typical >= row.low && row.typical <= row.high) << row.key;

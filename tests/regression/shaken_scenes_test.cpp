@@ -1,0 +1,81 @@
+// What a user is told of earthquakes, and what the summary of a run has of them.
+
+#include "child_process.hpp"
+#include "support/run_facts.hpp"
+#include "support/scenes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace gcpdda::shaken_scenes_test {
+namespace {
+
+using testing::block_toml;
+using testing::count_of;
+using testing::Outcome;
+using testing::placed;
+using testing::rectangle;
+using testing::run_gcpdda;
+using testing::WorkFolder;
+
+/// A slab on a plane of 10 degrees with a friction angle of 25 degrees.
+std::string slab_toml(const std::string &earthquake, const std::string &stages) {
+  constexpr double dip = 10.0 * std::numbers::pi / 180.0;
+  return "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600\n[joint.default]\n"
+         "normal_stiffness = 1e9\nfriction_angle_deg = 25\n[output]\ninterval = 0.1\n" +
+         block_toml("plane", placed(rectangle({-20.0, -2.0}, {20.0, 0.0}), dip, {}), "fixed = true") +
+         block_toml("slab", placed(rectangle({-1.0, 0.0}, {1.0, 1.0}), dip, {})) +
+         "[earthquake]\nrecord = \"push.csv\"\nquantity = \"acceleration\"\n" + earthquake + stages;
+}
+
+const std::string settle = "[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 5\n";
+const std::string shaking = "[[stage]]\nname = \"shaking\"\nkind = \"run\"\nduration = 1\n";
+const std::string rest = "[[stage]]\nname = \"rest\"\nkind = \"settle\"\nlimit = 5\n";
+
+/// Two sines of 2 Hz, m/s2; the ground ends at rest, and displaced by 0.3 m.
+std::string push_csv() {
+  std::string rows;
+  for (int k = 0; k <= 200; ++k) {
+    const double t = 0.005 * k;
+    rows += fmt::format("{:.3f}, {}\n", t, 4.0 * std::sin(4.0 * std::numbers::pi * t));
+  }
+  return rows;
+}
+
+TEST(ShakenScenes, AreDoubtedByRunAndInspect) {
+  const WorkFolder folder;
+  folder.write("push.csv", push_csv());
+  const auto expect_warning = [&](const std::string &earthquake, const std::string &stages,
+                                  const std::string &words, const std::vector<std::string> &sets = {}) {
+    folder.write("slab.toml", slab_toml(earthquake, stages));
+    for (const std::string command : {"run", "inspect"}) {
+      std::vector<std::string> line{command, "slab.toml"};
+      for (const std::string &set : sets) {
+        line.insert(line.end(), {"--set", set});
+      }
+      if (command == "run") {
+        line.insert(line.end(), {"--out", "out", "--overwrite"});
+      }
+      const Outcome outcome = run_gcpdda(0, line, folder);
+      const std::string told = outcome.out + outcome.err;
+      EXPECT_EQ(outcome.exit_code, 0) << told;
+      EXPECT_EQ(count_of(told, "warning: "), words.empty() ? 0 : 1) << told;
+      EXPECT_EQ(count_of(told, "warning: " + words), words.empty() ? 0 : 1) << told;
+    }
+  };
+  expect_warning("stage = \"shaking\"\n", settle + shaking, "");
+  expect_warning("", settle + shaking, "the record plays in stage 'weight', which is a settle stage");
+  expect_warning("stage = \"shaking\"\n", settle + shaking, "the peak of the record is 400 m/s2",
+                 {"earthquake.scale=100"});
+  expect_warning("stage = \"shaking\"\n", settle + shaking + rest,
+                 "stage 'shaking' ends after 0.5 s of the record", {"stage.shaking.duration=0.5"});
+  expect_warning("stage = \"shaking\"\n",
+                 settle + shaking + "set = { \"joint.default.friction_angle_deg\" = 0.4 }\n",
+                 "joint.default.friction_angle_deg is 0.4 degrees");
+}
+
+} // namespace
+} // namespace gcpdda::shaken_scenes_test
