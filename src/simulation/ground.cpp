@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 namespace gcpdda {
 
@@ -46,6 +47,20 @@ void wake_dashpots(RunState &run) {
   }
 }
 
+/// Which baseline would bring the ground to rest, or to rest where it began; empty where it does so already.
+std::string hint_at_baseline(const Earthquake &earthquake, const GroundMotion &ground) {
+  constexpr double negligible = 1e-9;
+  const double end = ground.duration();
+  const double speed = ground.peak_acceleration() * end;
+  const bool goes_on = norm(ground.velocity(end)) > negligible * speed;
+  const bool is_displaced = norm(ground.displacement(end)) > negligible * speed * end;
+  if (earthquake.quantity != RecordQuantity::acceleration || !(goes_on || is_displaced)) {
+    return "";
+  }
+  return goes_on ? "earthquake.baseline = \"displacement\" brings both to zero"
+                 : "earthquake.baseline = \"displacement\" brings the displacement to zero, too";
+}
+
 } // namespace
 
 void open_earthquake(RunState &run) {
@@ -62,9 +77,7 @@ void open_earthquake(RunState &run) {
                    run.scene.earthquake.record.size(), end, run.loads.ground.peak_acceleration()),
        fmt::format("at its end the ground moves with {:.2g} m/s and has moved by {:.2g} m",
                    norm(run.loads.ground.velocity(end)), norm(run.loads.ground.displacement(end))),
-       run.scene.earthquake.quantity == RecordQuantity::acceleration
-           ? "earthquake.baseline can bring both to zero"
-           : ""});
+       hint_at_baseline(run.scene.earthquake, run.loads.ground)});
 }
 
 Vec2 ground_acceleration(const RunState &run) {

@@ -77,5 +77,21 @@ TEST(ShakenScenes, AreDoubtedByRunAndInspect) {
                  "joint.default.friction_angle_deg is 0.4 degrees");
 }
 
+// The hint is given where it changes something.
+TEST(ShakenScenes, AreGivenABaselineThatHelps) {
+  const WorkFolder folder;
+  folder.write("push.csv", push_csv());
+  const auto hint = [&](const std::string &baseline) {
+    folder.write("slab.toml", slab_toml("stage = \"shaking\"\n" + baseline, settle + shaking));
+    const std::string text = run_gcpdda(0, {"inspect", "slab.toml"}, folder).out;
+    const std::size_t begin = text.find("m, earthquake.baseline");
+    return begin == std::string::npos ? "" : text.substr(begin + 3, text.find('\n', begin) - begin - 3);
+  };
+  EXPECT_EQ(hint(""), "earthquake.baseline = \"displacement\" brings the displacement to zero, too");
+  EXPECT_EQ(hint("baseline = \"displacement\"\n"), "");
+  folder.write("push.csv", "0, 1.0\n1.0, 1.0\n");
+  EXPECT_EQ(hint(""), "earthquake.baseline = \"displacement\" brings both to zero");
+}
+
 } // namespace
 } // namespace gcpdda::shaken_scenes_test
