@@ -281,6 +281,12 @@ private:
     log_->progress(words_on_progress(simulation_, energy_, per_step));
   }
 
+  void conclude_impacts() {
+    if (const auto gain = impacts_.conclude()) {
+      log_->diagnostic(warning_of(simulation_, *gain));
+    }
+  }
+
   void write_due() {
     if (is_bare_) {
       return;
@@ -304,9 +310,10 @@ private:
     const double cpu_start = cpu_seconds();
     if (history_due && !failed) {                  // the energies of a broken state say nothing
       energy_ = ledger_->row(simulation_.state()); // first: frames take what it has seen of the contacts
-      if (const auto gain = impacts_.look(simulation_, energy_)) {
-        log_->diagnostic(warning_of(simulation_, *gain));
-      }
+      impacts_.look(simulation_, energy_);
+    }
+    if (simulation_.stage_is_over()) {
+      conclude_impacts();
     }
     if (const auto warning = strains_.look(simulation_.state())) {
       log_->diagnostic(*warning);
@@ -410,6 +417,7 @@ private:
     const bool failed = simulation_.fault().has_value();
     const bool stopped = !simulation_.finished();
     RunSummary summary;
+    conclude_impacts(); // of a run that stops within a stage
     tell_end(simulation_, is_once_ ? std::filesystem::path() : directory_, summary);
     if (stopped) {
       contacts_at_end_ = count_contacts();

@@ -13,7 +13,8 @@ namespace gcpdda {
 
 namespace {
 
-/// Of impacts with less than this share of the largest kinetic energy so far nothing is told.
+/// Impacts with less than this share of the largest kinetic energy of the run up to the end of their stage
+/// are not reported.
 constexpr double dust = 1e-3;
 /// Nor of those with less than this share of the stored energy: blocks at rest still tremble by about 1e-3 of
 /// what their joints have closed by, and a trembling contact is no impact.
@@ -145,18 +146,43 @@ void ImpactWatch::begin_at(const Simulation &simulation, Residual residual) {
   residual_ = residual;
 }
 
-std::optional<ImpactGain> ImpactWatch::look(const Simulation &simulation, const EnergyRow &row) {
-  if (has_told_ || !sees(simulation)) {
+void ImpactWatch::keep(const ImpactGain &found) {
+  constexpr double larger = 2.0; // so that no more are kept than the logarithm of 1/dust
+  if (findings_.empty() || found.energy > larger * findings_.back().energy) {
+    findings_.push_back(found);
+  }
+}
+
+void ImpactWatch::drop_dust() {
+  const auto first = std::find_if(findings_.begin(), findings_.end(), [&](const ImpactGain &finding) {
+    return finding.energy > dust * most_kinetic_;
+  });
+  findings_.erase(findings_.begin(), first);
+}
+
+std::optional<ImpactGain> ImpactWatch::conclude() {
+  drop_dust();
+  if (has_told_ || findings_.empty()) {
     return std::nullopt;
   }
+  has_told_ = true;
+  seen_ = {};
+  return findings_.front();
+}
+
+void ImpactWatch::look(const Simulation &simulation, const EnergyRow &row) {
+  if (has_told_ || !sees(simulation)) {
+    return;
+  }
   most_kinetic_ = std::max(most_kinetic_, row.kinetic);
+  drop_dust();
   const double per_step = simulation.plan().time_step * simulation.bound().omega_max;
   const double most_excess = std::min(row.contact_normal, 0.5 * per_step * per_step * row.kinetic);
   const Residual now{row.residual - std::max(row.excess, most_excess), row.residual - row.excess};
   if (!has_reference_ || nothing_has_touched(simulation)) {
     note(simulation, row);
     begin_at(simulation, now);
-    return std::nullopt;
+    return;
   }
   root_ += std::sqrt(turned_since_last_look(simulation));
   damped_ += std::max(0.0, row.damping_loss - damping_loss_);
@@ -164,7 +190,7 @@ std::optional<ImpactGain> ImpactWatch::look(const Simulation &simulation, const 
   note(simulation, row);
   const bool is_sharp = now.high - now.low <= sharp * (row.kinetic + energy);
   if (!is_sharp && ++waits_ <= most_waits) {
-    return std::nullopt; // impacts are under way
+    return; // impacts are under way
   }
   const double gain = std::max(0.0, now.low - residual_.high);
   const double loss = std::max(0.0, residual_.low - now.high);
@@ -174,15 +200,14 @@ std::optional<ImpactGain> ImpactWatch::look(const Simulation &simulation, const 
   if (std::abs(found.gained) <= least || energy <= std::max(dust * most_kinetic_, trembling * stored) ||
       energy <= energy_of_rounding(simulation)) {
     begin_at(simulation, now);
-    return std::nullopt;
+    return;
   }
   const bool is_last = simulation.stage_step() == simulation.plan().num_steps;
   if (!std::exchange(is_suspected_, true) && !is_last) {
-    return std::nullopt;
+    return;
   }
-  has_told_ = true;
-  seen_ = {};
-  return found;
+  keep(found);
+  begin_at(simulation, now);
 }
 
 // The change falls with the square of the step. By chance it may have been small for its step: half of what

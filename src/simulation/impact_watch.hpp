@@ -24,6 +24,10 @@
 // What an impact loses as it begins it may gain as it ends: rows in the middle of one are passed over, they
 // show themselves by their bounds, and a change is told when the next row confirms it.
 //
+// How much energy is worth telling is known when a stage ends: a record, a ramp or a fall begins with motion
+// that is dust beside what follows. The watch keeps its findings until then, and drops those whose energy is
+// a small share of the largest kinetic energy that the run has had since.
+//
 // Rows between which no blocks have touched are passed over: whatever has changed their energy, such as the
 // vibration of a deformable block on a fixed point, is no impact.
 //
@@ -53,8 +57,10 @@ public:
   static constexpr double worth_telling = 0.01;
 
   /// Compare a row of the current state with the rows before. Collective.
-  /// @return the first change worth telling, once
-  std::optional<ImpactGain> look(const Simulation &simulation, const EnergyRow &row);
+  void look(const Simulation &simulation, const EnergyRow &row);
+  /// The first change worth telling of all rows so far; nothing after it has been told once. To be asked for
+  /// when a stage or the run ends.
+  std::optional<ImpactGain> conclude();
   /// The state has been changed at once: the next look starts anew.
   void forget() { has_reference_ = false; }
   /// There is no row to compare the next one with, and the present state can give one.
@@ -74,6 +80,8 @@ private:
     double high = 0.0;
   };
   void note(const Simulation &simulation, const EnergyRow &row);
+  void keep(const ImpactGain &found);
+  void drop_dust();
   void begin_at(const Simulation &simulation, Residual residual);
   [[nodiscard]] double turned_since_last_look(const Simulation &simulation) const;
   [[nodiscard]] bool nothing_has_touched(const Simulation &simulation) const;
@@ -91,6 +99,9 @@ private:
   // Of the last look.
   double damping_loss_ = 0.0;
   std::vector<Seen> seen_; ///< owned blocks, by ascending id
+  /// Changes so far, each of at least twice the energy of the one before. The front is the first one that is
+  /// no dust: what is dust later is dropped from there.
+  std::vector<ImpactGain> findings_;
 };
 
 /// What to tell of it, with a step that keeps the change below worth_telling.

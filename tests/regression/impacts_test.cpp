@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <optional>
 #include <regex>
 
@@ -279,6 +280,56 @@ TEST(Impacts, AreNotToldOfRockAtRest) {
   const Outcome outcome = run_gcpdda(0, {"run", "slope.toml", "--out", "out"}, folder);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_FALSE(told_by(outcome));
+}
+
+/// A bonded column of ten deformable slabs without gravity, through which a pulse of 1 ms runs upwards.
+std::string column_of_slabs() {
+  std::string scene = R"([run]
+gravity = [0, 0]
+fidelity = "deformable"
+[material.rock]
+density = 2600
+youngs_modulus = 5e10
+poissons_ratio = 0.2
+[joint.default]
+normal_stiffness = 2e12
+tangential_ratio = 0.5
+friction_angle_deg = 60
+cohesion = 1e9
+tension = 1e6
+[region]
+material = "rock"
+polygon = [[0, 0], [2, 0], [2, 5], [0, 5]]
+[earthquake]
+record = "pulse.csv"
+viscous = ["bottom", "top"]
+[output]
+interval = 0.0015
+history_interval = 3e-6
+[[stage]]
+kind = "run"
+duration = 0.0015
+)";
+  for (int k = 1; k < 10; ++k) {
+    scene += fmt::format("[[fault]]\npoints = [[-1, {0}], [3, {0}]]\n", 0.5 * k);
+  }
+  return scene;
+}
+
+// The first rows of a record move blocks by next to nothing: what a stage moves in all is known at its end.
+TEST(Impacts, AreNotToldOfTheBeginningOfARecord) {
+  const WorkFolder folder;
+  folder.write("column.toml", column_of_slabs());
+  std::string pulse;
+  for (int k = 0; k <= 500; ++k) {
+    const double t = 3e-6 * k;
+    pulse += fmt::format("{:.6f}, 0, {}\n", t,
+                         k <= 333 ? 0.005 * (1.0 - std::cos(2e3 * std::numbers::pi * t)) : 0.0);
+  }
+  folder.write("pulse.csv", pulse);
+  const Outcome outcome = run_gcpdda(0, {"run", "column.toml", "--out", "out"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(count_of(outcome.err, "by the time step alone"), 0) << outcome.err;
 }
 
 } // namespace
