@@ -194,6 +194,28 @@ void doubt_duration_of_run(const Scene &scene, Diagnostics &doubts) {
   }
 }
 
+// A block that slides and is so high that friction takes the pressure off a part of its base bounces and
+// rocks by itself, because friction does work on both. Dashpots of a ratio of 0.05 take less than that.
+void doubt_damping(const Scene &scene, Diagnostics &doubts) {
+  const auto chooses = [&](const RunSettings &run) {
+    return run.rayleigh.present() || run.contact_damping != RunSettings{}.contact_damping;
+  };
+  const bool is_chosen = scene.places.contains("run.contact_damping") || chooses(scene.run) ||
+                         std::any_of(scene.stages.begin(), scene.stages.end(), [&](const Stage &stage) {
+                           return stage.after && chooses(stage.after->run);
+                         });
+  const bool has_friction = std::any_of(scene.joints.laws.begin(), scene.joints.laws.end(),
+                                        [](const JointLaw &law) { return law.has_friction(); });
+  if (!is_chosen && has_friction) {
+    doubts.push_back(
+        {Severity::warning, scene.earthquake.where,
+         fmt::format("the ground shakes with the default contact_damping of {:g}", scene.run.contact_damping),
+         "blocks that slide may bounce and rock by themselves, and go too far",
+         "use run.contact_damping = 0.3, or set = { \"run.contact_damping\" = 0.3 } in the stage "
+         "that shakes; run.contact_damping = 0.05 keeps it"});
+  }
+}
+
 } // namespace
 
 Diagnostics doubts_of_shaking(const Scene &scene) {
@@ -204,6 +226,7 @@ Diagnostics doubts_of_shaking(const Scene &scene) {
   if (!has_normalised_units(scene)) {
     doubt_strength(scene, doubts);
   }
+  doubt_damping(scene, doubts);
   if (scene.stages.empty()) {
     doubt_duration_of_run(scene, doubts);
   } else {

@@ -71,7 +71,7 @@ inline constexpr std::tuple contact_fields{
     ContactField<std::uint8_t>{"state", [](const ContactRow &row) { return row.state; }, &ContactFrameContent::state, "1 stick, 2 slip, 3 bond, which has the shear and the tension of its joint; what presses on its edges is in a row of state 1"},
     ContactField<double>{"normal_force", [](const ContactRow &row) { return row.normal_force; }, &ContactFrameContent::normal_force, "N/m, of a bond minus its tension"},
     ContactField<double>{"shear_force", [](const ContactRow &row) { return row.shear_force; }, &ContactFrameContent::shear_force, "N/m"},
-    ContactField<double>{"overlap", [](const ContactRow &row) { return row.overlap; }, &ContactFrameContent::overlap, "largest depth, m"},
+    ContactField<double>{"overlap", [](const ContactRow &row) { return row.overlap; }, &ContactFrameContent::overlap, "thickness along the normal of the contact, m: its largest depth, and up to half more beside a corner"},
     ContactField<double>{"slip", [](const ContactRow &row) { return row.slip; }, &ContactFrameContent::slip, "so far, m"}};
 // clang-format on
 

@@ -14,7 +14,8 @@ namespace {
 /// A block on a plane.
 std::string scene_toml(const std::string &earthquake, const std::string &stages,
                        const std::string &run = "") {
-  return "[run]\n" + run + "[material.rock]\ndensity = 2600\n[joint.default]\nnormal_stiffness = 1e9\n" +
+  return "[run]\ncontact_damping = 0.3\n" + run +
+         "[material.rock]\ndensity = 2600\n[joint.default]\nnormal_stiffness = 1e9\nfriction_angle_deg = 30\n" +
          block_toml("floor", rectangle({-9.0, -1.0}, {9.0, 0.0}), "fixed = true") +
          block_toml("slab", rectangle({0.0, 0.0}, {2.0, 1.0})) + "[output]\ninterval = 0.1\n" +
          "[earthquake]\nrecord = \"r.csv\"\n" + earthquake + stages;
@@ -94,6 +95,20 @@ TEST(ShakingDoubts, OfRecordsThatAreCut) {
   std::vector<RecordRow> quiet = record_of(5.0);
   quiet.push_back({4.0, {}});
   EXPECT_EQ(doubts_of(scene_toml(by_name, settle + shaking(2.0)), quiet), std::vector<std::string>{});
+}
+
+TEST(ShakingDoubts, OfTheDampingThatNobodyHasChosen) {
+  const auto told = [](const std::string &damping, const std::string &set) {
+    std::string toml = scene_toml(accelerations + "stage = \"shaking\"\n", settle + shaking(2.0) + set);
+    const std::string given = "contact_damping = 0.3\n";
+    return doubts_of(toml.replace(toml.find(given), given.size(), damping), record_of(5.0));
+  };
+  expect_one(told("", ""), "the ground shakes with the default contact_damping of 0.05",
+             "run.contact_damping = 0.05 keeps it");
+  for (const char *damping : {"contact_damping = 0.05\n", "rayleigh = {ratio = 0.02, frequency = 5.0}\n"}) {
+    EXPECT_EQ(told(damping, ""), std::vector<std::string>{});
+  }
+  EXPECT_EQ(told("", "set = {\"run.contact_damping\" = 0.3}\n"), std::vector<std::string>{});
 }
 
 TEST(ShakingDoubts, OfTheStrengthOfARecord) {
