@@ -212,18 +212,10 @@ private:
   }
 
   void announce() {
-    const auto owned =
-        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.blocks().num_owned));
-    const auto work =
-        counts_by_rank(communicator_, static_cast<std::int64_t>(simulation_.candidates().pairs.size()));
     const Scene &scene = simulation_.scene();
+    const std::string blocks = words_on_blocks(simulation_);
     tell_notes();
-    const auto mobile = std::accumulate(owned.begin(), owned.end(), std::int64_t{0});
-    log_->line(fmt::format(
-        "gcpdda: {} rank{}, {} mobile and {} fixed blocks, {} to {} per rank, imbalance {:.3f} ({})",
-        communicator_.size(), communicator_.size() == 1 ? "" : "s", mobile, simulation_.num_blocks() - mobile,
-        *std::min_element(owned.begin(), owned.end()), *std::max_element(owned.begin(), owned.end()),
-        imbalance_of(work), simulation_.partition().by_metis ? "METIS" : "space-filling curve"));
+    log_->line(blocks);
     log_->line(words_on_time_step(simulation_));
     for (const JointLaw &law : scene.joints.laws) {
       log_->line(words_on_law(law));

@@ -1,5 +1,6 @@
 #include "driver/run_words.hpp"
 
+#include "simulation/rank_facts.hpp"
 #include "simulation/strain_watch.hpp"
 
 #include <algorithm>
@@ -139,6 +140,21 @@ std::string words_on_steps(const Simulation &simulation) {
   return begins_statically(simulation)
              ? "for motion that takes over from the static solver"
              : fmt::format("{} steps of {:.6g} s in all", plan.num_steps, plan.duration);
+}
+
+// Blocks that stages have excavated are neither mobile nor fixed.
+std::string words_on_blocks(const Simulation &simulation) {
+  const Communicator &communicator = simulation.communicator();
+  const auto owned = counts_by_rank(communicator, static_cast<std::int64_t>(simulation.blocks().num_owned));
+  const auto work =
+      counts_by_rank(communicator, static_cast<std::int64_t>(simulation.candidates().pairs.size()));
+  const auto mobile = std::accumulate(owned.begin(), owned.end(), std::int64_t{0});
+  return fmt::format(
+      "gcpdda: {} rank{}, {} mobile and {} fixed blocks, {} to {} per rank, imbalance {:.3f} ({})",
+      communicator.size(), communicator.size() == 1 ? "" : "s", mobile,
+      simulation.num_blocks() - mobile - std::ssize(simulation.stage().removed),
+      *std::min_element(owned.begin(), owned.end()), *std::max_element(owned.begin(), owned.end()),
+      imbalance_of(work), simulation.partition().by_metis ? "METIS" : "space-filling curve");
 }
 
 std::string words_on_time_step(const Simulation &simulation) {

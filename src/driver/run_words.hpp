@@ -21,6 +21,10 @@ std::string words_on_fidelity(const FidelityReport &fidelity, double accepted_er
 bool begins_statically(const Simulation &simulation);
 /// How many time steps there are.
 std::string words_on_steps(const Simulation &simulation);
+
+/// How many ranks and blocks there are, and how blocks and work are shared. Collective.
+std::string words_on_blocks(const Simulation &simulation);
+
 /// The time step, how many there are, and what bounds it.
 std::string words_on_time_step(const Simulation &simulation);
 

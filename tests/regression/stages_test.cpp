@@ -105,6 +105,19 @@ TEST(StagedRun, GoesOnFromAnyStageOnAnyNumberOfRanks) {
   }
 }
 
+TEST(StagedRun, CountsExcavatedBlocksNeitherAsMobileNorAsFixed) {
+  const WorkFolder folder;
+  folder.write("scene.toml", scene_of_stages(3));
+  const Outcome first = run_gcpdda(0, {"run", "scene.toml", "--out", "dug"}, folder);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(count_of(first.err, " 34 mobile and 1 fixed blocks,"), 1) << first.err;
+  std::ofstream(folder / "dug/scene.toml") << scene_of_stages(stages.size());
+  const Outcome rest = run_gcpdda(2, {"restart", "dug"}, folder);
+  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_EQ(count_of(rest.err, " mobile and 1 fixed blocks,"), 1) << rest.err;
+  EXPECT_EQ(count_of(rest.err, " 34 mobile"), 0) << rest.err;
+}
+
 /// Times of a history's rows.
 std::vector<double> times_of(const fs::path &history) {
   std::vector<std::string> lines = testing::lines_of(file_text(history));
