@@ -464,23 +464,4 @@ void doubt_gaps(RunState &run) {
   }
 }
 
-void doubt_monitors(RunState &run) {
-  std::vector<bool> has_ended(run.scene.monitors.size(), false); // by an earlier stage
-  for (const Stage &stage : run.clock.stages) {
-    const std::vector<std::int64_t> ids = select_blocks(run, stage.excavated);
-    for (std::size_t m = 0; m < run.scene.monitors.size(); ++m) {
-      const Monitor &monitor = run.scene.monitors[m];
-      if (!monitor.is_on_profile && !has_ended[m] &&
-          std::binary_search(ids.begin(), ids.end(), monitor.block)) {
-        has_ended[m] = true;
-        run.notes.push_back({Severity::warning, monitor.where,
-                             fmt::format("monitor '{}' follows block '{}', which stage '{}' excavates",
-                                         monitor.name, block_name(run.scene, monitor.block), stage.name),
-                             "its history ends there",
-                             "monitor a block that stays, or move the point out of the opening"});
-      }
-    }
-  }
-}
-
 } // namespace gcpdda

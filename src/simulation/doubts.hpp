@@ -16,7 +16,5 @@ void doubt_blocks(RunState &run, std::span<const SceneBlock> slab);
 void explain_slivers(RunState &run);
 /// Blocks that face each other across a narrow gap with no block in it. Collective.
 void doubt_gaps(RunState &run);
-/// Monitors of blocks that a stage excavates. Collective.
-void doubt_monitors(RunState &run);
 
 } // namespace gcpdda

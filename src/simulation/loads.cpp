@@ -138,6 +138,10 @@ std::vector<PointLoad> Loads::after(std::vector<PointLoad> acting, std::vector<P
   return listed;
 }
 
+bool same_loads(const std::vector<PointLoad> &a, const std::vector<PointLoad> &b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_load);
+}
+
 void adopt_loads(BlockSystem &blocks, std::size_t row, const std::vector<PointLoad> &before,
                  const std::vector<PointLoad> &after) {
   const auto same = [](const PointLoad &a, const PointLoad &b) {

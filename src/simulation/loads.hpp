@@ -61,6 +61,8 @@ private:
   std::vector<InSituStress> side_stresses_; ///< on sides of the region: at the start, then those of stages
 };
 
+/// True where both lists hold the same loads; the numbers of their courses are not compared.
+bool same_loads(const std::vector<PointLoad> &a, const std::vector<PointLoad> &b);
 /// A row's loads become those of its block in a later stage.
 void adopt_loads(BlockSystem &blocks, std::size_t row, const std::vector<PointLoad> &before,
                  const std::vector<PointLoad> &after);

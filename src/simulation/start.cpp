@@ -15,6 +15,7 @@
 #include "partition/partition_cells.hpp"
 #include "simulation/doubts.hpp"
 #include "simulation/driven_paths.hpp"
+#include "simulation/excavation_doubts.hpp"
 #include "simulation/ground.hpp"
 #include "simulation/in_situ_state.hpp"
 #include "simulation/initial_state.hpp"
@@ -382,6 +383,7 @@ void start(RunState &run, const Beginning &beginning) {
     find_initial_state(run);
     doubt_gaps(run);
     doubt_monitors(run);
+    doubt_loads(run);
   }
   stop_on_errors(run.notes);
   std::stable_sort(run.notes.begin(), run.notes.end(), // warnings in one block

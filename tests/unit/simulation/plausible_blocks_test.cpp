@@ -250,6 +250,24 @@ kind = "excavate"
 openings = ["tunnel"]
 )";
 
+TEST(PlausibleBlocks, AreLoadedWhereTheyStay) {
+  const std::string load = "set = { \"block.a.load\" = [{point=[0.5, 1], force=[0, -1e3]}] }\n";
+  const std::string settle = "[[stage]]\nname = \"rest\"\nkind = \"settle\"\nlimit = 1.0\n";
+  const std::string dig = "[[stage]]\nname = \"dig\"\nkind = \"excavate\"\nblocks = [\"a\"]\n";
+  const std::string later = "[[stage]]\nname = \"later\"\nkind = \"settle\"\nlimit = 1.0\n";
+  const auto warnings = [](const std::string &stages) {
+    std::string text = two_blocks("") + stages;
+    text.erase(text.find("duration"), text.find('\n', text.find("duration")) - text.find("duration"));
+    return warnings_of(scene_of(text));
+  };
+  const std::string excavated = " sets 'load' of block 'a', which stage 'dig' excavates, the load acts on no "
+                                "block, load a block that stays";
+  expect_one(warnings(settle + dig + later + load), "warning: stage 'later'" + excavated);
+  expect_one(warnings(settle + dig + load + later), "warning: stage 'dig'" + excavated);
+  EXPECT_EQ(warnings(settle + later + load + dig), std::vector<std::string>{}) << "it acts for a while";
+  EXPECT_EQ(warnings(settle + dig + later + "set = { \"block.b.load\" = [] }\n"), std::vector<std::string>{});
+}
+
 TEST(PlausibleBlocks, AreMonitoredWhereTheyStay) {
   expect_one(warnings_of(scene_of(tunnel)), "monitor 'inside' follows block 'b");
   const std::string by_polygon =

@@ -1,0 +1,61 @@
+#include "simulation/excavation_doubts.hpp"
+
+#include "model/generators.hpp"
+#include "simulation/loads.hpp"
+#include "simulation/stage_changes.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <fmt/format.h>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gcpdda {
+
+void doubt_monitors(RunState &run) {
+  std::vector<bool> has_ended(run.scene.monitors.size(), false); // by an earlier stage
+  for (const Stage &stage : run.clock.stages) {
+    const std::vector<std::int64_t> ids = select_blocks(run, stage.excavated);
+    for (std::size_t m = 0; m < run.scene.monitors.size(); ++m) {
+      const Monitor &monitor = run.scene.monitors[m];
+      if (!monitor.is_on_profile && !has_ended[m] &&
+          std::binary_search(ids.begin(), ids.end(), monitor.block)) {
+        has_ended[m] = true;
+        run.notes.push_back({Severity::warning, monitor.where,
+                             fmt::format("monitor '{}' follows block '{}', which stage '{}' excavates",
+                                         monitor.name, block_name(run.scene, monitor.block), stage.name),
+                             "its history ends there",
+                             "monitor a block that stays, or move the point out of the opening"});
+      }
+    }
+  }
+}
+
+void doubt_loads(RunState &run) {
+  std::map<std::int64_t, std::string> excavated_by; // names of the stages, by block
+  const std::vector<SceneBlock> *before = &run.scene.blocks;
+  for (const Stage &stage : run.clock.stages) {
+    for (const std::int64_t id : select_blocks(run, stage.excavated)) {
+      excavated_by.emplace(id, stage.name);
+    }
+    if (!stage.after) {
+      continue;
+    }
+    const std::vector<SceneBlock> &blocks = stage.after->blocks;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const auto gone = excavated_by.find(static_cast<std::int64_t>(i));
+      if (gone != excavated_by.end() && !blocks[i].loads.empty() &&
+          !same_loads((*before)[i].loads, blocks[i].loads)) {
+        run.notes.push_back({Severity::warning, stage.where,
+                             fmt::format("stage '{}' sets 'load' of block '{}', which stage '{}' excavates",
+                                         stage.name, blocks[i].name, gone->second),
+                             "the load acts on no block",
+                             "load a block that stays, or set the load in a stage before the excavation"});
+      }
+    }
+    before = &blocks;
+  }
+}
+
+} // namespace gcpdda

@@ -1,0 +1,14 @@
+#pragma once
+
+// What a valid scene says in vain of blocks that its stages excavate: warnings.
+
+#include "simulation/run_state.hpp"
+
+namespace gcpdda {
+
+/// Warn of monitors of blocks that a stage excavates. Collective.
+void doubt_monitors(RunState &run);
+/// Warn of loads that a stage sets on blocks which it or an earlier stage excavates. Collective.
+void doubt_loads(RunState &run);
+
+} // namespace gcpdda
