@@ -344,8 +344,9 @@ const CLI::App *add_fos(CLI::App &app, Arguments &arguments) {
   command->add_flag("--overwrite", arguments.overwrite, "replace an earlier search in the result folder");
   command
       ->add_option("--families", arguments.families,
-                   "laws to weaken, a,b,...; default [fos] families, or all")
-      ->delimiter(',');
+                   "laws to weaken, a,b,...; default [fos] families, or all; repeatable")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_option("--tolerance", arguments.tolerance, "width of the bracket at the end; default 0.01");
   command->add_option("--from", arguments.from, "factor that is expected to hold; default 0.5");
   command->add_option("--to", arguments.to, "factor that is expected to fail; default 4");

@@ -313,6 +313,10 @@ TEST(Fos, RefusesWhatItCannotSearch) {
   const Outcome family = run_gcpdda(0, {"fos", "plane.toml", "--families", "defalt,default"}, folder);
   EXPECT_EQ(family.exit_code, 3);
   EXPECT_NE(family.err.find("did you mean 'default'?"), std::string::npos) << family.err;
+  const Outcome in_front =
+      run_gcpdda(0, {"fos", "--families", "defalt", "plane.toml", "--tolerance", "0.1"}, folder);
+  EXPECT_EQ(in_front.exit_code, 3) << "the option takes one value: " << in_front.err;
+  EXPECT_NE(in_front.err.find("did you mean 'default'?"), std::string::npos) << in_front.err;
   const Outcome word = run_gcpdda(0, {"fos", "plane.toml", "--tolerance", "little"}, folder);
   EXPECT_EQ(word.exit_code, 3);
   EXPECT_NE(word.err.find("'tolerance' in [fos]"), std::string::npos) << word.err;
