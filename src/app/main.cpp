@@ -212,19 +212,15 @@ std::string identity_of(const std::string &text, const Arguments &arguments) {
   return read_scene(text, arguments.scene, sets).scene.resolved;
 }
 
-/// Groups of ranks that compute members at one time.
-double copies_in(const Ensemble &ensemble, int ranks) {
-  const std::int64_t groups = ensemble.ranks > 0 ? ranks / std::min<std::int64_t>(ensemble.ranks, ranks)
-                                                 : std::min<std::int64_t>(ensemble.count, ranks);
-  return static_cast<double>(std::max<std::int64_t>(1, groups));
-}
-
 ExitCode ensemble(const Communicator &world, Arguments arguments) {
   if (!arguments.count.empty()) {
     arguments.sets.push_back("ensemble.count=" + arguments.count);
   }
   const std::string text = read_scene_on_root(world, arguments.scene);
   return with_scene(world, arguments, text, [&](const Scene &scene) {
+    if (const Diagnostics faults = sets_without_effect(scene.ensemble, arguments.sets); !faults.empty()) {
+      throw SceneError(faults);
+    }
     judge_before_work(world, arguments, scene, copies_in(scene.ensemble, world.size()));
     Scene shaken = scene; // members are quiet, and tell of a record that cannot be read
     open_record(world, shaken);

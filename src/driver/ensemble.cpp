@@ -266,6 +266,12 @@ private:
 
 } // namespace
 
+double copies_in(const Ensemble &ensemble, int ranks) {
+  const std::int64_t groups = ensemble.ranks > 0 ? ranks / std::min<std::int64_t>(ensemble.ranks, ranks)
+                                                 : std::min<std::int64_t>(ensemble.count, ranks);
+  return static_cast<double>(std::max<std::int64_t>(1, groups));
+}
+
 ExitCode run_ensemble(const Communicator &communicator, const Scene &scene, const MemberScene &member_scene,
                       const EnsembleOptions &options) {
   if (scene.ensemble.count == 0) {

@@ -26,6 +26,9 @@ struct EnsembleOptions {
   std::string identity; ///< text that is the same for ensembles whose members are
 };
 
+/// Groups of ranks that compute members at one time.
+double copies_in(const Ensemble &ensemble, int ranks);
+
 /// Run what is missing of an ensemble and write `members` and the report. Collective.
 /// @return done, stopped (by the signal), or undecided where all members are done and none has an outcome
 /// @throws SceneError where the scene says nothing of members, or has no state of rest to search from;

@@ -137,6 +137,15 @@ TEST(Ensemble, RefusesWhatItCannotRun) {
   const Outcome count = run_gcpdda(0, {"ensemble", "plane.toml", "--count", "0"}, folder);
   EXPECT_EQ(count.exit_code, 3);
   EXPECT_FALSE(fs::exists(folder / "results"));
+  const Outcome varied =
+      run_gcpdda(0, {"ensemble", "plane.toml", "--set", "joint.default.cohesion=5000"}, folder);
+  EXPECT_EQ(varied.exit_code, 3);
+  EXPECT_EQ(count_of(varied.err,
+                     "--set joint.default.cohesion=5000: error: 'joint.default.cohesion' varies in "
+                     "the ensemble, each member draws a value of its own"),
+            1)
+      << varied.err;
+  EXPECT_FALSE(fs::exists(folder / "results"));
   const Outcome unsettled = run_gcpdda(0,
                                        {"ensemble", "plane.toml", "--set", "ensemble.measure=factor", "--set",
                                         "stage=[{kind=\"run\",duration=1}]"},

@@ -30,6 +30,9 @@ SceneReading read_scene(std::string_view text, const std::string &file, const st
 /// [ensemble] and monitors.
 std::string settling_part(std::string_view resolved);
 
+/// An error for each --set argument of an ensemble that sets a value which varies: each member draws its own.
+Diagnostics sets_without_effect(const Ensemble &ensemble, const std::vector<std::string> &sets);
+
 /// The --set argument that gives a value of the scene that varies.
 std::string assignment(const Variation &variation, double value);
 

@@ -1,6 +1,8 @@
 #include "io/scene/scene_ensemble.hpp"
 
 #include "base/edit_distance.hpp"
+#include "base/text.hpp"
+#include "gcpdda/io/scene_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -237,3 +239,25 @@ Ensemble read_ensemble(const SceneSource &source, const Scene &scene) {
 }
 
 } // namespace gcpdda::scene_text
+
+namespace gcpdda {
+
+Diagnostics sets_without_effect(const Ensemble &ensemble, const std::vector<std::string> &sets) {
+  const scene_text::Origins origins({}, sets);
+  Diagnostics found;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    std::string path(trimmed(std::string_view(sets[i]).substr(0, sets[i].find('='))));
+    std::erase_if(path, [](char c) { return c == '"' || c == '\''; });
+    const auto varies = [&](const Variation &variation) { return variation.key == path; };
+    if (std::any_of(ensemble.variations.begin(), ensemble.variations.end(), varies)) {
+      found.push_back({Severity::error,
+                       {origins.label_of_set(i), 0, 0},
+                       fmt::format("'{}' varies in the ensemble", path),
+                       "each member draws a value of its own, and none has the one that is set",
+                       "leave the argument out, or change the distribution in [[ensemble.vary]]"});
+    }
+  }
+  return found;
+}
+
+} // namespace gcpdda
