@@ -6,9 +6,11 @@
 #include "io/scene/scene_writer.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -242,6 +244,25 @@ std::optional<toml::table> parse_scene(std::string_view text, Faults &faults) {
   return parse(text, nullptr, faults);
 }
 
+namespace {
+
+/// A path of --set goes on below a node that is no table.
+/// @param path  to the node
+void tell_end_of_path(const toml::node &node, std::span<const std::string> path,
+                      const toml::source_region &where, Faults &faults) {
+  if (!node.is_array_of_tables()) {
+    faults.add(where, fmt::format("'{}' is not a table", shown(path.back())), "the path goes on below it",
+               "shorten the path");
+    return;
+  }
+  const std::string list = shown(fmt::format("{}", fmt::join(path, ".")));
+  faults.add(where, fmt::format("'{}' is a list of tables", list),
+             "--set cannot change a key of a single table of it",
+             fmt::format("give the whole list as --set '{}=[{{...}}]'", list));
+}
+
+} // namespace
+
 void apply_set(toml::table &root, const std::string &set, std::size_t index, Faults &faults) {
   const auto label = std::make_shared<const std::string>(faults.origins().label_of_set(index));
   const toml::source_region where{{}, {}, label};
@@ -253,6 +274,7 @@ void apply_set(toml::table &root, const std::string &set, std::size_t index, Fau
                "for example --set run.time_step=1e-4");
     return;
   }
+  const Path whole_path = *path;
   toml::table *table = &root;
   if (is_named_list(path->front()) && path->size() > 1) {
     table = find_element(root, *path, where, faults);
@@ -273,8 +295,8 @@ void apply_set(toml::table &root, const std::string &set, std::size_t index, Fau
       return;
     }
     if (!existing->is_table()) {
-      faults.add(where, fmt::format("'{}' is not a table", shown((*path)[i])), "the path goes on below it",
-                 "shorten the path");
+      tell_end_of_path(*existing, std::span(whole_path).first(whole_path.size() - path->size() + i + 1),
+                       where, faults);
       return;
     }
     table = existing->as_table();

@@ -93,6 +93,20 @@ TEST(SceneSets, FaultsNameTheArgument) {
   }
 }
 
+TEST(SceneSets, AskForAListWholeWhoseTablesHaveNoNames) {
+  const std::string scene = small_scene + "[[block.load]]\npoint = [1, 1]\nforce = [0, -1]\n"
+                                          "[[monitor]]\nname = \"roof\"\npoint = [0.5, 0.5]\n";
+  for (const auto &[set, list] : {std::pair("monitor.roof.point=[8, 7.4]", "monitor"),
+                                  std::pair("block.slider.load.0.force=[0, 1]", "block.slider.load")}) {
+    EXPECT_EQ(messages(read_scene(scene, "s.toml", {set})),
+              std::vector<std::string>{fmt::format(
+                  "--set {}: error: '{}' is a list of tables, --set cannot change a key of a single table of "
+                  "it, give the whole list as --set '{}=[{{...}}]'",
+                  set, list, list)});
+  }
+  EXPECT_EQ(good(scene, {"monitor=[{name = 'roof', point = [0.5, 0.75]}]"}).monitors[0].point.y, 0.75);
+}
+
 TEST(SceneSets, FaultsComeAfterThoseOfTheFileInTheOrderOfTheSets) {
   const SceneReading reading =
       read_scene("[run]\nduration = 0\n" + small_scene.substr(small_scene.find("[mat")), "s.toml",
