@@ -138,7 +138,8 @@ std::string page_of(const Key &table) {
 
 std::string block_file_page() {
   std::string text = "\n## The file of [blocks]\n\nAn HDF5 file with n points and nb blocks. Block k of the "
-                     "file is named b<id>, where its id is k plus the number of all other blocks.\n\n"
+                     "file is named b<id>, where its id is k plus the number of blocks of [[block]], "
+                     "[[wall]] and [[pyramid]].\n\n"
                      "| dataset | values | shape | unit | | meaning |\n|---|---|---|---|---|---|\n";
   for (const block_file::DatasetRule &rule : block_file::layout) {
     const Doc doc = split(rule.doc);

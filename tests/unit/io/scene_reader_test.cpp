@@ -345,7 +345,8 @@ TEST(SceneReference, HasARowForEveryKey) {
         "\n| `density` | number | kg/m3 | required | above 0 and at most 1e+12 | Density. | `density = "
         "2600.0` "
         "|\n",
-        "\n| `/offsets` | 64-bit integers | (nb + 1) |  | required | "}) {
+        "\n| `/offsets` | 64-bit integers | (nb + 1) |  | required | ",
+        "its id is k plus the number of blocks of [[block]], [[wall]] and [[pyramid]].\n"}) {
     EXPECT_NE(page.find(line), std::string::npos) << line;
   }
 }
