@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 #include "base/text.hpp"
+#include "driver/restart_changes.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "io/checkpoint/checkpoint_reader.hpp"
 #include "io/results/result_directory.hpp"
@@ -37,6 +38,9 @@ void compare_settings(const RunSettings &before, const RunSettings &after, Diagn
   expect_same(&RunSettings::spectral_radius, "spectral_radius", trials);
   expect_same(&RunSettings::contact_time, "contact_time", trials);
   expect_same(&RunSettings::plane_strain, "plane", belongs_to_state);
+  const std::string fidelity = "a rigid and a deformable block have different states";
+  expect_same(&RunSettings::fidelity, "fidelity", fidelity);
+  expect_same(&RunSettings::accepted_error, "accepted_error", fidelity);
   expect_same(&RunSettings::initial_friction, "initial_friction", "it says something of t = 0 only");
 }
 
@@ -197,12 +201,17 @@ Diagnostics unfit_changes(const Scene &before, const Scene &after) {
     return std::tuple(quake.shakes(), quake.quantity, quake.baseline, quake.scale, quake.start, quake.stage,
                       quake.viscous.size(), quake.is_compliant);
   };
-  if (ground(before) != ground(after)) {
+  const auto speeds = [](const Earthquake &quake) {
+    return std::pair(quake.p_wave_speed, quake.s_wave_speed);
+  };
+  if (ground(before) != ground(after) || speeds(before.earthquake) != speeds(after.earthquake)) {
     faults.push_back(refused(after.earthquake.where, "[earthquake]", belongs_to_state));
   }
   if (in_situ(before) != in_situ(after)) {
     faults.push_back(refused(after.in_situ.where, "[in_situ]", "blocks have their shapes by it"));
   }
+  const Diagnostics of_shapes = changes_of_shapes(before, after);
+  faults.insert(faults.end(), of_shapes.begin(), of_shapes.end());
   return faults;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 #include "base/program_facts.hpp"
+#include "driver/restart_changes.hpp"
 #include "driver/run_facts.hpp"
 #include "driver/run_log.hpp"
 #include "driver/run_words.hpp"
@@ -60,6 +61,10 @@ public:
       : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
         is_once_(options.once), options_(options), bolts_at_start_(scene.bolts),
         liners_at_start_(scene.liners), simulation_(communicator, scene, beginning_of(options)) {
+    if (options.restart && options.computed_with != nullptr) {
+      const StageState &stage = simulation_.stage();
+      expect_same_past(*options.computed_with, scene, stage.index + (stage.ended ? 1 : 0));
+    }
     if (!options.restart) {
       begin_results(scene, options);
     } else if (!simulation_.finished()) {
@@ -206,6 +211,12 @@ private:
     }
     log_->line(fmt::format("restart from {}: t = {:.9g} s, step {}, {} frames", restored.path.string(),
                            facts.time, facts.step, facts.frame_times.size()));
+    if (const Scene *before = options_.computed_with) {
+      for (const Diagnostic &change :
+           reports_of_changes(*before, scene, facts.time, simulation_.stage().index)) {
+        log_->diagnostic(change);
+      }
+    }
     ledger_.emplace(facts);
     num_frames_ = static_cast<int>(facts.frame_times.size());
     checkpoints_.emplace(communicator_, directory_, restored.path);

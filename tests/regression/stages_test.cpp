@@ -118,6 +118,38 @@ TEST(StagedRun, CountsExcavatedBlocksNeitherAsMobileNorAsFixed) {
   EXPECT_EQ(count_of(rest.err, " 34 mobile"), 0) << rest.err;
 }
 
+// What scene.toml says of the past stays what was computed; what is changed is said.
+TEST(StagedRun, KeepsStagesThatAreOverInARestart) {
+  const WorkFolder folder;
+  folder.write("scene.toml", scene_of_stages(3));
+  ASSERT_EQ(run_gcpdda(0, {"run", "scene.toml", "--out", "o"}, folder).exit_code, 0);
+  const std::string longer = scene_of_stages(stages.size());
+  std::ofstream(folder / "o/scene.toml") << longer;
+  const Outcome refused = run_gcpdda(
+      2, {"restart", "o", "--set", "stage.gravity.limit=2.98", "--set", "stage.opening.relax=0.5"}, folder);
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_EQ(count_of(refused.err, ": error: a restart cannot change stage.gravity.limit from 1.98 "
+                                  "to 2.98, this stage is over in the checkpoint"),
+            1)
+      << refused.err;
+  EXPECT_EQ(count_of(refused.err, "error: a restart cannot change stage.opening.relax"), 1) << refused.err;
+  EXPECT_EQ(file_text(folder / "o/scene.toml"), longer) << "a refusal changes nothing";
+  const Outcome rest = run_gcpdda(
+      2, {"restart", "o", "--set", "stage.weak.duration=0.02", "--set", "joint.default.cohesion=1e3"},
+      folder);
+  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_EQ(count_of(rest.err,
+                     "info: stage.weak.duration changes from 0.04 to 0.02, the run has the new value "
+                     "from t = "),
+            1)
+      << rest.err;
+  EXPECT_EQ(count_of(rest.err, "info: joint.default.cohesion changes from its default 0 to 1000, "), 1)
+      << rest.err;
+  EXPECT_EQ(count_of(rest.err, "info: "), 2) << rest.err;
+  const std::string log = file_text(folder / "o/run.log");
+  EXPECT_EQ(count_of(log, "joint.default.cohesion changes from its default 0 to 1000"), 1);
+}
+
 /// Times of a history's rows.
 std::vector<double> times_of(const fs::path &history) {
   std::vector<std::string> lines = testing::lines_of(file_text(history));

@@ -141,11 +141,6 @@ std::optional<toml::table> parse_assignment(const Path &path, std::string_view v
 
 constexpr std::array makers_of_blocks{"wall", "pyramid", "blocks", "region"};
 
-bool is_named_list(std::string_view key) {
-  return key == "block" || key == "wall" || key == "pyramid" || key == "joint_set" || key == "fault" ||
-         key == "opening" || key == "stage" || key == "bolt" || key == "bolt_pattern" || key == "liner";
-}
-
 /// Whether the scene has blocks that no [[block]] table describes.
 bool has_made_blocks(const toml::table &root) {
   return std::any_of(makers_of_blocks.begin(), makers_of_blocks.end(),
@@ -229,6 +224,11 @@ bool can_change(const Path &path) {
 }
 
 } // namespace
+
+bool is_named_list(std::string_view key) {
+  return key == "block" || key == "wall" || key == "pyramid" || key == "joint_set" || key == "fault" ||
+         key == "opening" || key == "stage" || key == "bolt" || key == "bolt_pattern" || key == "liner";
+}
 
 bool sets_stress(std::string_view dotted) {
   const auto path = split(trimmed(dotted));

@@ -24,6 +24,9 @@ void apply_set(toml::table &root, const std::string &set, std::size_t index, Fau
 /// @param value  moved into the tree
 void apply_change(toml::table &root, const toml::key &path, toml::node &value, Faults &faults);
 
+/// True for a list whose tables --set knows by their names.
+bool is_named_list(std::string_view key);
+
 /// Is the path of a change that of a value by which stress acts on sides of the region, or of loads of a
 /// block?
 bool sets_stress(std::string_view path);

@@ -4,6 +4,8 @@
 #include "driver/restart.hpp"
 
 #include "base/check.hpp"
+#include "driver/restart_changes.hpp"
+#include "gcpdda/base/scene_error.hpp"
 #include "gcpdda/io/frame_rows.hpp"
 #include "gcpdda/io/frame_writer.hpp"
 #include "gcpdda/io/run_summary.hpp"
@@ -119,6 +121,100 @@ TEST(UnfitChanges, AreNamedEachWithReasonAndHint) {
     EXPECT_EQ(faults[0].what, "a restart cannot change " + named);
     EXPECT_FALSE(faults[0].why.empty() || faults[0].hint.empty()) << set;
   }
+}
+
+TEST(UnfitChanges, AreThoseByWhichBlocksAreCutAndContactsHaveTheirLaws) {
+  const std::string text = R"([run]
+duration = 1.0
+[material.rock]
+density = 2600.0
+[joint.default]
+allowed_overlap = 1e-3
+[joint.bedding]
+friction_angle_deg = 30
+[region]
+polygon = [[0, 0], [4, 0], [4, 4], [0, 4]]
+material = "rock"
+fixed = ["bottom"]
+[[joint_set]]
+name = "beds"
+dip_deg = 0
+spacing = 1.0
+)";
+  const Scene before = scene_of(text);
+  for (const auto &[set, named] : std::vector<std::pair<std::string, std::string>>{
+           {"region.min_width=0.3", "region.min_width"},
+           {"joint_set.beds.spacing=2", "joint_set.beds.spacing"},
+           {"voronoi=[{size = 0.5}]", "voronoi"},
+           {"joint.bedding.materials=[\"rock\", \"rock\"]", "joint.bedding.materials"},
+           {"joint.default.allowed_overlap=2e-3", "joint.default.allowed_overlap"},
+           {"run.fidelity=rigid", "run.fidelity"},
+           {"run.accepted_error=0.5", "run.accepted_error"}}) {
+    const Diagnostics faults = unfit_changes(before, scene_of(text, {set}));
+    ASSERT_EQ(faults.size(), 1U) << set;
+    EXPECT_EQ(faults[0].what, "a restart cannot change " + named);
+  }
+  EXPECT_TRUE(unfit_changes(before, scene_of(text, {"joint.bedding.tangential_ratio=0.7"})).empty());
+  EXPECT_TRUE(unfit_changes(before, scene_of(text, {"water.w.phreatic=[[0, 1], [4, 1]]"})).empty());
+}
+
+const std::string staged_text =
+    scene_text.substr(0, 6) + scene_text.substr(scene_text.find("[material")) + R"([[stage]]
+name = "weight"
+kind = "settle"
+limit = 2
+[[stage]]
+name = "weak"
+kind = "settle"
+limit = 2
+set = { "joint.default.friction_angle_deg" = 20.0 }
+)";
+
+TEST(StagesThatAreOver, KeepTheirKeys) {
+  const Scene before = scene_of(staged_text);
+  const Scene after = scene_of(staged_text, {"stage.weak.limit=3"});
+  EXPECT_NO_THROW(expect_same_past(before, before, 2));
+  EXPECT_NO_THROW(expect_same_past(before, after, 1));
+  EXPECT_NO_THROW(
+      expect_same_past(before, scene_of(staged_text + "[[stage]]\nkind = \"run\"\nduration = 1\n"), 2));
+  try {
+    expect_same_past(before, after, 2);
+    ADD_FAILURE() << "the limit of a stage that is over has changed";
+  } catch (const SceneError &error) {
+    ASSERT_EQ(error.diagnostics().size(), 1U);
+    EXPECT_EQ(
+        to_string(error.diagnostics()[0]),
+        "test.toml:41:1: error: a restart cannot change stage.weak.limit from 2 to 3, this stage is over in "
+        "the "
+        "checkpoint, add a further [[stage]], leave the change out, or start a new run with gcpdda run");
+  }
+}
+
+TEST(ChangesOfARestart, AreReportedEach) {
+  const Scene before = scene_of(staged_text);
+  std::vector<std::string> sets{"joint.default.normal_stiffness=9e9", "joint.default.friction_angle_deg=10",
+                                "run.potential=linear"};
+  keep_intervals(before.output, sets);
+  const Scene after = scene_of(staged_text, sets);
+  const auto texts = [&](std::int64_t stage) {
+    std::vector<std::string> all;
+    for (const Diagnostic &report : reports_of_changes(before, after, 0.5, stage)) {
+      all.push_back(to_string(report));
+    }
+    return all;
+  };
+  const std::string behind = ", the run has the new value from t = 0.5 s on";
+  const std::string friction = "joint.default.friction_angle_deg changes from its default 0 to 10";
+  const std::vector<std::string> others{
+      "info: joint.default.normal_stiffness changes from 1e+09 to 9e+09" + behind,
+      "info: run.potential changes from its default \"exact\" to \"linear\"" + behind};
+  EXPECT_EQ(texts(0), (std::vector<std::string>{others[0], "info: " + friction + behind, others[1]}));
+  EXPECT_EQ(texts(1),
+            (std::vector<std::string>{others[0],
+                                      "warning: " + friction +
+                                          ", the change is without effect because stage 'weak' sets "
+                                          "the value, set the value in a further stage",
+                                      others[1]}));
 }
 
 TimePlan plan_of(double time_step, double checkpoint_interval, Diagnostics &notes) {
