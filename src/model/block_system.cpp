@@ -234,6 +234,14 @@ std::span<BlockMark> mark_rows(BlockSystem &system) {
   return {system.mark.data(), system.num_owned};
 }
 
+std::span<Vec2> unshaken_rows(BlockSystem &system) {
+  if (system.unshaken_begin[system.num_owned] != system.num_owned) {
+    list_rows(
+        system, [](std::size_t) { return true; }, system.unshaken_begin, system.unshaken);
+  }
+  return {system.unshaken.data(), system.num_owned};
+}
+
 std::span<PseudoMotion> pseudo_rows(BlockSystem &system) {
   if (system.pseudo_begin[system.num_owned] != system.num_owned) {
     list_rows(

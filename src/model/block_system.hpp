@@ -272,7 +272,10 @@ struct BlockSystem {
   std::vector<AppliedForces> applied;
   RowOffsets mark_begin; ///< one entry for mobile blocks of a scene with stages
   std::vector<BlockMark> mark;
-  RowOffsets pseudo_begin; ///< one entry for owned blocks in a stage with the static solver
+  /// One entry for mobile blocks once a stage has begun after the one with which the ground began to shake.
+  RowOffsets unshaken_begin;
+  std::vector<Vec2> unshaken; ///< displacement of the centroid at the beginning of that stage, m
+  RowOffsets pseudo_begin;    ///< one entry for owned blocks in a stage with the static solver
   std::vector<PseudoMotion> pseudo;
 
   // Derived from the trial configuration, see pose(). Outlines of rigid blocks stand nowhere: to turn them
@@ -375,6 +378,7 @@ struct BlockSystem {
                            std::make_tuple(&BlockSystem::dashpot_begin, &BlockSystem::dashpot),
                            std::make_tuple(&BlockSystem::applied_begin, &BlockSystem::applied),
                            std::make_tuple(&BlockSystem::mark_begin, &BlockSystem::mark),
+                           std::make_tuple(&BlockSystem::unshaken_begin, &BlockSystem::unshaken),
                            std::make_tuple(&BlockSystem::pseudo_begin, &BlockSystem::pseudo));
   }
 };
@@ -414,6 +418,8 @@ void append_rows(BlockSystem &to, const BlockSystem &from, std::size_t first, st
 
 /// Marks of owned rows, all of which get one.
 std::span<BlockMark> mark_rows(BlockSystem &system);
+/// BlockSystem::unshaken of owned rows, all of which get an entry.
+std::span<Vec2> unshaken_rows(BlockSystem &system);
 /// A row loses its velocity and acceleration.
 void set_to_rest(BlockSystem &system, std::size_t row);
 /// Has a row neither an increment nor a velocity?

@@ -40,6 +40,19 @@ double shaking_since(const RunState &run) {
                                        : run.clock.state.results[static_cast<std::size_t>(stage - 1)].time;
 }
 
+/// Whether the ground has begun to shake in a stage that is over or at hand, by its number.
+bool has_shaken_in(const RunState &run, std::int64_t stage) {
+  const StageState &state = run.clock.state;
+  if (run.scene.earthquake.stage >= 0) {
+    return stage == run.scene.earthquake.stage;
+  }
+  const auto end_of = [&](std::int64_t number) {
+    return number < 0 ? 0.0 : state.results[static_cast<std::size_t>(number)].time;
+  };
+  const double start = run.scene.earthquake.start;
+  return stage >= 0 && start >= end_of(stage - 1) && (stage == state.index || start < end_of(stage));
+}
+
 // They sleep until the shaking begins: no stage before it lets waves out.
 void wake_dashpots(RunState &run) {
   for (Dashpot &dashpot : run.blocks.dashpot) {
@@ -154,14 +167,29 @@ std::vector<std::int64_t> held_beyond_viscous_sides(const RunState &run) {
   return held; // fixed rows ascend by id, and all ranks have them all
 }
 
+void keep_unshaken(RunState &run) {
+  if (!run.scene.earthquake.shakes() || !has_shaken_in(run, run.clock.state.index - 1)) {
+    return;
+  }
+  const std::span<Vec2> unshaken = unshaken_rows(run.blocks);
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    unshaken[row] = run.blocks.mark_of(row).stage.u;
+  }
+}
+
 std::optional<FarthestBlock> permanent_displacement(const RunState &run) {
-  const std::int64_t stage = std::max<std::int64_t>(run.scene.earthquake.stage, 0);
-  if (!run.scene.earthquake.shakes() || run.clock.state.index != stage) {
+  if (!run.scene.earthquake.shakes() || run.clock.time() < shaking_since(run)) {
+    return std::nullopt;
+  }
+  const bool is_remembered = run.communicator.max(run.blocks.unshaken.empty() ? 0.0 : 1.0) > 0.0;
+  if (!is_remembered && !has_shaken_in(run, run.clock.state.index)) { // in a checkpoint that lacks it
     return std::nullopt;
   }
   FarthestBlock mine;
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
-    const double distance = norm(run.blocks.displacement[row].u - run.blocks.mark_of(row).stage.u);
+    const Vec2 before =
+        is_remembered ? run.blocks.unshaken[run.blocks.unshaken_begin[row]] : run.blocks.mark_of(row).stage.u;
+    const double distance = norm(run.blocks.displacement[row].u - before);
     if (!run.blocks.properties[row].keeps_its_velocity() && distance > mine.distance) {
       mine = {distance, run.blocks.properties[row].id.value};
     }

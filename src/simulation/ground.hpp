@@ -32,8 +32,11 @@ struct FarthestBlock {
   double distance = 0.0; ///< of its centroid, m
   std::int64_t block = 0;
 };
-/// Motion against the ground since the stage began in which it shakes, or since t = 0 in a scene without
-/// stages; nothing in other stages. Collective.
+/// Before the marks of the stage that has just begun: remembers where blocks were when the stage before it
+/// began, if the ground has begun to shake in that stage.
+void keep_unshaken(RunState &run);
+/// Motion against the ground since the stage began in which the ground began to shake, or since t = 0 in a
+/// scene without stages; nothing before the shaking. Collective.
 [[nodiscard]] std::optional<FarthestBlock> permanent_displacement(const RunState &run);
 
 } // namespace gcpdda

@@ -45,6 +45,7 @@ void mark_stage(RunState &run) {
   if (!run.clock.is_staged) {
     return; // nobody looks
   }
+  keep_unshaken(run);
   const std::span<BlockMark> marks = mark_rows(run.blocks);
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     const RigidDof &now = run.blocks.displacement[row];

@@ -124,6 +124,8 @@ BlockSystem random_system(unsigned seed, int num_mobile, int num_fixed, double r
     }
     fill_with_any_bits(system.mark.emplace_back(), random);
     system.mark_begin.lengthen(row, 1);
+    fill_with_any_bits(system.unshaken.emplace_back(), random);
+    system.unshaken_begin.lengthen(row, 1);
     fill_with_any_bits(system.pseudo.emplace_back(), random);
     system.pseudo_begin.lengthen(row, 1);
   }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <numbers>
 
@@ -19,6 +20,8 @@ using testing::Outcome;
 using testing::placed;
 using testing::rectangle;
 using testing::run_gcpdda;
+using testing::summary_number;
+using testing::summary_text;
 using testing::WorkFolder;
 
 /// A slab on a plane of 10 degrees with a friction angle of 25 degrees.
@@ -91,6 +94,47 @@ TEST(ShakenScenes, AreGivenABaselineThatHelps) {
   EXPECT_EQ(hint("baseline = \"displacement\"\n"), "");
   folder.write("push.csv", "0, 1.0\n1.0, 1.0\n");
   EXPECT_EQ(hint(""), "earthquake.baseline = \"displacement\" brings both to zero");
+}
+
+// What moves is measured from the beginning of the shaking on to the end of the run, whatever stages follow.
+TEST(ShakenScenes, HaveTheirPermanentDisplacementAtTheEndOfTheRun) {
+  const WorkFolder folder;
+  folder.write("push.csv", push_csv());
+  const auto moved = [&](const std::string &earthquake, const std::string &stages) {
+    folder.write("slab.toml", slab_toml(earthquake, stages));
+    const Outcome outcome = run_gcpdda(0, {"run", "slab.toml", "--out", "out", "--overwrite"}, folder);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(summary_text(folder / "out", "permanent_block"), "\"slab\"");
+    return summary_number(folder / "out", "permanent_displacement");
+  };
+  const std::string by_name = "stage = \"shaking\"\n";
+  const double shaken = moved(by_name, settle + shaking);
+  EXPECT_GT(shaken, 0.02);
+  const std::string nothing = "[[stage]]\nkind = \"change\"\nset = { \"run.safety\" = 0.5 }\n";
+  EXPECT_NEAR(moved(by_name, settle + shaking + rest), shaken, 1e-3 * shaken);
+  EXPECT_NEAR(moved(by_name, settle + shaking + nothing + rest), shaken, 1e-3 * shaken);
+  const std::string later = "[[stage]]\nkind = \"run\"\nduration = 4\n";
+  EXPECT_NEAR(moved("start = 2.0\n", settle + later + rest), shaken, 1e-2 * shaken);
+}
+
+// The run stops in the stage behind the shaking, and another number of ranks goes on.
+TEST(ShakenScenes, KeepTheirPermanentDisplacementThroughARestart) {
+  const WorkFolder folder;
+  folder.write("push.csv", push_csv());
+  folder.write("slab.toml", slab_toml("stage = \"shaking\"\n",
+                                      settle + shaking + "[[stage]]\nkind = \"run\"\nduration = 1\n"));
+  const Outcome outcome =
+      run_gcpdda(0, {"run", "slab.toml", "--out", "out", "--set", "output.checkpoint_interval=0.3"}, folder);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::string whole = summary_text(folder / "out", "permanent_displacement");
+  const double end = summary_number(folder / "out", "time");
+  const std::vector<std::string> checkpoints = testing::listing(folder / "out/checkpoints");
+  ASSERT_EQ(checkpoints.size(), 2U);
+  std::filesystem::remove(folder / "out/checkpoints" / checkpoints.back());
+  const Outcome again = run_gcpdda(2, {"restart", "out"}, folder);
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_GT(summary_number(folder / "out", "restarted_at"), end - 0.9) << "in the last stage";
+  EXPECT_EQ(summary_text(folder / "out", "permanent_displacement"), whole);
 }
 
 } // namespace

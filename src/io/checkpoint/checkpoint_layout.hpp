@@ -224,6 +224,16 @@ inline constexpr std::array block_fields{
     detail::of_ledger<&BlockLedger::gravity>("/block/gravity_work"),
     detail::of_mark<&BlockMark::stage>("/block/at_stage_begin"),
     detail::of_mark<&BlockMark::look>("/block/at_last_look")};
+/// Of blocks in a stage after the one with which the ground began to shake; not in other files. A file
+/// without them leaves open how far blocks have moved since then.
+inline constexpr std::array unshaken_fields{
+    Field<BlockSystem>{"/block/at_shaking_begin", detail::doubles_of<Vec2>,
+                       [](const BlockSystem &system, std::size_t row, double *to) {
+                         detail::put(system.unshaken[system.unshaken_begin[row]], to);
+                       },
+                       [](BlockSystem &system, std::size_t row, const double *from) {
+                         detail::take(unshaken_rows(system)[row], from);
+                       }}};
 inline constexpr std::array deformation_fields{
     detail::of_deformation<&Deformation::gradient>("/deformation/gradient"),
     detail::of_deformation<&Deformation::rate>("/deformation/rate"),

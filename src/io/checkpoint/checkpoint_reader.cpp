@@ -224,6 +224,12 @@ private:
     for (const auto &field : checkpoint::block_fields) {
       block_values_.push_back(input_.rows<double>(field.name, range, field.columns));
     }
+    for (const auto &field : checkpoint::unshaken_fields) {
+      has_shaken_ = input_.num_rows(field.name) > 0;
+      if (has_shaken_) {
+        unshaken_values_ = input_.rows<double>(field.name, range, field.columns);
+      }
+    }
   }
 
   void read_deformations(const BlockSystem &blocks) {
@@ -282,6 +288,11 @@ private:
         field.set(blocks, row, block_values_[f].data() + row * field.columns);
       }
     }
+    for (const auto &field : checkpoint::unshaken_fields) {
+      for (std::size_t row = 0; row < blocks.num_owned && has_shaken_; ++row) {
+        field.set(blocks, row, unshaken_values_.data() + row * field.columns);
+      }
+    }
     for (std::size_t f = 0; f < checkpoint::deformation_fields.size(); ++f) {
       const auto &field = checkpoint::deformation_fields[f];
       for (std::size_t row = 0; row < blocks.deformation_begin[blocks.num_owned]; ++row) {
@@ -313,6 +324,8 @@ private:
   const Found &found_;
   SummedInput input_;
   std::vector<std::vector<double>> block_values_;
+  bool has_shaken_ = false;
+  std::vector<double> unshaken_values_;
   std::vector<std::vector<double>> deformation_values_;
 };
 
@@ -440,6 +453,7 @@ void expect_readable_checkpoint(const Communicator &communicator, const fs::path
   input.pass<std::int64_t>(checkpoint::block_ids, num_blocks);
   input.pass<std::uint8_t>(checkpoint::block_kinds, num_blocks);
   fields(checkpoint::block_fields, num_blocks);
+  fields(checkpoint::unshaken_fields, input.num_rows(checkpoint::unshaken_fields[0].name));
   const std::int64_t num_deformations = input.num_rows(checkpoint::deformation_ids);
   input.pass<std::int64_t>(checkpoint::deformation_ids, num_deformations);
   fields(checkpoint::deformation_fields, num_deformations);

@@ -246,6 +246,9 @@ private:
     const auto block_ids = column<std::int64_t>(checkpoint::block_ids, slab.total);
     const auto kinds = column<std::uint8_t>(checkpoint::block_kinds, slab.total);
     const auto fields = columns_of(checkpoint::block_fields, slab.total);
+    const bool has_shaken = communicator_.max(blocks.unshaken.empty() ? 0.0 : 1.0) > 0.0;
+    const auto unshaken =
+        has_shaken ? columns_of(checkpoint::unshaken_fields, slab.total) : std::vector<Column<double>>();
     const auto append = [&](IdRange ids, std::vector<BlockRoute::Row> &leaving) {
       const OwnedRows rows = owned_rows(blocks, ids);
       for (std::size_t row = rows.begin; row < rows.end; ++row) {
@@ -258,6 +261,7 @@ private:
         *to = static_cast<std::uint8_t>(blocks.properties[index].kind);
       });
       write(fields, row, route, checkpoint::block_fields, blocks);
+      write(unshaken, row, route, checkpoint::unshaken_fields, blocks);
     });
   }
 
