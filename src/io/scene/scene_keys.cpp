@@ -29,7 +29,7 @@ constexpr Key keys_before_joints[] = {
   {"run.fidelity", Kind::choice, optional, any, "auto rigid deformable", "\"auto\"", "\"auto\"", "How blocks deform; auto decides for each block by its stiffness and that of its joints."},
   {"run.accepted_error", Kind::number, optional, above_to(0, 1), "", "0.01", "0.01", "Relative error up to which fidelity \"auto\" computes a block as rigid."},
   {"run.initial_friction", Kind::choice, optional, any, "consistent zero", "\"consistent\"", "\"consistent\"", "Shear force of the contacts that exist at the start."},
-  {"run.contact_damping", Kind::number, optional, from_to(0, 100), "", "0.05", "0.05", "Damping ratio of the contact dashpots."},
+  {"run.contact_damping", Kind::number, optional, from_to(0, 100), "", "0.05", "0.05", "Damping ratio of the contact dashpots: the share of critical damping with which two blocks swing on a contact as wide as the root L of the smaller block's area. On a contact of width w the ratio is sqrt(w/L) times that."},
   {"run.rayleigh", Kind::table, optional, any, "", "", "rayleigh = { ratio = 0.02, frequency = 2.0 }", "Rayleigh damping C = alpha M + beta K of blocks, joints and the rock of deformable blocks, instead of contact_damping. It shortens the step; gcpdda inspect says by how much."},
   {"run.rayleigh.ratio", Kind::number, required, above_to(0, 10), "", "", "0.02", "Damping ratio at that frequency, where it is least: alpha = 2 pi frequency ratio, beta = ratio/(2 pi frequency)."},
   {"run.rayleigh.frequency", Kind::number, required, above_to(0, 1e9), "", "", "2.0", "[Hz] That frequency."},
