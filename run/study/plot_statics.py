@@ -15,8 +15,8 @@ import matplotlib.pyplot as plt
 
 LOOKS = {"static": ("tab:red", "o"), "kinetic damping": ("tab:blue", "s"), "local damping": ("tab:green", "^"),
          "slow loading": ("0.4", "D")}
-SCENES = ["slope_jointed", "wet_slope", "tunnel_jointed", "tunnel_jointed, 10 GPa", "deformable_tunnel", "wall",
-          "pyramid", "slope_seeds"]
+SCENES = ["slope_jointed", "slope_jointed, 10 GPa", "wet_slope", "tunnel_jointed", "tunnel_jointed, 10 GPa", "deformable_tunnel",
+          "wall", "pyramid", "slope_seeds"]
 TARGETS = {"normal_off": 0.01, "displacement_off": 0.04}
 
 

@@ -229,8 +229,11 @@ def cost(runner, quick):
         case = found[name]
         steps = {way: runner.step(case, keys) for way, keys in WAYS.items()}
         ways = {way: (f"{keys}, tolerance = 1e-6", 0.0, 50 if way == "static" else 0) for way, keys in WAYS.items()}
-        ways["slow loading"] = (ways["local damping"][0], slow_steps * steps["local damping"], slow_steps)
-        steps["slow loading"] = steps["local damping"]
+        if name == "slope_jointed, 10 GPa":  # a row of energies for every step takes long where blocks deform
+            del ways["local damping"]
+        else:
+            ways["slow loading"] = (ways["local damping"][0], slow_steps * steps["local damping"], slow_steps)
+            steps["slow loading"] = steps["local damping"]
         if name == "slope_jointed":  # as it ships, so that nothing slips while the rock takes up its weight
             ramp = tomllib.loads(case.file.read_text())["run"]["gravity_ramp"]
             way = f"kinetic damping, gravity over {ramp:g} s"
