@@ -8,10 +8,11 @@
 //     force = sum over ends k of (a_k (n + m t) + b_k (n - m t) - T l/2 n) + s t,
 //     a_k, b_k >= 0,   |s| <= (c - m T) l,
 // so that |shear| <= m N + c l, and N >= -T l/2 at each end, with the tensile strength T <= c/m of a bond.
-// These are all forces that the law of the joint admits. The blocks can hold only if some of them balance the load of every block: three
-// linear equations for each. The set of admissible forces shrinks where m, c and T are divided by a larger
-// factor, and the largest factor for which a balance exists is found by bisection, each time by a linear
-// programme: the largest share of the loads, up to all of them, that admissible forces balance.
+// These are all forces that the law of the joint admits. The blocks can hold only if some of them balance the
+// load of every block: three linear equations for each. The set of admissible forces shrinks where m, c and T
+// are divided by a larger factor, and the largest factor for which a balance exists is found by bisection,
+// each time by a linear programme: the largest share of the loads, up to all of them, that admissible forces
+// balance.
 //
 // Bolts, liners and fixed points pull as they do in the load, and as much more or less as they may come to.
 //

@@ -15,7 +15,8 @@ namespace {
 std::string scene_toml(const std::string &earthquake, const std::string &stages,
                        const std::string &run = "") {
   return "[run]\ncontact_damping = 0.3\n" + run +
-         "[material.rock]\ndensity = 2600\n[joint.default]\nnormal_stiffness = 1e9\nfriction_angle_deg = 30\n" +
+         "[material.rock]\ndensity = 2600\n[joint.default]\nnormal_stiffness = 1e9\nfriction_angle_deg = "
+         "30\n" +
          block_toml("floor", rectangle({-9.0, -1.0}, {9.0, 0.0}), "fixed = true") +
          block_toml("slab", rectangle({0.0, 0.0}, {2.0, 1.0})) + "[output]\ninterval = 0.1\n" +
          "[earthquake]\nrecord = \"r.csv\"\n" + earthquake + stages;
