@@ -35,7 +35,7 @@ TEST(FolderInUse, OfAnEnsembleIsLeftToIt) {
   first.wait_until([&] { return fs::exists(folder / "o/members/member_000001.csv"); });
   expect_in_use({"ensemble", "plane.toml", "--count", "2", "--out", "o"}, folder);
   expect_in_use({"ensemble", "plane.toml", "--count", "2", "--out", "o", "--overwrite", "--set",
-                 "joint.default.cohesion=0"},
+                 "material.rock.density=2500"},
                 folder);
   EXPECT_TRUE(fs::exists(folder / "o/members/member_000001.csv"));
   kill(first.id(), SIGKILL);

@@ -27,7 +27,8 @@ using testing::WorkFolder;
 /// A slab on a plane of 10 degrees with a friction angle of 25 degrees.
 std::string slab_toml(const std::string &earthquake, const std::string &stages) {
   constexpr double dip = 10.0 * std::numbers::pi / 180.0;
-  return "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600\n[joint.default]\n"
+  return "[run]\nfidelity = \"rigid\"\ncontact_damping = 0.3\n[material.rock]\ndensity = "
+         "2600\n[joint.default]\n"
          "normal_stiffness = 1e9\nfriction_angle_deg = 25\n[output]\ninterval = 0.1\n" +
          block_toml("plane", placed(rectangle({-20.0, -2.0}, {20.0, 0.0}), dip, {}), "fixed = true") +
          block_toml("slab", placed(rectangle({-1.0, 0.0}, {1.0, 1.0}), dip, {})) +
