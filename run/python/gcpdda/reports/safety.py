@@ -140,9 +140,10 @@ def _mechanism(page, search, mechanism, frames):
         x, y = np.mean([entry["x"] for entry in moving]), np.mean([entry["y"] for entry in moving])
         turn = np.degrees(np.mean([abs(entry["rotation"]) for entry in moving]))
         angle = np.degrees(np.arctan2(y, x))
-        page.text(f"{len(moving)} blocks move in the trial with the smallest factor that fails, "
-                  f"{search.fails or 0:.5g}: on average in the direction of {round(angle)} degrees from the x axis, "
-                  f"counter-clockwise, and they turn by {turn:.2g} degrees.")
+        blocks = "1 block moves" if len(moving) == 1 else f"{len(moving)} blocks move"
+        page.text(f"{blocks} in the trial with the smallest factor that fails, {search.fails or 0:.5g}: on average in "
+                  f"the direction of {round(angle)} degrees from the x axis, counter-clockwise, with a turn of "
+                  f"{turn:.2g} degrees.")
     stills = limited(mechanism, frames)
     if stills:
         page.player(stills, "Displacement of blocks in that trial.")
