@@ -144,9 +144,11 @@ double put_in_situ_shear(const BlockSystem &system, const Candidates &candidates
     if (!(pressure > 0.0)) {
       return;
     }
-    // An overlap force falls off at the ends of the joint, and the shear with it.
+    // An overlap force falls off at the ends of the joint, and the shear with it. Of a region beside bonds on
+    // the same straight side the spring has the length that they leave.
+    const double extent = force.extent_end - force.extent_begin;
     const double normal_force =
-        force.bonded ? pressure * (force.extent_end - force.extent_begin) : force.normal_force;
+        force.bonded ? pressure * extent : std::min(1.0, region.memory.longest / extent) * force.normal_force;
     const double wanted = -normal_force * dot(traction, region.tangent) / pressure;
     if (!force.bonded && force.cap == 0.0 && history.has_bonds(force.pair)) {
       return; // the bond carries it

@@ -73,7 +73,8 @@ PossibleLaws possible_laws(const BlockSystem &system, const JointLaws &joints, c
 }
 
 std::int32_t law_of_region(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair,
-                           std::span<const Piece> pieces, const Region &region) {
+                           std::span<const Piece> pieces, const Region &region,
+                           std::span<const double> bonded) {
   const auto law_of = [&](std::uint32_t i) {
     const Piece &piece = pieces[i];
     const bool on_lower = i < region.middle;
@@ -86,7 +87,8 @@ std::int32_t law_of_region(const BlockSystem &system, const JointLaws &joints, c
     const std::int32_t law = law_of(i);
     double pressure = 0.0;
     for (std::uint32_t k = region.begin; k < region.end; ++k) {
-      pressure += law_of(k) == law ? pieces[k].length * (pieces[k].depth_begin + pieces[k].depth_end) : 0.0;
+      const double whole = pieces[k].length * (pieces[k].depth_begin + pieces[k].depth_end);
+      pressure += law_of(k) == law ? whole - (bonded.empty() ? 0.0 : 2.0 * bonded[k]) : 0.0;
     }
     if (pressure > most || (pressure == most && law < carrying)) {
       most = pressure;
@@ -123,10 +125,16 @@ std::int32_t PairForces::law_beside(const Region &region) const {
 }
 
 void PairForces::choose_law(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-                            RegionMemory &memory) const {
+                            const BondShare &bonds, RegionMemory &memory) {
   const JointLaws &joints = parameters_->joints;
-  const std::int32_t edges = law_of_region(system, joints, pair, overlap_.pieces(), region);
-  memory.law = memory.law < 0 ? edges : joints.slid_to(memory.law, edges);
+  const std::span<const Piece> pieces = overlap_.pieces();
+  std::int32_t edges = law_of_region(system, joints, pair, pieces, region);
+  memory.law = memory.law < 0 ? edges : memory.law;
+  if (bonds.holds && bonds.free_length > 0.0) {
+    find_bonded(system, pair, region);
+    edges = law_of_region(system, joints, pair, pieces, region, bonded_);
+  }
+  memory.law = joints.slid_to(memory.law, edges);
 }
 
 } // namespace gcpdda
