@@ -6,6 +6,7 @@
 #include "simulation/evaluation.hpp"
 #include "simulation/in_situ_state.hpp"
 #include "simulation/initial_overlaps.hpp"
+#include "simulation/static_stage.hpp"
 #include "simulation/step_report.hpp"
 #include "simulation/step_rows.hpp"
 
@@ -32,7 +33,8 @@ void check_bonds(RunState &run) {
 }
 
 void find_initial_friction(RunState &run) {
-  InitialStick stick(run.blocks, run.neighbours.candidates, run.contacts, run.neighbours.history);
+  InitialStick stick(run.blocks, run.neighbours.candidates, run.contacts, run.neighbours.history,
+                     !is_static(run));
   run.neighbours.ghosts.copy(stick.contact_counts());
   const auto sweep = [&] {
     run.neighbours.ghosts.copy_accelerations(run.blocks);

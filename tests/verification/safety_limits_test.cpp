@@ -116,6 +116,84 @@ TEST(SafetyLimits, ABondedBlockHasTheBoundOfItsBond) {
   }
 }
 
+/// A slab on a plane of 20 degrees that is bonded on a part of its base of 4 m.
+struct PartlyBonded {
+  std::vector<Vec2> plane, slab;
+  std::string plane_joints, slab_joints;
+  double begin, end; ///< of the bond along the base, m
+
+  [[nodiscard]] Scene scene(double bond_friction_deg, bool deforms, bool is_static) const {
+    return scene_of(
+        without_duration(
+            head({.gravity = gravity_on(20.0 * degree),
+                  .friction_deg = 20.0,
+                  .run_keys = is_static ? "" : "initial_friction = \"zero\"",
+                  .fidelity = deforms ? "deformable" : "rigid",
+                  .youngs_modulus = 2e9}) +
+            fmt::format("[joint.bond]\nfriction_angle_deg = {}\ncohesion = 20e3\ntension = 5e3\n"
+                        "residual_cohesion = 0.0\n",
+                        bond_friction_deg) +
+            block_toml("plane", plane, fmt::format("fixed = true\nedge_joints = [{}]", plane_joints)) +
+            block_toml("slab", slab, fmt::format("edge_joints = [{}]", slab_joints))) +
+        fmt::format("[[stage]]\nkind = \"settle\"\nlimit = 10.0\nsolver = \"{}\"\n",
+                    is_static ? "static" : "dynamic"));
+  }
+  /// F = (c l + N_b tan(phi_b) + (N - N_b) tan(phi))/S. The pressure on the base is linear with its middle
+  /// below the centroid, which gives the share N_b of the bond.
+  [[nodiscard]] double factor(double bond_friction_deg) const {
+    constexpr double base = 4.0;
+    const Moments shape = polygon_moments(slab);
+    const double weight = rock_density * earth_gravity * shape.area;
+    const double off = shape.centroid.y * std::tan(20.0 * degree);
+    const double middle = 0.5 * (begin + end) - 0.5 * base;
+    const double share = (end - begin) / base * (1.0 + 12.0 * off * middle / (base * base));
+    const double friction =
+        share * std::tan(bond_friction_deg * degree) + (1.0 - share) * std::tan(20.0 * degree);
+    return (20e3 * (end - begin) + weight * std::cos(20.0 * degree) * friction) /
+           (weight * std::sin(20.0 * degree));
+  }
+};
+
+// Whichever block has the vertex within its side. Before the bond breaks the friction beside it is used up.
+// The dynamic step gives a bond all the shear at t = 0, unless friction begins at zero; the static solver
+// does not.
+TEST(SafetyLimits, ASlabThatIsBondedOnAPartOfItsBase) {
+  const std::vector<Vec2> plane = rectangle({-2.0, -1.0}, {10.0, 0.0});
+  const std::vector<Vec2> halves{{0.0, 0.0}, {2.0, 0.0}, {4.0, 0.0}, {4.0, 1.0}, {0.0, 1.0}};
+  const std::vector<Vec2> parts{{0.0, 0.0}, {0.5, 0.0}, {2.5, 0.0}, {4.0, 0.0}, {4.0, 1.0}, {0.0, 1.0}};
+  const std::vector<Vec2> notched{{0.0, 0.0}, {2.0, 0.0}, {4.0, 0.0}, {4.0, 1.0}, {2.5, 1.0},
+                                  {2.5, 0.5}, {1.5, 0.5}, {1.5, 1.0}, {0.0, 1.0}};
+  const std::vector<Vec2> parted{{-2.0, -1.0}, {10.0, -1.0}, {10.0, 0.0}, {1.0, 0.0}, {-2.0, 0.0}};
+  const std::string rest = R"(, "", "", "")";
+  const std::string none = "\"\"" + rest;
+  for (const PartlyBonded &part :
+       {PartlyBonded{plane, halves, none, R"("bond", "")" + rest, 0.0, 2.0},
+        PartlyBonded{plane, halves, none, R"("", "bond")" + rest, 2.0, 4.0},
+        PartlyBonded{plane, parts, none, R"("", "bond", "")" + rest, 0.5, 2.5},
+        PartlyBonded{plane, notched, none, R"("bond", "", "", "", "", "")" + rest, 0.0, 2.0},
+        PartlyBonded{parted, rectangle({0.0, 0.0}, {4.0, 1.0}), R"("", "", "", "bond", "")", none, 0.0,
+                     1.0}}) {
+    for (const bool deforms : {false, true}) {
+      for (const bool is_static : {true, false}) {
+        const double friction_deg = is_static == deforms ? 20.0 : 35.0;
+        const Scene scene = part.scene(friction_deg, deforms, is_static);
+        const double exact = part.factor(friction_deg);
+        const SafetyReport found = search_quietly(scene).report;
+        const std::string name =
+            fmt::format("bond from {} to {} m of {} vertices, {}, {}", part.begin, part.end, part.slab.size(),
+                        deforms ? "deformable" : "rigid", is_static ? "static" : "dynamic");
+        EXPECT_NEAR(0.5 * (found.holds.value_or(0.0) + found.fails.value_or(0.0)), exact, 0.01 * exact)
+            << name;
+        const double bound = search_quietly(scene, true).report.bound.value_or(0.0);
+        EXPECT_GE(bound, found.holds.value_or(0.0)) << name;
+        if (friction_deg == 20.0) { // it does not matter where the pressure is
+          EXPECT_NEAR(bound, exact, 3e-3 * exact) << name;
+        }
+      }
+    }
+  }
+}
+
 // The block before it is taken away: the trials begin with fewer blocks than the scene has.
 TEST(SafetyLimits, InclineAfterAnExcavation) {
   const Scene scene = scene_of(

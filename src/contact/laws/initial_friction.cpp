@@ -40,12 +40,11 @@ Vec2 acceleration_at(const BlockSystem &system, std::size_t row, Vec2 arm) {
 } // namespace
 
 InitialStick::InitialStick(const BlockSystem &system, const Candidates &candidates, ContactForces &forces,
-                           ContactHistory &history)
-    : system_(system), candidates_(candidates), forces_(forces), history_(history),
+                           ContactHistory &history, bool with_bonds)
+    : system_(system), candidates_(candidates), forces_(forces), history_(history), with_bonds_(with_bonds),
       contact_counts_(system.num_rows(), 0.0) {
   forces_.change_shear(system_, candidates_, history_, [&](Region region) {
-    // A region without extent along its tangent (faces that coincide up to rounding) has no spring yet.
-    if (!(region.force.cap > 0.0) || !(region.memory.longest > 0.0)) {
+    if (!takes_part(region)) {
       return;
     }
     contact_counts_[region.pair.lower.value] += 1.0;
@@ -66,8 +65,12 @@ double InitialStick::sliding_of(const Region &region) const {
   return std::abs(sliding) > rounding ? sliding : 0.0;
 }
 
+bool InitialStick::takes_part(const Region &region) const {
+  return region.force.cap > 0.0 && region.memory.longest > 0.0 && (with_bonds_ || !region.force.bonded);
+}
+
 bool InitialStick::sticks(const Region &region) const {
-  return region.force.cap > 0.0 && region.memory.longest > 0.0 && sliding_of(region) == 0.0;
+  return takes_part(region) && sliding_of(region) == 0.0;
 }
 
 InitialStick::Yields InitialStick::yields_of(const Region &region) const {
