@@ -231,6 +231,8 @@ void judge_cutters(Doubts &doubts) {
       doubts.judge("joint_set.*.trace_length", path + ".trace_length", set.trace.mean, set.where);
       doubts.judge("joint_set.*.gap", path + ".gap", set.gap.mean, set.where);
     }
+    expect_inside(doubts, path + ".within", set.within,
+                  doubts.place_of(path + ".within", set.where).value_or(set.where));
     const Vec2 extent = bounding_box(region.outline).extent();
     if (set.spacing.mean > norm(extent)) {
       doubts.warn(doubts.place_of(path + ".spacing", set.where).value_or(set.where),

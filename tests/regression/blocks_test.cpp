@@ -189,10 +189,16 @@ TEST_F(Blocks, NeedARegion) {
 }
 
 TEST_F(Blocks, TellWhatIsImplausible) {
-  folder_.write("far.toml", scene + "[[fault]]\nname = \"far\"\npoints = [[20, 0], [21, 5]]\n");
+  folder_.write("far.toml", scene + "[[fault]]\nname = \"far\"\npoints = [[20, 0], [21, 5]]\n"
+                                    "[[joint_set]]\nname = \"away\"\ndip_deg = 80\nspacing = 1\n"
+                                    "within = [[30, 0], [40, 0], [40, 9]]\n");
   const Outcome outcome = run_gcpdda(2, {"blocks", "far.toml"}, folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(count_of(outcome.err, "warning: fault.far lies from [20, 0] to [21, 5], outside of the region"),
+            1)
+      << outcome.err;
+  EXPECT_EQ(count_of(outcome.err,
+                     "warning: joint_set.away.within lies from [30, 0] to [40, 9], outside of the region"),
             1)
       << outcome.err;
 }
