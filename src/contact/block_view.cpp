@@ -9,7 +9,8 @@ BlockView view_of(const BlockSystem &system, std::size_t row, TrialOutline &outl
                  outline.length,
                  system.motion[row].box,
                  system.properties[row].is_convex,
-                 {}};
+                 {},
+                 system.properties[row].has_parted_sides};
   if (system.is_deformable(row)) {
     view.frame = {system.motion[row].centroid, system.deformation_of(row).trial,
                   system.trial_inverse[system.deformation_begin[row]],

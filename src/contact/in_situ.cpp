@@ -128,7 +128,7 @@ void swell(BlockSystem &system, std::size_t row, std::span<const Vec2> by) {
   }
   const auto shape = system.of_row(system.reference_vertex, row);
   const std::vector<Vec2> vertices(shape.begin(), shape.end());
-  block.is_convex = is_convex(vertices);
+  block.is_convex = is_convex(vertices) && !block.has_parted_sides;
   block.width = narrowest_width(vertices);
 }
 
@@ -144,11 +144,9 @@ double put_in_situ_shear(const BlockSystem &system, const Candidates &candidates
     if (!(pressure > 0.0)) {
       return;
     }
-    // An overlap force falls off at the ends of the joint, and the shear with it. Of a region beside bonds on
-    // the same straight side the spring has the length that they leave.
-    const double extent = force.extent_end - force.extent_begin;
+    // An overlap force falls off at the ends of the joint, and the shear with it.
     const double normal_force =
-        force.bonded ? pressure * extent : std::min(1.0, region.memory.longest / extent) * force.normal_force;
+        force.bonded ? pressure * (force.extent_end - force.extent_begin) : force.normal_force;
     const double wanted = -normal_force * dot(traction, region.tangent) / pressure;
     if (!force.bonded && force.cap == 0.0 && history.has_bonds(force.pair)) {
       return; // the bond carries it

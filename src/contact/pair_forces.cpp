@@ -204,17 +204,13 @@ void PairForces::slip(const BlockSystem &system, const CandidatePair &pair, cons
 void PairForces::add_friction(const BlockSystem &system, const CandidatePair &pair,
                               const RelativeVelocity &velocity, const BondShare &bonds, RegionMemory &memory,
                               RegionForce &force) {
-  const bool is_partly_bonded = bonds.holds && bonds.free_length > 0.0;
-  const double extent =
-      is_partly_bonded ? bonds.free_length : force.extent_end - force.extent_begin; // where friction acts
+  const double extent = force.extent_end - force.extent_begin;
   std::optional<Grip> grip; // none between rigid blocks
   if (has_grip(system, pair)) {
-    const auto between = is_partly_bonded ? std::array{bonds.free_begin, bonds.free_end}
-                                          : std::array{force.extent_begin, force.extent_end};
-    grip.emplace(system, pair, force, between, memory.grip, force.born || extent > memory.longest);
+    grip.emplace(system, pair, force, memory.grip, force.born, memory.longest);
   }
   memory.longest = std::max(memory.longest, extent);
-  if (bonds.holds && !is_partly_bonded) {
+  if (bonds.holds) {
     memory.shear = 0.0;
     memory.state = ContactState::stick;
     take_middle(grip, memory, force);
@@ -222,13 +218,9 @@ void PairForces::add_friction(const BlockSystem &system, const CandidatePair &pa
   }
   const JointLaw &law = parameters_->joints.strength(pair.law);
   const LawConstants constants = parameters_->constants(pair.law);
-  const double pressed =
-      is_partly_bonded ? std::max(0.0, force.normal_force -
-                                           parameters_->constants(pair.law).half_stiffness * bonds.pressure)
-                       : force.normal_force;
   const double tan_friction =
-      law.is_barton_bandis ? law.tan_friction_at(pressed / extent) : constants.tan_friction;
-  force.cap = pressed * tan_friction + constants.cohesion * extent;
+      law.is_barton_bandis ? law.tan_friction_at(force.normal_force / extent) : constants.tan_friction;
+  force.cap = force.normal_force * tan_friction + constants.cohesion * extent;
   memory.state = force.cap > 0.0 ? ContactState::stick : ContactState::slip;
   if (force.cap <= 0.0) {
     memory.shear = 0.0;
@@ -365,18 +357,18 @@ void PairForces::load_found(const BlockSystem &system, const CandidatePair &pair
     memory.lower_stretch = region.faces.first;
     memory.higher_stretch = region.faces.second;
   }
-  const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(system, pair, region, force);
+  const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, region);
   if (!pair.is_mixed) {
     load_region(system, pair, region, share, memory, force);
     return;
   }
-  const bool chooses = force.born || share.released || chooses_law(pair, memory);
+  const bool chooses = force.born || chooses_law(pair, memory);
   if (force.born && !pair.is_convex) {
-    memory.law = law_beside(region);
+    memory.law = law_beside(system, pair, region);
   }
   const std::int32_t before = memory.law;
   if (chooses) {
-    choose_law(system, pair, region, share, memory);
+    choose_law(system, pair, region, memory);
   }
   load_region(system, constants_of(system, *parameters_, pair, memory.law), region, share, memory, force);
   if (chooses) {
@@ -419,10 +411,10 @@ void PairForces::evaluate_opened(const BlockSystem &system, const CandidatePair 
   }
   append_force(force);
   memory_.push_back(memory);
-  const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(system, pair, *region, force);
+  const BondShare share = bonds_.empty() ? BondShare{} : share_of_bonds(pair, *region);
   load_region(system, constants, *region, share, memory_.back(), forces_[num_forces_ - 1]);
   if (chooses_law(pair, known)) { // for what follows
-    choose_law(system, pair, *region, share, memory_.back());
+    choose_law(system, pair, *region, memory_.back());
     note_choice(pair, false, memory_.back());
   }
 }
@@ -443,7 +435,7 @@ void PairForces::find_regions(const BlockSystem &system, const CandidatePair &pa
   old = old.first(old.size() - bonds.size());
   bonds_.clear();
   if (!bonds.empty()) {
-    find_bonds(system, pair, touches ? overlap_.regions() : std::span<const Region>(), bonds);
+    find_bonds(system, pair, touches ? overlap_.pieces() : std::span<const Piece>(), bonds);
   }
   found_.clear();
   if (touches) {

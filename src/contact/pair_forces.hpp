@@ -97,11 +97,7 @@ private:
   struct BondAtWork;
   /// What bonds leave of the friction of a region.
   struct BondShare {
-    bool holds = false;       ///< bonds carry shear, and ...
-    double pressure = 0.0;    ///< ... this of int d ds, m2
-    double free_length = 0.0; ///< of what they leave, m: 0 or more than rounding,
-    double free_begin = 0.0;  ///< which lies between these places along t_r, from x_r, m
-    double free_end = 0.0;
+    bool holds = false;    ///< a bond carries the shear
     bool released = false; ///< one has just broken ...
     double shear = 0.0;    ///< ... and leaves this, N/m,
     double length = 0.0;   ///< of a stretch of this length
@@ -120,10 +116,11 @@ private:
   void load_found(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number,
                   const FoundRegion &found);
   /// That of a region found before of which this one, which is born, was a part; else -1.
-  [[nodiscard]] std::int32_t law_beside(const Region &region) const;
-  /// From the edges on which the region at hand lies: its strength from those that no bond holds.
+  [[nodiscard]] std::int32_t law_beside(const BlockSystem &system, const CandidatePair &pair,
+                                        const Region &region) const;
+  /// From the edges on which the region at hand lies.
   void choose_law(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-                  const BondShare &bonds, RegionMemory &memory);
+                  RegionMemory &memory) const;
   /// References to other regions hold until the next one is appended.
   RegionForce &append_force(const RegionForce &force = {});
   /// Regions of the pair at hand that carry something, each with its memory.
@@ -136,15 +133,9 @@ private:
   void load_region(const BlockSystem &system, const CandidatePair &pair, const Region &region,
                    const BondShare &bonds, RegionMemory &memory, RegionForce &force);
   /// Stretch the pair's bonds and see which of them hold.
-  /// @param regions  of the pair, if it touches
-  void find_bonds(const BlockSystem &system, const CandidatePair &pair, std::span<const Region> regions,
+  void find_bonds(const BlockSystem &system, const CandidatePair &pair, std::span<const Piece> pieces,
                   std::span<const RegionMemory> memory);
-  [[nodiscard]] double pressure_on(const BlockSystem &system, const CandidatePair &pair,
-                                   const BondAtWork &bond, const Region &region) const;
-  /// Of each piece of a region, into `bonded_`.
-  void find_bonded(const BlockSystem &system, const CandidatePair &pair, const Region &region);
-  [[nodiscard]] BondShare share_of_bonds(const BlockSystem &system, const CandidatePair &pair,
-                                         const Region &region, const RegionForce &force) const;
+  [[nodiscard]] BondShare share_of_bonds(const CandidatePair &pair, const Region &region) const;
   /// Those that hold as regions of their own.
   void append_bonds(const BlockSystem &system, const CandidatePair &pair, std::uint32_t number);
   /// The pair at hand with `opening` taken out, and its region that goes on with this memory.
@@ -198,7 +189,6 @@ private:
   ClosedPair closed_;          ///< the same, with one of these taken out
   Mat2 damping_dyad_;          ///< of the region at hand, about its origin
   std::vector<double> facing_; ///< of the pieces at hand, scratch
-  std::vector<double> bonded_; ///< what bonds hold of the pressure of the pieces at hand, m2, scratch
 };
 
 } // namespace gcpdda

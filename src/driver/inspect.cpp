@@ -5,6 +5,7 @@
 #include "driver/odd_blocks.hpp"
 #include "driver/run_words.hpp"
 #include "driver/svg.hpp"
+#include "geometry/polygon.hpp"
 #include "model/stiffness.hpp"
 #include "partition/partition_cells.hpp"
 #include "simulation/rank_facts.hpp"
@@ -113,7 +114,7 @@ private:
     std::int64_t reentrant = 0;
     for (std::size_t row = 0; row < blocks.num_rows(); ++row) {
       const bool counted = row < blocks.num_owned || (blocks.is_fixed(row) && communicator_.is_root());
-      reentrant += counted && !blocks.properties[row].is_convex ? 1 : 0;
+      reentrant += counted && !is_convex(blocks.of_row(blocks.reference_vertex, row)) ? 1 : 0;
     }
     return line("blocks",
                 fmt::format("{} mobile, {} fixed, {} vertices, {} with re-entrant vertices", num_mobile_,

@@ -288,6 +288,11 @@ bool is_convex(std::span<const Vec2> vertices) {
   return true;
 }
 
+bool are_in_one_side(Vec2 normal, Vec2 next_normal) {
+  constexpr double straight = 0.01; // blocks that lie on one edge of a larger turn do not lie on the other
+  return std::abs(cross(normal, next_normal)) <= straight && dot(normal, next_normal) > 0.0;
+}
+
 void find_reentrant_vertices(std::span<const Vec2> vertices, std::vector<bool> &reentrant) {
   const std::size_t n = vertices.size();
   const double rounding = rounding_of(vertices);

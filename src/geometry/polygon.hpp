@@ -33,6 +33,10 @@ bool is_simple(std::span<const Vec2> vertices);
 /// All turns are left turns or straight up to rounding (counter-clockwise vertices).
 bool is_convex(std::span<const Vec2> vertices);
 
+/// Whether edges with these unit normals, one behind the other, lie in one side that is straight but for a
+/// turn of 0.01.
+bool are_in_one_side(Vec2 normal, Vec2 next_normal);
+
 /// The vertices that keep a polygon from being convex: where the boundary turns right.
 std::vector<bool> reentrant_vertices(std::span<const Vec2> vertices);
 /// The same into a list that has been used before.

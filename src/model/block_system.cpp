@@ -120,6 +120,21 @@ void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, cons
   append_block(system, id, block, material, block.fixed ? BlockKind::fixed : BlockKind::rigid);
 }
 
+void part_sides(BlockSystem &system, const JointLaws &joints) {
+  const std::size_t row = system.num_rows() - 1;
+  const auto normal = system.of_row(system.reference_normal, row);
+  const std::span<const std::int32_t> joint = system.edge_joints(row);
+  const bool has_bonds =
+      std::any_of(joints.laws.begin(), joints.laws.end(), [](const JointLaw &law) { return law.has_bonds; });
+  BlockProperties &block = system.properties[row];
+  for (std::size_t e = 0; e < normal.size(); ++e) {
+    const std::size_t next = e + 1 == normal.size() ? 0 : e + 1;
+    const bool changes = has_bonds || (!joint.empty() && joint[e] != joint[next]);
+    block.has_parted_sides = block.has_parted_sides || (changes && are_in_one_side(normal[e], normal[next]));
+  }
+  block.is_convex = block.is_convex && !block.has_parted_sides;
+}
+
 void append_edge_joints(BlockSystem &system, std::span<const std::int32_t> joints) {
   if (joints.empty() && system.edge_joint.empty()) {
     return;

@@ -50,15 +50,16 @@ struct BlockProperties {
   BlockId id;
   std::int32_t material = 0;
   BlockKind kind = BlockKind::rigid;
-  bool is_convex = true;
-  bool has_edge_joints = false; ///< some of its edges have a law of their own
-  double area = 0.0;            ///< m2
-  double mass = 0.0;            ///< kg per metre; infinite for a fixed or driven block
-  double inertia = 0.0;         ///< about the centroid, kg m2 per metre; infinite for a fixed or driven block
-  double mass_scaling = 1.0;    ///< of mass and inertia against inertial forces alone, a power of two
-  double radius = 0.0;          ///< largest centroid-to-vertex distance, m
-  double width = 0.0;           ///< narrowest width, m
-  Vec2 centroid;                ///< at t = 0, m
+  bool is_convex = true;         ///< and without parted sides
+  bool has_edge_joints = false;  ///< some of its edges have a law of their own
+  bool has_parted_sides = false; ///< part_sides()
+  double area = 0.0;             ///< m2
+  double mass = 0.0;             ///< kg per metre; infinite for a fixed or driven block
+  double inertia = 0.0;      ///< about the centroid, kg m2 per metre; infinite for a fixed or driven block
+  double mass_scaling = 1.0; ///< of mass and inertia against inertial forces alone, a power of two
+  double radius = 0.0;       ///< largest centroid-to-vertex distance, m
+  double width = 0.0;        ///< narrowest width, m
+  Vec2 centroid;             ///< at t = 0, m
 
   /// Whatever acts on it.
   [[nodiscard]] bool keeps_its_velocity() const { return std::isinf(mass); }
@@ -404,6 +405,10 @@ void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, cons
                   BlockKind kind, bool plane_strain = true);
 /// The same, fixed or rigid as the block says.
 void append_block(BlockSystem &system, BlockId id, const SceneBlock &block, const Material &material);
+
+/// Let vertices within straight sides of the last row part them, if laws change there or edges may be bonded:
+/// a contact on both parts has a region on each.
+void part_sides(BlockSystem &system, const JointLaws &joints);
 
 /// The laws of the last row's edges, once its vertices stand in the system; none where it has none.
 void append_edge_joints(BlockSystem &system, std::span<const std::int32_t> joints);

@@ -109,6 +109,7 @@ void free_block(RunState &run, std::int64_t id, const SceneBlock &block) {
         choose_fidelity(block, signed_area(block.vertices), material,
                         stiffness_bound(run.scene.joints, block.material).normal, run.scene.run);
     append_block(freed, BlockId{id}, block, material, choice.kind, run.scene.run.plane_strain);
+    part_sides(freed, run.scene.joints);
   }
   rebuild(
       run.blocks, [&](std::size_t row) { return run.blocks.properties[row].id.value != id; }, freed);

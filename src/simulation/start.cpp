@@ -264,6 +264,7 @@ void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
     }
     append_block(block.fixed ? fixed : run.blocks, BlockId{first + static_cast<std::int64_t>(k)}, block,
                  material, choice.kind, run.scene.run.plane_strain);
+    part_sides(block.fixed ? fixed : run.blocks, run.scene.joints);
     if (!block.fixed && !run.scene.earthquake.viscous.empty()) {
       add_dashpot(run, block, material);
     }

@@ -92,6 +92,48 @@ TEST(Identity, OfStaticStagesWithBondsAndDilation) {
   }
 }
 
+/// A slope whose bedding is bonded on every third part of 3 m. In the second stage the bonds are weakened.
+std::string bridged_slope_toml(double cohesion) {
+  std::string toml = "[run]\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 5e9\npoissons_ratio = 0.25\n"
+                     "[joint.default]\nnormal_stiffness = 2e9\nfriction_angle_deg = 38.0\n"
+                     "[joint.bridge]\nnormal_stiffness = 4e9\ncohesion = 5e5\ntension = 2e5\n"
+                     "residual_cohesion = 0.0\n[output]\ninterval = 0.02\ncheckpoint_interval = 0.04\n"
+                     "[region]\nmaterial = \"rock\"\nfixed = [\"bottom\", \"left\", \"right\"]\n"
+                     "[region.slope]\ntoe_length = 10.0\ncrest_length = 20.0\ndepth = 5.0\n"
+                     "[[region.slope.bench]]\nheight = 20.0\nface_angle_deg = 60.0\n"
+                     "[[joint_set]]\ndip_deg = 100.0\nspacing = 1.5\n";
+  for (int line = 0; line < 15; ++line) {
+    for (int part = 0; part < 15; ++part) {
+      const double x = 3.0 * part - 12.0;
+      const double y = 2.0 * line - 6.0;
+      toml += fmt::format("[[fault]]\npoints = [[{}, {}], [{}, {}]]\njoint = \"{}\"\n", x, y + 0.1 * x,
+                          x + 3.0, y + 0.1 * (x + 3.0), (part + line) % 3 == 0 ? "bridge" : "default");
+    }
+  }
+  return toml +
+         fmt::format("[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 20.0\nsolver = \"static\"\n"
+                     "[[stage]]\nname = \"weak\"\nkind = \"settle\"\nlimit = 20.0\nsolver = \"static\"\n"
+                     "set = {{\"joint.bridge.cohesion\" = {0}, \"joint.bridge.tension\" = {0}}}\n"
+                     "[[stage]]\nkind = \"run\"\nduration = 0.05\n",
+                     cohesion);
+}
+
+// Bonds on parts of straight sides, of which some break.
+TEST(Identity, OfBondedPartsOfSides) {
+  const Scene scene = testing::scene_of(bridged_slope_toml(1e3));
+  const TwoRuns runs(scene);
+  EXPECT_GE(runs.counted("refreshes"), 1);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+  const TwoRuns unbroken(testing::scene_of(bridged_slope_toml(5e5)));
+  if (runs.world().is_root()) {
+    EXPECT_NE(summary_text(runs.alone(), "stages"), summary_text(unbroken.alone(), "stages"))
+        << "bonds break";
+  }
+  expect_same_after_restart(runs, scene);
+}
+
 // Friction does not hold this opening: the dynamic solver takes over in the middle of a stage and finds that
 // it has failed.
 TEST(Identity, OfAStaticStageThatIsLeft) {

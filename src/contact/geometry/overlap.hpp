@@ -62,8 +62,9 @@ struct BlockView {
   std::span<const Vec2> normal;
   std::span<const double> length;
   Aabb box;
-  bool is_convex = true;
+  bool is_convex = true;              ///< and without parted sides
   std::optional<DeformedFrame> frame; ///< of a deformable block
+  bool has_parted_sides = false;      ///< vertices within straight sides part regions
 };
 
 /// Part of an edge inside the other block, with one feature of the other block's boundary nearest along it.
@@ -90,8 +91,8 @@ struct DepthCurve {
   double foot = 0.0; ///< m
 };
 
-/// Where a region lies: numbers of the stretches between re-entrant vertices (from vertex 0 on) that face
-/// each other; 0 for a convex block.
+/// Where a region lies: numbers of the stretches between vertices that part regions (from vertex 0 on) that
+/// face each other; 0 for a convex block.
 struct RegionFaces {
   std::int32_t first = 0;
   std::int32_t second = 0;

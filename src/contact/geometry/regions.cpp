@@ -1,4 +1,5 @@
-// Which pieces of a contact share one friction spring, if a block has re-entrant vertices.
+// Which pieces of a contact share one friction spring, if a block has re-entrant vertices, or vertices within
+// straight sides where laws change.
 //
 // Such vertices cut an outline into stretches. A piece belongs to two of them: that of its own edge and that
 // of the nearest edge of the other block. Pieces with the same two can still lie apart (a bar over both
@@ -29,19 +30,27 @@ void RegionSplitter::Outline::follow(const BlockView &block) {
     return;
   }
   // The reference polygon: deformation must not renumber anything.
-  find_reentrant_vertices(block.frame ? block.frame->vertex : block.vertex, reentrant);
-  const auto num_reentrant = static_cast<std::int32_t>(std::count(reentrant.begin(), reentrant.end(), true));
+  find_reentrant_vertices(block.frame ? block.frame->vertex : block.vertex, parts);
+  const std::span<const Vec2> normal = block.frame ? block.frame->normal : block.normal;
+  for (std::size_t e = 0; e < n && block.has_parted_sides; ++e) {
+    parts[e] = parts[e] || are_in_one_side(normal[e == 0 ? n - 1 : e - 1], normal[e]);
+  }
+  const auto num_parts = static_cast<std::int32_t>(std::count(parts.begin(), parts.end(), true));
   const auto start =
-      static_cast<std::size_t>(std::find(reentrant.begin(), reentrant.end(), true) - reentrant.begin()) % n;
+      static_cast<std::size_t>(std::find(parts.begin(), parts.end(), true) - parts.begin()) % n;
   std::int32_t passed = 0;
   for (std::size_t e = 0; e < n; ++e) {
-    passed += e > 0 && reentrant[e] ? 1 : 0;
-    stretch[e] = num_reentrant > 0 ? passed % num_reentrant : 0;
+    passed += e > 0 && parts[e] ? 1 : 0;
+    stretch[e] = num_parts > 0 ? passed % num_parts : 0;
+  }
+  // The only vertex of this kind has a stretch on each side, or nothing would tell both parts from each other.
+  for (std::size_t e = 0; e < n && num_parts == 1 && block.has_parted_sides; ++e) {
+    stretch[e] = (e + n - start) % n < n / 2 ? 0 : 1;
   }
   for (std::size_t step = 1; step < n; ++step) {
     const std::size_t e = (start + step) % n;
     const std::size_t last = (start + step - 1) % n;
-    arc[e] = reentrant[e] ? 0.0 : arc[last] + block.length[last];
+    arc[e] = parts[e] ? 0.0 : arc[last] + block.length[last];
   }
 }
 

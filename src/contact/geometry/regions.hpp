@@ -27,7 +27,7 @@ private:
   struct Outline {
     std::vector<std::int32_t> stretch;
     std::vector<double> arc;
-    std::vector<bool> reentrant;
+    std::vector<bool> parts; ///< regions end at the edge's first vertex
 
     void follow(const BlockView &block);
   };

@@ -17,12 +17,7 @@ struct PairForces::BondAtWork {
   double pull_moment = 0.0; ///< int k_n max(0, o) s ds, s from the first end, N
   double cap = 0.0;         ///< strength in shear, N/m
   bool broken = false;
-  bool is_part_of_side = false; ///< a straight side goes on beyond one of its edges
 
-  /// int d ds on what of a piece lies on its stretch.
-  /// @param is_lower  the piece lies on an edge of the lower block
-  [[nodiscard]] double pressure_on(const BlockSystem &system, const CandidatePair &pair, const Piece &piece,
-                                   bool is_lower) const;
   /// Of the dashpots along the normal, on the lower block, at points begin + s along.
   [[nodiscard]] TractionIntegral drag(const RelativeVelocity &velocity, Vec2 along) const;
   [[nodiscard]] Vec2 middle() const { return 0.5 * (stretched.end[0] + stretched.end[1]); }

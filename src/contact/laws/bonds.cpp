@@ -45,72 +45,22 @@ std::array<double, 2> positive_part(double first, double last) {
   return {first >= 0.0 ? 0.0 : first / (first - last), last >= 0.0 ? 1.0 : first / (first - last)};
 }
 
-/// Whether an edge is this one, or goes on in its line behind a vertex within a straight side.
-bool is_in_line(const BlockSystem &system, BlockIndex row, std::size_t edge, std::size_t with) {
-  if (edge == with) {
-    return true;
-  }
-  constexpr double straight = 1e-6; // turn, far below any that tells pieces on both edges apart
-  const auto normal = system.of_row(system.reference_normal, row.value);
-  const auto vertex = system.of_row(system.reference_vertex, row.value);
-  const Vec2 way = vertex[edge] - vertex[with];
-  return norm(normal[edge] - normal[with]) <= straight &&
-         std::abs(dot(way, normal[with])) <= straight * norm(way);
-}
-
-/// Whether a straight side goes on beyond an edge.
-bool side_goes_on(const BlockSystem &system, BlockIndex row, std::int32_t edge) {
-  const std::size_t count = system.num_vertices(row.value);
-  const auto e = static_cast<std::size_t>(edge);
-  return is_in_line(system, row, (e + 1) % count, e) || is_in_line(system, row, (e + count - 1) % count, e);
-}
-
-/// int d ds on what of a piece lies between two points of its line.
-double pressure_within(const Piece &piece, const std::array<Vec2, 2> &end) {
-  const Vec2 way = end[1] - end[0];
-  const double begin = dot(piece.begin - end[0], way);
-  const double last = dot(piece.end() - end[0], way);
-  if (begin == last) {
-    return 0.0;
-  }
-  const auto share_at = [&](double place) { return std::clamp((place - begin) / (last - begin), 0.0, 1.0); };
-  const double first_share = share_at(0.0);
-  const double last_share = share_at(dot(way, way));
-  const double middle = 0.5 * (first_share + last_share);
-  return std::abs(last_share - first_share) * piece.length *
-         (piece.depth_begin + middle * (piece.depth_end - piece.depth_begin));
-}
-
-} // namespace
-
-// Of collinear edges rounding alone tells which is the nearest: on a side that goes on beyond the edge pieces
-// count by their place and not by the edge that they name.
-double PairForces::BondAtWork::pressure_on(const BlockSystem &system, const CandidatePair &pair,
-                                           const Piece &piece, bool is_lower) const {
-  const std::int32_t lower = is_lower ? piece.edge : piece.face;
-  const std::int32_t higher = is_lower ? piece.face : piece.edge;
-  if (!is_part_of_side) {
-    return lower == lower_edge() && higher == higher_edge()
-               ? 0.5 * piece.length * (piece.depth_begin + piece.depth_end)
-               : 0.0;
-  }
-  const auto in_line = [&](BlockIndex row, std::int32_t edge, std::int32_t with) {
-    return is_in_line(system, row, static_cast<std::size_t>(edge), static_cast<std::size_t>(with));
-  };
-  return in_line(pair.lower, lower, lower_edge()) && in_line(pair.higher, higher, higher_edge())
-             ? pressure_within(piece, stretched.end)
-             : 0.0;
-}
-
-double PairForces::pressure_on(const BlockSystem &system, const CandidatePair &pair, const BondAtWork &bond,
-                               const Region &region) const {
-  const std::span<const Piece> pieces = overlap_.pieces();
+/// Pressure int d ds that acts between two edges.
+double pressure_between(std::span<const Piece> pieces, std::size_t num_lower, std::int32_t lower_edge,
+                        std::int32_t higher_edge) {
   double pressure = 0.0;
-  for (std::uint32_t i = region.begin; i < region.end; ++i) {
-    pressure += bond.pressure_on(system, pair, pieces[i], i < region.middle);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece &piece = pieces[i];
+    const bool on_lower = i < num_lower;
+    if ((on_lower ? piece.edge : piece.face) == lower_edge &&
+        (on_lower ? piece.face : piece.edge) == higher_edge) {
+      pressure += 0.5 * piece.length * (piece.depth_begin + piece.depth_end);
+    }
   }
   return pressure;
 }
+
+} // namespace
 
 std::optional<SharedStretch> shared_stretch(const BlockSystem &system, const CandidatePair &pair,
                                             std::int32_t lower_edge, std::int32_t higher_edge) {
@@ -228,14 +178,12 @@ void bond_joints(const BlockSystem &system, const Candidates &candidates, const 
 }
 
 void PairForces::find_bonds(const BlockSystem &system, const CandidatePair &pair,
-                            std::span<const Region> regions, std::span<const RegionMemory> memory) {
+                            std::span<const Piece> pieces, std::span<const RegionMemory> memory) {
   for (const RegionMemory &known : memory) {
     BondAtWork &bond = bonds_.emplace_back();
     bond.memory = known;
     bond.constants = parameters_->constants(known.law);
     bond.damping = constants_of(system, *parameters_, pair, known.law).damping;
-    bond.is_part_of_side = side_goes_on(system, pair.lower, bond.lower_edge()) ||
-                           side_goes_on(system, pair.higher, bond.higher_edge());
     bond.stretched = opening_of(system, pair, known, Configuration::trial);
     const JointLaw &law = parameters_->joints.laws[static_cast<std::size_t>(known.law)];
     const auto [o0, o1] = bond.stretched.opening;
@@ -243,8 +191,9 @@ void PairForces::find_bonds(const BlockSystem &system, const CandidatePair &pair
     bond.pull = law.normal_stiffness * open.total;
     bond.pull_moment = law.normal_stiffness * open.along;
     double pressure = 0.0;
-    for (const Region &region : regions) {
-      pressure += pressure_on(system, pair, bond, region);
+    for (const Region &region : pieces.empty() ? std::span<const Region>() : overlap_.regions()) {
+      pressure += pressure_between(pieces.subspan(region.begin, region.end - region.begin),
+                                   region.middle - region.begin, bond.lower_edge(), bond.higher_edge());
     }
     const double push = bond.constants.half_stiffness * pressure;
     bond.cap = std::max(0.0, law.cohesion * bond.stretched.length + (push - bond.pull) * law.tan_friction);
@@ -256,49 +205,16 @@ void PairForces::find_bonds(const BlockSystem &system, const CandidatePair &pair
   }
 }
 
-void PairForces::find_bonded(const BlockSystem &system, const CandidatePair &pair, const Region &region) {
-  const std::span<const Piece> pieces = overlap_.pieces();
-  bonded_.assign(pieces.size(), 0.0);
-  for (const BondAtWork &bond : bonds_) {
-    for (std::uint32_t i = region.begin; i < region.end && !bond.broken; ++i) {
-      bonded_[i] += bond.pressure_on(system, pair, pieces[i], i < region.middle);
-    }
-  }
-}
-
-PairForces::BondShare PairForces::share_of_bonds(const BlockSystem &system, const CandidatePair &pair,
-                                                 const Region &region, const RegionForce &force) const {
-  const double extent = force.extent_end - force.extent_begin;
-  const double rounding = coincidence * extent;
+PairForces::BondShare PairForces::share_of_bonds(const CandidatePair &pair, const Region &region) const {
+  const std::span<const Piece> pieces = overlap_.pieces().subspan(region.begin, region.end - region.begin);
   BondShare share;
-  share.free_begin = force.extent_begin;
-  share.free_end = force.extent_end;
-  share.free_length = extent;
   for (const BondAtWork &bond : bonds_) {
-    const double pressure = pressure_on(system, pair, bond, region);
-    if (!pair.is_convex && !(pressure > 0.0)) {
-      continue;
-    }
-    if (bond.broken) {
-      share.released = true;
-      share.shear += bond.memory.shear;
-      share.length += bond.memory.longest;
-      continue;
-    }
-    share.holds = true;
-    share.pressure += pressure;
-    share.free_length -= bond.is_part_of_side ? bond.memory.longest : extent;
-    const auto place = [&](Vec2 end) { return dot(end - force.point, perp(force.normal)); };
-    const auto [low, high] = std::minmax(place(bond.stretched.end[0]), place(bond.stretched.end[1]));
-    if (low <= share.free_begin + rounding) {
-      share.free_begin = std::max(share.free_begin, high);
-    } else if (high >= share.free_end - rounding) {
-      share.free_end = low;
-    }
-  }
-  // What the ends of an overlap reach beyond its bonds is no part of its own.
-  if (share.free_length <= rounding || !(share.free_begin < share.free_end)) {
-    share.free_length = 0.0;
+    const bool here = pair.is_convex || pressure_between(pieces, region.middle - region.begin,
+                                                         bond.lower_edge(), bond.higher_edge()) > 0.0;
+    share.holds = share.holds || (here && !bond.broken);
+    share.released = share.released || (here && bond.broken);
+    share.shear += here && bond.broken ? bond.memory.shear : 0.0;
+    share.length += here && bond.broken ? bond.memory.longest : 0.0;
   }
   return share;
 }

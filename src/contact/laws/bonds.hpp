@@ -32,10 +32,10 @@
 // the differences of s since the last evaluation, which is the initial stick force plus k_t s. For the same
 // reason as above (t_r turns with n) it conserves energy exactly, where a spring that adds up increments of
 // the motion drifts with the first order of the step when an open joint turns. Regions on the same edges have
-// no friction of their own meanwhile, or k_t would be there twice; where a straight side goes on behind a
-// vertex, and the region with it, friction acts on the length and the pressure that bonds leave, and has the
-// law of the edges there. The stiffness of bond and overlap together is never above that of a closed joint,
-// so the bound of the time step (dynamics/frequency_bound.hpp) covers both.
+// no friction of their own meanwhile, or k_t would be there twice; parts of a straight side are regions of
+// their own (part_sides(), model/block_system.hpp). The stiffness of bond and overlap together
+// is never above that of a closed joint, so the bound of the time step (dynamics/frequency_bound.hpp) covers
+// both.
 //
 // Strength. With N the push on the bonded edges and T the pull of the bond, it breaks as a whole when
 //     k_n max(o) > tension              somewhere on the stretch (at one of its ends), or

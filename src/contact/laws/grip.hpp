@@ -46,23 +46,22 @@
 #include "contact/region_sums.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace gcpdda {
 
 /// The grip of a region, from what is remembered of it to what will be.
 class Grip {
 public:
-  /// @param between  ends of what of the region has friction, along t from x_r, m
   /// @param known    X_g so far
-  /// @param is_new   there is none so far, or the region is longer than ever
-  Grip(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force,
-       std::array<double, 2> between, Vec2 known, bool is_new)
-      : system_(system), row_(pair.lower.value), force_(force), between_(between), reference_(known) {
-    if (is_new) {
+  /// @param is_new   there is none so far
+  /// @param longest  extent of the region before this evaluation, m
+  Grip(const BlockSystem &system, const CandidatePair &pair, const RegionForce &force, Vec2 known,
+       bool is_new, double longest)
+      : system_(system), row_(pair.lower.value), force_(force), reference_(known) {
+    if (is_new || force.extent_end - force.extent_begin > longest) {
       move_to_middle();
-    } else if (const double along = place(); along < between_[0] || along > between_[1]) {
-      move(std::clamp(along, between_[0], between_[1]));
+    } else if (const double along = place(); along < force.extent_begin || along > force.extent_end) {
+      move(std::clamp(along, force.extent_begin, force.extent_end));
     }
   }
   void move_to_middle() { move(middle()); }
@@ -74,10 +73,12 @@ public:
   /// X_g.
   [[nodiscard]] Vec2 reference() const { return reference_; }
   /// Where friction acts.
-  [[nodiscard]] Vec2 point() const { return at(std::min(std::max(place(), between_[0]), between_[1])); }
+  [[nodiscard]] Vec2 point() const {
+    return at(std::min(std::max(place(), force_.extent_begin), force_.extent_end));
+  }
 
 private:
-  [[nodiscard]] double middle() const { return 0.5 * (between_[0] + between_[1]); }
+  [[nodiscard]] double middle() const { return 0.5 * (force_.extent_begin + force_.extent_end); }
   [[nodiscard]] Vec2 at(double along) const { return force_.point + along * perp(force_.normal); }
   [[nodiscard]] double place() const {
     return dot(current_point(system_, row_, reference_) - force_.point, perp(force_.normal));
@@ -87,7 +88,6 @@ private:
   const BlockSystem &system_;
   std::size_t row_;
   const RegionForce &force_;
-  std::array<double, 2> between_;
   Vec2 reference_;
 };
 

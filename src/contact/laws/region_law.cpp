@@ -1,6 +1,7 @@
 #include "contact/laws/region_law.hpp"
 
 #include "contact/pair_forces.hpp"
+#include "geometry/polygon.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,23 +24,32 @@ std::int32_t by_materials(const BlockSystem &system, const JointLaws &joints, co
                         system.properties[pair.higher.value].material);
 }
 
-/// Whether an outline goes on from a piece to the other one inside of the other block.
-bool goes_on(const Piece &piece, const Piece &next) {
-  return norm(piece.end() - next.begin) < std::min(piece.depth_end, next.depth_begin);
+/// Whether two edges of a block are parts of one straight side (BlockProperties::has_parted_sides).
+bool are_parted(const BlockSystem &system, BlockIndex row, std::int32_t edge, std::int32_t other) {
+  const auto normal = system.of_row(system.reference_normal, row.value);
+  return edge != other && system.properties[row.value].has_parted_sides &&
+         are_in_one_side(normal[static_cast<std::size_t>(edge)], normal[static_cast<std::size_t>(other)]);
 }
 
-/// Whether an outline goes on from one region to the other one: both are parts of one overlap.
-bool goes_on(std::span<const Piece> pieces, const Region &region, const Region &next) {
-  const auto within = [&](std::uint32_t begin, std::uint32_t end) {
-    return pieces.subspan(begin, end - begin);
+/// Whether an outline goes on from one region to the other one: both are parts of one overlap, and not of
+/// what vertices within straight sides part for good.
+bool goes_on(const BlockSystem &system, const CandidatePair &pair, std::span<const Piece> pieces,
+             const Region &region, const Region &next) {
+  const auto any_goes_on = [&](std::array<std::uint32_t, 2> from, std::array<std::uint32_t, 2> to,
+                               BlockIndex own, BlockIndex other) {
+    for (const Piece &piece : pieces.subspan(from[0], from[1] - from[0])) {
+      for (const Piece &then : pieces.subspan(to[0], to[1] - to[0])) {
+        if (norm(piece.end() - then.begin) < std::min(piece.depth_end, then.depth_begin) &&
+            !are_parted(system, own, piece.edge, then.edge) &&
+            !are_parted(system, other, piece.face, then.face)) {
+          return true;
+        }
+      }
+    }
+    return false;
   };
-  const auto any_goes_on = [](std::span<const Piece> from, std::span<const Piece> to) {
-    return std::any_of(from.begin(), from.end(), [&](const Piece &piece) {
-      return std::any_of(to.begin(), to.end(), [&](const Piece &other) { return goes_on(piece, other); });
-    });
-  };
-  return any_goes_on(within(region.begin, region.middle), within(next.begin, next.middle)) ||
-         any_goes_on(within(region.middle, region.end), within(next.middle, next.end));
+  return any_goes_on({region.begin, region.middle}, {next.begin, next.middle}, pair.lower, pair.higher) ||
+         any_goes_on({region.middle, region.end}, {next.middle, next.end}, pair.higher, pair.lower);
 }
 
 } // namespace
@@ -73,8 +83,7 @@ PossibleLaws possible_laws(const BlockSystem &system, const JointLaws &joints, c
 }
 
 std::int32_t law_of_region(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair,
-                           std::span<const Piece> pieces, const Region &region,
-                           std::span<const double> bonded) {
+                           std::span<const Piece> pieces, const Region &region) {
   const auto law_of = [&](std::uint32_t i) {
     const Piece &piece = pieces[i];
     const bool on_lower = i < region.middle;
@@ -87,8 +96,7 @@ std::int32_t law_of_region(const BlockSystem &system, const JointLaws &joints, c
     const std::int32_t law = law_of(i);
     double pressure = 0.0;
     for (std::uint32_t k = region.begin; k < region.end; ++k) {
-      const double whole = pieces[k].length * (pieces[k].depth_begin + pieces[k].depth_end);
-      pressure += law_of(k) == law ? whole - (bonded.empty() ? 0.0 : 2.0 * bonded[k]) : 0.0;
+      pressure += law_of(k) == law ? pieces[k].length * (pieces[k].depth_begin + pieces[k].depth_end) : 0.0;
     }
     if (pressure > most || (pressure == most && law < carrying)) {
       most = pressure;
@@ -114,9 +122,11 @@ void take_law(const BlockSystem &system, const ContactParameters &parameters, st
                  0.5 * parameters.stiffness_damping * stiffness;
 }
 
-std::int32_t PairForces::law_beside(const Region &region) const {
+std::int32_t PairForces::law_beside(const BlockSystem &system, const CandidatePair &pair,
+                                    const Region &region) const {
   const auto is_part_of = [&](const Region &other) {
-    return goes_on(overlap_.pieces(), region, other) || goes_on(overlap_.pieces(), other, region);
+    return goes_on(system, pair, overlap_.pieces(), region, other) ||
+           goes_on(system, pair, overlap_.pieces(), other, region);
   };
   const auto beside = std::find_if(found_.begin(), found_.end(), [&](const FoundRegion &other) {
     return other.known != nullptr && is_part_of(*other.region);
@@ -125,16 +135,10 @@ std::int32_t PairForces::law_beside(const Region &region) const {
 }
 
 void PairForces::choose_law(const BlockSystem &system, const CandidatePair &pair, const Region &region,
-                            const BondShare &bonds, RegionMemory &memory) {
+                            RegionMemory &memory) const {
   const JointLaws &joints = parameters_->joints;
-  const std::span<const Piece> pieces = overlap_.pieces();
-  std::int32_t edges = law_of_region(system, joints, pair, pieces, region);
-  memory.law = memory.law < 0 ? edges : memory.law;
-  if (bonds.holds && bonds.free_length > 0.0) {
-    find_bonded(system, pair, region);
-    edges = law_of_region(system, joints, pair, pieces, region, bonded_);
-  }
-  memory.law = joints.slid_to(memory.law, edges);
+  const std::int32_t edges = law_of_region(system, joints, pair, overlap_.pieces(), region);
+  memory.law = memory.law < 0 ? edges : joints.slid_to(memory.law, edges);
 }
 
 } // namespace gcpdda

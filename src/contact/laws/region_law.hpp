@@ -53,10 +53,8 @@ PossibleLaws possible_laws(const BlockSystem &system, const JointLaws &joints, c
 
 /// The law of the edges on which most of a region of a mixed pair lies, from its pieces: [begin, middle) on
 /// the lower block's edges, [middle, end) on the higher one's.
-/// @param bonded  what of int d ds on each piece does not count, m2; none by default
 std::int32_t law_of_region(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair,
-                           std::span<const Piece> pieces, const Region &region,
-                           std::span<const double> bonded = {});
+                           std::span<const Piece> pieces, const Region &region);
 
 /// Where a region stands on its way, as far as a choice among laws is concerned: another number where it has
 /// slid on, or become longer, by so much that the choice is to be made anew.
