@@ -5,6 +5,7 @@
 #include "driver/safety_factor.hpp"
 #include "driver/safety_search.hpp"
 #include "driver/stop_signal.hpp"
+#include "driver/trial_facts.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "io/hdf5/passing_files.hpp"
 #include "io/results/ensemble_report.hpp"
@@ -29,6 +30,14 @@ struct MemberFacts {
   bool stopped = false; ///< by the signal: nothing is known of it
 };
 
+std::string words_on(const std::vector<EarlierSlide> &slides) {
+  std::string words;
+  for (const EarlierSlide &slide : slides) {
+    words += (words.empty() ? "" : "; ") + slide.words;
+  }
+  return words;
+}
+
 MemberFacts facts_of(const SafetyOutcome &outcome) {
   MemberFacts facts;
   facts.stopped = outcome.exit_code == exit_code::stopped;
@@ -39,7 +48,9 @@ MemberFacts facts_of(const SafetyOutcome &outcome) {
                          : report.fails && *report.fails <= 1.0            ? MemberOutcome::fails
                          : report.holds && *report.holds >= 1.0            ? MemberOutcome::holds
                                                                            : MemberOutcome::undecided;
-  facts.member.message = facts.member.outcome == MemberOutcome::fails ? std::string() : outcome.message;
+  facts.member.message = facts.member.outcome == MemberOutcome::fails   ? std::string()
+                         : facts.member.outcome == MemberOutcome::holds ? words_on(report.earlier_slides)
+                                                                        : outcome.message;
   facts.member.steps = report.settled.steps;
   facts.member.cpu_s = report.settled.cpu_s;
   for (const StrengthTrial &trial : report.trials) {
@@ -60,7 +71,10 @@ MemberFacts facts_of(const RunOutcome &outcome) {
                                                                            : MemberOutcome::undecided;
   const bool is_plain =
       facts.member.outcome == MemberOutcome::holds || facts.member.outcome == MemberOutcome::fails;
-  facts.member.message = is_plain ? std::string() : outcome.summary.message;
+  facts.member.message = facts.member.outcome == MemberOutcome::holds
+                             ? words_on(slides_of(outcome.summary.stages))
+                         : is_plain ? std::string()
+                                    : outcome.summary.message;
   facts.member.steps = outcome.summary.steps;
   facts.member.cpu_s = outcome.summary.cpu_s;
   return facts;

@@ -150,8 +150,11 @@ private:
 
   void log_stage() {
     const StageResult result = simulation_.stage_results().back();
-    log_->line(words_on_stage(simulation_.stages()[static_cast<std::size_t>(simulation_.stage().index)].name,
-                              result));
+    const Stage &stage = simulation_.stages()[static_cast<std::size_t>(simulation_.stage().index)];
+    log_->line(words_on_stage(stage.name, result));
+    if (const auto warning = warning_of_slide(simulation_, stage, result)) {
+      log_->diagnostic(*warning);
+    }
   }
 
   /// undecided where a limit was reached without a verdict.

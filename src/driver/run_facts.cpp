@@ -1,10 +1,12 @@
 #include "driver/run_facts.hpp"
 
+#include "model/generators.hpp"
 #include "simulation/ground.hpp"
 #include "simulation/rank_facts.hpp"
 
 #include <algorithm>
 #include <span>
+#include <string>
 
 namespace gcpdda {
 
@@ -38,6 +40,16 @@ void take_work(const Communicator &communicator, const Simulation &simulation, s
 
 } // namespace
 
+std::vector<RunSummary::StageLine> stage_lines(const Scene &scene, const std::vector<Stage> &stages,
+                                               const std::vector<StageResult> &results) {
+  std::vector<RunSummary::StageLine> lines;
+  for (const StageResult &result : results) {
+    const std::string slid = result.slid_block >= 0 ? block_name(scene, result.slid_block) : std::string();
+    lines.push_back({stages[lines.size()].name, word_of(result.verdict), result, slid});
+  }
+  return lines;
+}
+
 void take_facts(const Communicator &communicator, Simulation &simulation, std::int64_t first_step,
                 RunSummary &summary) {
   const TimePlan &plan = simulation.plan();
@@ -64,10 +76,7 @@ void take_facts(const Communicator &communicator, Simulation &simulation, std::i
     summary.phases.emplace_back(phase_names[p], spread(communicator, seconds));
   }
   if (simulation.is_staged()) {
-    for (const StageResult &result : simulation.stage_results()) {
-      const Stage &stage = simulation.stages()[summary.stages.size()];
-      summary.stages.push_back({stage.name, word_of(result.verdict), result});
-    }
+    summary.stages = stage_lines(simulation.scene(), simulation.stages(), simulation.stage_results());
   }
 }
 

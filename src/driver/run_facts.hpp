@@ -6,8 +6,15 @@
 #include "simulation/simulation.hpp"
 
 #include <cstdint>
+#include <vector>
 
 namespace gcpdda {
+
+/// What the summary says of the stages that have begun.
+/// @param stages   those of the run, in order
+/// @param results  of the first ones
+std::vector<RunSummary::StageLine> stage_lines(const Scene &scene, const std::vector<Stage> &stages,
+                                               const std::vector<StageResult> &results);
 
 /// Collective.
 /// @param first_step  of this part of the run

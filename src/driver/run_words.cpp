@@ -199,6 +199,29 @@ std::string words_on_stage(const std::string &name, const StageResult &result) {
                                                      result.loose == 1 ? "" : "s"));
 }
 
+std::string words_on_slide(const std::string &stage, const std::string &block, const StageResult &result) {
+  const std::string others = result.slid_blocks == 2  ? " and 1 other block"
+                             : result.slid_blocks > 2 ? fmt::format(" and {} others", result.slid_blocks - 1)
+                                                      : "";
+  return fmt::format(
+      "block '{}'{} slid in stage '{}' before rest, the farthest by {:.3g} m or {:.2g} of its size", block,
+      others, stage, result.slide_distance, result.slide);
+}
+
+std::optional<Diagnostic> warning_of_slide(const Simulation &simulation, const Stage &stage,
+                                           const StageResult &result) {
+  if (!result.has_slid()) {
+    return std::nullopt;
+  }
+  return Diagnostic{
+      Severity::warning, stage.where,
+      words_on_slide(stage.name, block_name(simulation.scene(), result.slid_block), result),
+      "the stage has settled where the blocks came to hold, and their strength may have failed where they "
+      "were",
+      fmt::format("look at the frames; failure_motion = {:.1g} of the stage takes such a slide for failure",
+                  0.5 * result.slide)};
+}
+
 namespace {
 
 std::string words_on_loads(const std::vector<BoltLoad> &loads) {

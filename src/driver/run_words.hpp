@@ -6,6 +6,7 @@
 #include "simulation/simulation.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,14 @@ std::string words_on_strength(const JointLaw &law);
 
 /// How a stage has ended.
 std::string words_on_stage(const std::string &name, const StageResult &result);
+
+/// Which blocks have slid in a settle stage, and how far.
+/// @param block  name of the one that has slid farthest
+std::string words_on_slide(const std::string &stage, const std::string &block, const StageResult &result);
+/// What is to be told where blocks have slid to where they hold in a settle stage; nothing for slides below
+/// StageResult::telling_slide.
+std::optional<Diagnostic> warning_of_slide(const Simulation &simulation, const Stage &stage,
+                                           const StageResult &result);
 
 /// How far a run is, from the last row of energies and the time of a step, s. A stage that waits for its
 /// verdict says how near to rest it was when it was looked at last: nobody knows when it will be there.

@@ -1,6 +1,7 @@
 #include "driver/safety_factor.hpp"
 
 #include "base/check.hpp"
+#include "driver/run_facts.hpp"
 #include "driver/safety_bound.hpp"
 #include "driver/safety_search.hpp"
 #include "driver/stop_signal.hpp"
@@ -38,6 +39,9 @@ public:
 
   SafetyOutcome find() {
     const ExitCode code = begin();
+    if (code == exit_code::undecided && options_.settled.empty() && has_failed_settling()) {
+      conclude_without_search();
+    }
     if (code != exit_code::done) {
       return {code, std::move(report_), std::move(message_)};
     }
@@ -114,9 +118,12 @@ private:
     note_failure_on_the_way();
     const double from = scene_.reduction.from;
     if ((code == exit_code::done || code == exit_code::undecided) && !has_settled() && from < 1.0) {
-      say(fmt::format("the blocks do not settle with their full strength, now with their strengths divided "
-                      "by fos.from = {:g}\n",
-                      from));
+      say(fmt::format(
+          "the blocks {} with their full strength, now with their strengths divided by fos.from = "
+          "{:g}\n",
+          report_.settled.rests_far ? "slide by more than fos.largest_motion while they settle"
+                                    : "do not settle",
+          from));
       code = settle(from, true, {});
       note_failure_on_the_way();
     }
@@ -124,12 +131,27 @@ private:
       code = exit_code::undecided;
     }
     if (code == exit_code::undecided) {
-      message_ =
-          "the blocks do not settle, not even with the largest strength tried: let them settle with "
-          "more (stage[].set) and bring it back in a stage of kind change, or give them a longer limit";
+      message_ = words_on_no_rest(report_.settled);
+      report_.settled.message = message_;
       say(message_ + "\n");
     }
     return code;
+  }
+
+  [[nodiscard]] bool has_failed_settling() const { return report_.settled.verdict == Verdict::failed; }
+
+  /// What blocks slide before the search is as far from where they were as what they slide in a trial. Of a
+  /// mechanism it is not known: the slide is that of any block.
+  void note_slides(const std::vector<RunSummary::StageLine> &stages) {
+    report_.earlier_slides = slides_of(stages);
+    slide_ = 0.0;
+    for (const RunSummary::StageLine &stage : stages) {
+      slide_ = std::max(slide_, stage.result.slide);
+    }
+    if (has_settled() && !watches_mechanism() && slide_ >= scene_.reduction.largest_motion) {
+      report_.settled.rests_far = true;
+      report_.settled.verdict = Verdict::failed;
+    }
   }
 
   void note_failure_on_the_way() {
@@ -147,8 +169,17 @@ private:
     report_.settled.verdict = found.finished() ? found.stage().verdict : Verdict::undecided;
     report_.settled.time = found.time();
     report_.settled.steps = found.step_count();
+    note_slides(stage_lines(found.scene(), found.stages(), found.stage().results));
     if (has_settled()) {
       return exit_code::done;
+    }
+    if (report_.settled.rests_far) {
+      message_ =
+          fmt::format("the blocks of the run in {} slid by {:.2g} of their size while they settled, more "
+                      "than fos.largest_motion = {:g}; leave --settled out",
+                      options_.settled.string(), slide_, scene_.reduction.largest_motion);
+      say(message_ + "\n");
+      return exit_code::undecided;
     }
     message_ = fmt::format("the run in {} has not settled, let it go on (gcpdda restart) or leave --settled "
                            "out",
@@ -166,6 +197,7 @@ private:
     const RunOutcome outcome = run_and_tell(world_, settling_scene(scene_, factor), options);
     report_.settled = trial_of(facts_of(factor, outcome, 0.0, false));
     report_.settled.steps = outcome.summary.steps;
+    note_slides(outcome.summary.stages);
     start_time_ = outcome.summary.time;
     num_blocks_ = outcome.summary.blocks;
     message_ = outcome.exit_code == exit_code::numerical_failure ? outcome.summary.message : std::string();
@@ -444,6 +476,19 @@ private:
     }
   }
 
+  /// Where the blocks fail before there is a state to begin from.
+  void conclude_without_search() {
+    report_.tolerance = scene_.reduction.tolerance;
+    report_.settled.directory = fs::absolute(settled_directory()).lexically_normal();
+    note_families();
+    if (!options_.quiet) {
+      on_root(world_, [&] {
+        write_safety_report(options_.directory, report_, {});
+        std::cout << to_text(report_) << std::flush;
+      });
+    }
+  }
+
   void note_families() {
     for (std::size_t i = 0; i < scene_.joints.laws.size(); ++i) {
       if (is_weakened(scene_.reduction, i)) {
@@ -459,6 +504,11 @@ private:
       return trial.decisive && trial.verdict == Verdict::settled &&
              trial.moved >= scene_.reduction.failure_motion;
     };
+    if (slide_ >= scene_.reduction.failure_motion && !watches_mechanism()) {
+      report_.first_slide = report_.settled;
+      report_.first_slide->moved = slide_;
+      return;
+    }
     const auto first = std::find_if(report_.trials.begin(), report_.trials.end(), slides);
     if (first != report_.trials.end() && !watches_mechanism()) {
       report_.first_slide = *first;
@@ -478,6 +528,7 @@ private:
   int group_number_ = 0;
   double start_time_ = 0.0; ///< of all trials, s
   std::int64_t num_blocks_ = 0;
+  double slide_ = 0.0; ///< largest slide of a block in a settle stage before the search, in sizes of it
   std::map<double, StrengthTrial> trials_; ///< by factor
   std::set<double> unconfirmed_;           ///< factors whose verdict is by the static solver alone
   std::map<double, Verdict> by_statics_;   ///< verdicts of the static solver whose confirmation is undecided

@@ -1,8 +1,10 @@
 #include "driver/trial_facts.hpp"
 
+#include "driver/run_words.hpp"
 #include "driver/safety_search.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -62,6 +64,32 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time,
 bool is_by_statics_alone(const TrialFacts &facts) {
   return static_cast<Verdict>(facts.verdict) != Verdict::undecided && facts.is_confirmed == 0 &&
          static_cast<VerdictMeans>(facts.means) == VerdictMeans::static_solver;
+}
+
+std::vector<EarlierSlide> slides_of(const std::vector<RunSummary::StageLine> &stages) {
+  std::vector<EarlierSlide> slides;
+  for (const auto &[name, verdict, result, block] : stages) {
+    if (result.has_slid()) {
+      slides.push_back({name, block, result.slide, result.slide_distance, result.slid_blocks,
+                        words_on_slide(name, block, result)});
+    }
+  }
+  return slides;
+}
+
+std::string words_on_no_rest(const StrengthTrial &settled) {
+  const std::string begin = "the blocks do not settle, not even with the largest strength tried: ";
+  if (settled.verdict != Verdict::failed) {
+    return begin +
+           "let them settle with more (stage[].set) and bring it back in a stage of kind change, or give "
+           "them a longer limit";
+  }
+  return begin +
+         fmt::format("they {} even with strengths multiplied by {:.4g}: either the factor of safety is "
+                     "below {:g}, or friction has no part in it (geometry, loads); try fos.from = "
+                     "{:.2g}, and look at the frames in settled",
+                     settled.rests_far ? "slide by more than fos.largest_motion" : "fail",
+                     1.0 / settled.factor, settled.factor, 0.2 * settled.factor);
 }
 
 StrengthTrial trial_of(const TrialFacts &facts) {

@@ -6,6 +6,8 @@
 #include "io/results/safety_report.hpp"
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace gcpdda {
 
@@ -34,6 +36,12 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time,
 
 /// The static solver has found the verdict, and no dynamic step has confirmed it.
 bool is_by_statics_alone(const TrialFacts &facts);
+
+/// Of the settle stages whose blocks have slid so far that users are told.
+std::vector<EarlierSlide> slides_of(const std::vector<RunSummary::StageLine> &stages);
+
+/// Why no search begins where the blocks do not settle with the largest strength tried.
+std::string words_on_no_rest(const StrengthTrial &settled);
 
 /// Without its message and its folder.
 StrengthTrial trial_of(const TrialFacts &facts);

@@ -111,6 +111,11 @@ struct RunState {
   std::optional<ContactDigest> digest; ///< of the last evaluation, once it has been asked for
 };
 
+/// Largest distance that a point of a block has moved.
+inline double motion_between(const BlockProperties &block, const RigidDof &from, const RigidDof &to) {
+  return norm(to.u - from.u) + block.radius * std::abs(to.r - from.r);
+}
+
 /// What contacts take from a scene.
 ContactParameters contact_parameters(const Scene &scene);
 

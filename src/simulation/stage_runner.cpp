@@ -9,6 +9,7 @@
 #include "simulation/held_blocks.hpp"
 #include "simulation/loose_blocks.hpp"
 #include "simulation/mechanism.hpp"
+#include "simulation/slid_blocks.hpp"
 #include "simulation/stage_changes.hpp"
 #include "simulation/static_stage.hpp"
 #include "simulation/step_rows.hpp"
@@ -34,11 +35,6 @@ double kinetic_energy_of(const BlockSystem &blocks, std::size_t row, const Rigid
 double kinetic_energy_of(const BlockSystem &blocks, std::size_t row) {
   return kinetic_energy_of(blocks, row, blocks.velocity[row],
                            blocks.is_deformable(row) ? blocks.deformation_of(row).rate : Mat2{});
-}
-
-/// Largest distance a point of the block has moved.
-double motion_between(const BlockProperties &block, const RigidDof &from, const RigidDof &to) {
-  return norm(to.u - from.u) + block.radius * std::abs(to.r - from.r);
 }
 
 void mark_stage(RunState &run) {
@@ -400,6 +396,9 @@ void end_stage(RunState &run) {
   run.clock.state.end_time = run.clock.time();
   run.clock.state.ended = true;
   if (stage.kind == StageKind::settle) {
+    if (run.clock.state.verdict == Verdict::settled) {
+      note_slide(run, run.clock.state.results.back());
+    }
     close_statics(run);
     unscale_masses(run);
     if (run.clock.state.verdict == Verdict::settled) {

@@ -115,7 +115,8 @@ template <class State, class Count, class Real> void visit_state(State &state, C
 template <class Result, class Count, class Real>
 void visit_result(Result &result, Count &&count, Real &&real) {
   count(result.verdict), count(result.steps), count(result.contact_steps), count(result.removed);
-  count(result.loose);
+  count(result.loose), count(result.slid_block), count(result.slid_blocks);
+  real(result.slide), real(result.slide_distance);
   real(result.time), real(result.unbalanced_ratio), real(result.kinetic), real(result.moved);
 }
 template <class Load, class Count, class Real> void visit_unloading(Load &u, Count &&count, Real &&real) {

@@ -169,6 +169,22 @@ def test_of_a_search_with_a_first_block_and_a_weak_settled_state(search, tmp_pat
     assert "<th>displacement in x (m)</th>" in text
 
 
+def test_of_a_search_that_fails_before_its_first_trial(search, tmp_path):
+    settled = search.summary["settled"] | {"factor": 0.5, "verdict": "failed", "message": "they fail even so"}
+    folder = changed(search, tmp_path / "fos", found=0, holds=None, fails=0.5, factor=None, trials=[], moving=[],
+                     settled=settled)
+    page = gcpdda.report(folder, frames=0)
+    (shown, text), = verdicts(page)
+    assert shown == "bad" and "fail already at 0.5" in text and "they fail even so" in page.read_text()
+    assert "have not settled with strengths divided by 0.5" in page.read_text()
+
+
+def test_of_a_search_after_a_slide(search, tmp_path):
+    slide = {"stage": "weight", "block": "b", "slide": 0.1, "distance": 0.2, "blocks": 1, "words": "block 'b' slid"}
+    folder = changed(search, tmp_path / "fos", earlier_slides=[slide])
+    assert "Block 'b' slid. The factor is that of the place" in html.unescape(gcpdda.report(folder).read_text())
+
+
 def test_of_a_bound(tmp_path):
     folder = tmp_path / "bound"
     subprocess.run([gcpdda.program(), "fos", str(SCENES / "plane_failure.toml"), "--bound", "--out", str(folder)],

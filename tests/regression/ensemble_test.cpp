@@ -127,6 +127,35 @@ TEST(Ensemble, MembersThatNoSearchCanSettleFail) {
   }
 }
 
+// The plane ends at a wall: weak members slide there, and hold.
+TEST(Ensemble, TellsOfMembersThatHoldAfterASlide) {
+  const WorkFolder folder;
+  folder.write(
+      "push.toml",
+      "[run]\nfidelity = \"rigid\"\ngravity = [3.0, -10.0]\n[material.rock]\ndensity = 2600.0\n"
+      "[joint.default]\nnormal_stiffness = 1e9\nfriction_angle_deg = 30\n" +
+          testing::block_toml("floor", testing::rectangle({-10.0, -1.0}, {20.0, 0.0}), "fixed = true") +
+          testing::block_toml("stop", testing::rectangle({1.2, 0.1}, {2.0, 1.0}), "fixed = true") +
+          testing::block_toml("block", testing::rectangle({0.0, 0.0}, {1.0, 1.0})) +
+          "[[stage]]\nname = \"push\"\nkind = \"settle\"\nlimit = 20.0\n[ensemble]\ncount = 4\n"
+          "measure = \"verdict\"\n[[ensemble.vary]]\nkey = \"joint.default.friction_angle_deg\"\n"
+          "distribution = \"uniform\"\nmin = 2.0\nmax = 10.0\n");
+  const Outcome weak = run_gcpdda(2, {"ensemble", "push.toml"}, folder);
+  EXPECT_EQ(weak.exit_code, 0) << weak.err;
+  EXPECT_NE(weak.out.find("warning: 4 members held only after blocks slid"), std::string::npos) << weak.out;
+  EXPECT_EQ(json_value(folder / "results/push_ensemble/ensemble.json", "holds_after_slide"), "4");
+  EXPECT_EQ(count_of(file_text(folder / "results/push_ensemble/ensemble_members.csv"),
+                     "block 'block' slid in stage 'push' before rest"),
+            4);
+  const Outcome strong = run_gcpdda(
+      0,
+      {"ensemble", "push.toml", "--out", "strong", "--set",
+       "ensemble.vary=[{key = \"joint.default.friction_angle_deg\", distribution = \"uniform\", min = 30.0, "
+       "max = 40.0}]"},
+      folder);
+  EXPECT_EQ(strong.out.find("slid"), std::string::npos) << strong.out;
+}
+
 TEST(Ensemble, RefusesWhatItCannotRun) {
   const WorkFolder folder;
   folder.write("bench.toml", testing::shipped_toml("toppling"));

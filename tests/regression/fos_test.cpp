@@ -325,7 +325,70 @@ TEST(Fos, RefusesWhatItCannotSearch) {
   EXPECT_EQ(unsettled.exit_code, 7);
   EXPECT_NE(unsettled.err.find("do not settle, not even with the largest strength"), std::string::npos)
       << unsettled.err;
-  EXPECT_FALSE(fs::exists(folder / "results/plane_fos/fos.json"));
+  const Outcome undecided = run_gcpdda(
+      0, {"fos", "plane.toml", "--out", "short", "--set", "stage=[{kind=\"settle\",limit=1e-3}]"}, folder);
+  EXPECT_EQ(undecided.exit_code, 7);
+  EXPECT_NE(undecided.err.find("do not settle, not even with the largest strength"), std::string::npos)
+      << undecided.err;
+  EXPECT_FALSE(fs::exists(folder / "short/fos.json"));
+}
+
+/// A slab 1 m wide and 3 m high under so much horizontal force at its top, and under its weight of 78 kN.
+std::string pushed_slab_toml(double force) {
+  return "[run]\nfidelity = \"rigid\"\ngravity = [0, -10]\n[material.rock]\ndensity = "
+         "2600.0\n[joint.default]\n"
+         "normal_stiffness = 1e9\nfriction_angle_deg = 45\n" +
+         testing::block_toml("floor", testing::rectangle({-10.0, -1.0}, {20.0, 0.0}), "fixed = true") +
+         testing::block_toml("slab", testing::rectangle({0.0, 0.0}, {1.0, 3.0})) +
+         fmt::format("[[block.load]]\npoint = [0.0, 3.0]\nforce = [{}, 0.0]\n", force) +
+         "[[stage]]\nname = \"push\"\nkind = \"settle\"\nlimit = 20.0\n";
+}
+
+// It topples from a sixth of its weight on, however strong its joint is.
+TEST(Fos, SaysThatStrengthHasNoPartInAFailure) {
+  const WorkFolder folder;
+  folder.write("slab.toml", pushed_slab_toml(0.51 * 78e3));
+  const Outcome outcome = run_gcpdda(0, {"fos", "slab.toml"}, folder);
+  EXPECT_EQ(outcome.exit_code, 7);
+  EXPECT_NE(
+      outcome.err.find("they fail even with strengths multiplied by 2: either the factor of safety is below "
+                       "0.5, or friction has no part in it"),
+      std::string::npos)
+      << outcome.err;
+  const fs::path results = folder / "results/slab_fos";
+  EXPECT_EQ(file_text(results / "fos.txt"), outcome.out);
+  EXPECT_NE(outcome.out.find("the blocks fail already at 0.5, the smallest factor tried"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("friction has no part in it"), std::string::npos) << outcome.out;
+  EXPECT_EQ(json_value(results / "fos.json", "holds"), "null");
+  EXPECT_EQ(json_value(results / "fos.json", "fails"), "0.5");
+}
+
+// Said by the run that settles and by the report, each once.
+TEST(Fos, WarnsOfSlidesBeforeTheSearch) {
+  const WorkFolder folder;
+  std::string toml = pushed_slab_toml(10e3);
+  toml.replace(toml.find("friction_angle_deg = 45"), 23, "friction_angle_deg = 5");
+  folder.write("slab.toml", toml +
+                                "[[block]]\nname = \"stop\"\nmaterial = \"rock\"\nfixed = true\nvertices = "
+                                "[[1.2, 0.1], [2, 0.1], [2, 1], [1.2, 1]]\n");
+  const Outcome outcome = run_gcpdda(0, {"fos", "slab.toml", "--bound", "--out", "bound"}, folder);
+  const std::string said = "block 'slab' slid in stage 'push' before rest, the farthest by 0.2";
+  EXPECT_EQ(testing::count_of(outcome.out, said), 1) << outcome.out;
+  EXPECT_EQ(testing::count_of(file_text(folder / "bound/settled/run.log"), said), 1);
+  EXPECT_EQ(json_value(folder / "bound/fos.json", "slides_from"), "1");
+  EXPECT_NE(file_text(folder / "bound/fos.json").find("\"stage\": \"push\""), std::string::npos);
+  const Outcome again =
+      run_gcpdda(0, {"fos", "slab.toml", "--bound", "--settled", "bound/settled", "--out", "again"}, folder);
+  EXPECT_EQ(testing::count_of(again.out, said), 1) << again.out << again.err;
+  const Outcome limited = run_gcpdda(0,
+                                     {"fos", "slab.toml", "--bound", "--settled", "bound/settled", "--out",
+                                      "limited", "--set", "fos.largest_motion=0.02"},
+                                     folder);
+  EXPECT_EQ(limited.exit_code, 7);
+  EXPECT_NE(limited.err.find("more than fos.largest_motion = 0.02"), std::string::npos) << limited.err;
+  const Outcome together = run_gcpdda(2, {"run", "slab.toml", "--out", "run"}, folder);
+  EXPECT_EQ(testing::count_of(together.err, said), 1) << together.err;
 }
 
 } // namespace

@@ -148,5 +148,56 @@ TEST(SafetySlides, AreasAndRegionsCountAsInFailures) {
   }
 }
 
+/// A block on a plane of 45 degrees with a friction angle of 20, so far above a wall.
+std::string block_above_wall(double gap, const std::string &fos_keys) {
+  const Rotation turn = Rotation::of(-45.0 * degree);
+  const auto at = [&](double x, double y) { return turn(Vec2{x, y}); };
+  return without_duration(head({.friction_deg = 20.0})) +
+         block_toml("plane", {at(-5.0, -1.0), at(20.0, -1.0), at(20.0, 0.0), at(-5.0, 0.0)}, "fixed = true") +
+         block_toml("wall", {at(4.0 + gap, 0.1), at(6.0 + gap, 0.1), at(6.0 + gap, 2.0), at(4.0 + gap, 2.0)},
+                    "fixed = true") +
+         block_toml("block", {at(0.0, 0.0), at(4.0, 0.0), at(4.0, 2.0), at(0.0, 2.0)}) +
+         "[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 20.0\n[fos]\n" + fos_keys;
+}
+
+// The block slides to the wall before the search begins, and holds there with any strength.
+TEST(SafetySlides, TheReportTellsOfSlidesBeforeTheSearch) {
+  const Scene scene = scene_of(block_above_wall(0.5, ""));
+  for (const bool only_bound : {false, true}) {
+    const SafetyReport report = search_quietly(scene, only_bound).report;
+    ASSERT_EQ(report.earlier_slides.size(), 1U);
+    const EarlierSlide &slide = report.earlier_slides[0];
+    EXPECT_EQ(slide.stage, "weight");
+    EXPECT_EQ(slide.block, "block");
+    EXPECT_EQ(slide.blocks, 1);
+    expect_value("slide of a block to a wall", 0.5, slide.distance, 0.01);
+    ASSERT_TRUE(report.first_slide);
+    EXPECT_EQ(report.first_slide->factor, 1.0);
+    EXPECT_EQ(report.first_slide->moved, slide.share);
+    const std::string text = to_text(report);
+    EXPECT_NE(text.find("warning: block 'block' slid in stage 'weight' before rest"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("(a factor below 1)"), std::string::npos) << text;
+  }
+  const SafetyReport held = search_quietly(scene_of(block_above_wall(0.0, ""))).report;
+  EXPECT_TRUE(held.earlier_slides.empty());
+  EXPECT_FALSE(held.first_slide);
+}
+
+TEST(SafetySlides, TheLargestMotionCountsSlidesBeforeTheSearch) {
+  const std::string largest = "largest_motion = 0.02\n";
+  const SafetyReport found = search_quietly(scene_of(block_above_wall(0.5, largest + "from = 0.2\n"))).report;
+  expect_value("factor of a block that slides to a wall while it settles", std::tan(20.0 * degree),
+               middle_of(found), 0.01);
+  EXPECT_TRUE(found.earlier_slides.empty()) << "it has not slid with the strength with which it settles";
+
+  const SafetyOutcome none = search_quietly(scene_of(block_above_wall(0.5, largest + "from = 0.5\n")));
+  EXPECT_EQ(none.exit_code, exit_code::undecided);
+  EXPECT_EQ(none.report.fails, 0.5);
+  EXPECT_NE(none.message.find("slide by more than fos.largest_motion even with strengths multiplied by 2"),
+            std::string::npos)
+      << none.message;
+}
+
 } // namespace
 } // namespace gcpdda::testing::safety_slide_test

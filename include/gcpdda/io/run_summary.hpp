@@ -140,6 +140,7 @@ struct RunSummary {
     std::string name;
     std::string verdict;
     StageResult result;
+    std::string slid_block; ///< name of the one of StageResult::slid_block
   };
   std::vector<JointSetSummary> joint_sets;
   std::vector<BoltLoad> bolts;   ///< those that have been in place

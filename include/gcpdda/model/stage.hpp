@@ -115,6 +115,14 @@ struct StageResult {
   VerdictMeans means = VerdictMeans::dynamic_step; ///< not in checkpoints: of stages of this process
   /// Verdict on all blocks where that of the trial is on a part of them, else undecided; not in checkpoints.
   Verdict first_block = Verdict::undecided;
+  // Of a settle stage that has settled (simulation/slid_blocks.hpp).
+  double slide = 0.0;           ///< largest slide of a block, in sizes of that block
+  double slide_distance = 0.0;  ///< the same in m
+  std::int64_t slid_block = -1; ///< id of that block; -1 where none has slid
+  std::int64_t slid_blocks = 0; ///< number of those that have slid by telling_slide or more
+  /// A slide from which on users are told, in sizes of a block.
+  static constexpr double telling_slide = 0.02;
+  [[nodiscard]] bool has_slid() const { return slide >= telling_slide; }
 };
 
 } // namespace gcpdda

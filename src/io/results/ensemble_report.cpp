@@ -108,6 +108,7 @@ std::string json_of(const EnsembleReport &report, const EnsembleStatistics &foun
              .add("fails", found.fails)
              .add("undecided", found.undecided)
              .add("cannot_run", found.cannot_run)
+             .add("holds_after_slide", found.slid)
              .add("probability_of_failure", found.probability)
              .add("confidence", confidence)
              .add("low", found.interval.low)
@@ -188,6 +189,7 @@ EnsembleStatistics statistics_of(const EnsembleReport &report) {
     found.cannot_run += member.outcome == MemberOutcome::cannot_run ? 1 : 0;
     found.below += member.fails && !member.holds ? 1 : 0;
     found.above += member.holds && !member.fails ? 1 : 0;
+    found.slid += member.holds_after_slide() ? 1 : 0;
     if (const std::optional<double> factor = member.factor()) {
       factors.push_back(*factor);
     }
@@ -262,6 +264,13 @@ std::string to_text(const EnsembleReport &report) {
       "CPU s\n",
       report.members.size(), members_text(report.count), found.holds, found.fails, found.undecided,
       found.cannot_run, keys, steps, cpu);
+  if (found.slid > 0) {
+    text += fmt::format(
+        "warning: {} held only after blocks slid while they settled: the strength may have failed "
+        "where they were; column message of ensemble_members.csv names them, and a smaller "
+        "failure_motion of that stage takes such slides for failure\n",
+        members_text(found.slid));
+  }
   if (found.cannot_run > 0) {
     text += "those that cannot run are no part of these shares:\n" + trouble_text(report);
   }

@@ -35,8 +35,11 @@ struct EnsembleMember {
   std::int64_t steps = 0;     ///< of the runs that the outcome rests on
   double cpu_s = 0.0;         ///< of all runs and ranks
   std::vector<double> values; ///< drawn, in the order of the variations
-  std::string message;        ///< why it cannot run, or has no outcome
+  std::string
+      message; ///< why it cannot run, or has no outcome; of one that holds, which blocks have slid before
 
+  /// It holds where its blocks have slid to while they settled.
+  [[nodiscard]] bool holds_after_slide() const { return outcome == MemberOutcome::holds && !message.empty(); }
   [[nodiscard]] std::optional<double> factor() const {
     return holds && fails ? std::optional(0.5 * (*holds + *fails)) : std::nullopt;
   }
@@ -58,6 +61,7 @@ struct EnsembleStatistics {
   std::int64_t cannot_run = 0;
   std::int64_t below = 0; ///< fail at the smallest factor tried
   std::int64_t above = 0; ///< hold at the largest one
+  std::int64_t slid = 0;  ///< hold where their blocks have slid to
   /// Share of the members that fail; NaN where none has a verdict.
   double probability = 0.0;
   /// 95 % interval of the probability of failure (probability_interval()). Its low end takes the undecided

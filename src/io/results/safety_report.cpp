@@ -99,6 +99,19 @@ std::string slide_text(const SafetyReport &report) {
                      report.first_slide->factor, report.first_slide->moved);
 }
 
+std::string earlier_slides_text(const SafetyReport &report) {
+  std::string text;
+  for (const EarlierSlide &slide : report.earlier_slides) {
+    text += fmt::format("warning: {}: the {} is that of the place where the blocks came to hold, and their "
+                        "strength without reduction may already have failed (a factor below 1); try "
+                        "failure_motion = {:.1g} in that stage, or fos.largest_motion = {:g} with fos.from "
+                        "below 1\n",
+                        slide.words, report.is_bound_alone ? "bound" : "factor", 0.5 * slide.share,
+                        StageResult::telling_slide);
+  }
+  return text;
+}
+
 /// Turning about a far point or a corner moves a block's points by more than its centroid.
 std::string mechanism_text(const SafetyReport &report) {
   std::vector<const FailingBlock *> moving;
@@ -219,9 +232,20 @@ std::string json_text(const SafetyReport &report) {
                            .add("motion", block.motion));
     }
   }
+  std::vector<JsonObject> slides;
+  for (const EarlierSlide &slide : report.earlier_slides) {
+    slides.push_back(JsonObject()
+                         .add("stage", slide.stage)
+                         .add("block", slide.block)
+                         .add("slide", slide.share)
+                         .add("distance", slide.distance)
+                         .add("blocks", slide.blocks)
+                         .add("words", slide.words));
+  }
   return object.add("families", report.families)
              .add("undecided", report.undecided)
              .add("settled", trial_object(report.settled))
+             .add("earlier_slides", slides)
              .add("trials", trials)
              .add("moving", moving)
              .text() +
@@ -269,8 +293,9 @@ std::string to_text(const SafetyReport &report) {
   for (const std::string &name : report.families) {
     families += (families.empty() ? "" : ", ") + name;
   }
-  std::string text = fmt::format("{}\n{}strengths divided: friction, cohesion and tension of {}\n",
-                                 factor_text(report), undecided_text(report) + slide_text(report), families);
+  std::string text =
+      fmt::format("{}\n{}strengths divided: friction, cohesion and tension of {}\n", factor_text(report),
+                  undecided_text(report) + slide_text(report) + earlier_slides_text(report), families);
   if (report.leaves_earthquake_out) {
     text += "the earthquake of the scene is left out: the factor is that of blocks that were never shaken\n";
   }
@@ -281,12 +306,13 @@ std::string to_text(const SafetyReport &report) {
                 : words_on_first_block(*report.first_block);
   }
   const double settled_at = report.settled.factor;
-  text += fmt::format("settled state{}: t = {:.4g} s, {} steps, {} evaluations, {:.2f} CPU s\n",
-                      settled_at == 1.0 ? "" : fmt::format(" with strengths divided by {:g}", settled_at),
-                      report.settled.time, report.settled.steps, report.settled.evaluations,
-                      report.settled.cpu_s);
-  if (report.is_bound_alone) {
-    return text;
+  text += fmt::format(
+      "{}{}: t = {:.4g} s, {} steps, {} evaluations, {:.2f} CPU s\n",
+      report.settled.verdict == Verdict::failed ? "run that has not settled" : "settled state",
+      settled_at == 1.0 ? "" : fmt::format(" with strengths divided by {:g}", settled_at),
+      report.settled.time, report.settled.steps, report.settled.evaluations, report.settled.cpu_s);
+  if (report.trials.empty()) {
+    return report.settled.message.empty() ? text : text + report.settled.message + "\n";
   }
   text += "    factor  verdict    time[s]     steps  evaluations   CPU[s] ranks     moved  decided by\n";
   for (const StrengthTrial &trial : report.trials) {

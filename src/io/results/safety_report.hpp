@@ -33,6 +33,16 @@ struct StrengthTrial {
   std::filesystem::path directory;
 };
 
+/// Blocks that have slid to where they hold in a settle stage before the search.
+struct EarlierSlide {
+  std::string stage;
+  std::string block;       ///< the one that slid farthest, by its size
+  double share = 0.0;      ///< how far that one slid, in sizes of it ...
+  double distance = 0.0;   ///< ... and in m
+  std::int64_t blocks = 0; ///< that slid by StageResult::telling_slide or more
+  std::string words;       ///< all this in a sentence
+};
+
 /// A block in the picture of how the blocks fail.
 struct FailingBlock {
   std::int64_t block = 0;
@@ -76,13 +86,14 @@ inline bool is_narrow(double width, double holds, double tolerance) {
 
 /// What gcpdda fos has found.
 struct SafetyReport {
-  std::vector<std::string> families;             ///< laws that were weakened
-  bool leaves_earthquake_out = false;            ///< of the scene
-  double tolerance = 0.0;                        ///< asked for
-  std::optional<double> holds;                   ///< largest factor at which the blocks settled
-  std::optional<double> fails;                   ///< smallest one at which they failed
-  std::vector<double> undecided;                 ///< factors between these two without a verdict
-  StrengthTrial settled;                         ///< the run up to the settled state, at factor 1
+  std::vector<std::string> families;  ///< laws that were weakened
+  bool leaves_earthquake_out = false; ///< of the scene
+  double tolerance = 0.0;             ///< asked for
+  std::optional<double> holds;        ///< largest factor at which the blocks settled
+  std::optional<double> fails;        ///< smallest one at which they failed
+  std::vector<double> undecided;      ///< factors between these two without a verdict
+  StrengthTrial settled; ///< the run up to the settled state, or the last one that did not come there
+  std::vector<EarlierSlide> earlier_slides;      ///< up to the settled state
   std::vector<StrengthTrial> trials;             ///< by factor
   std::optional<double> bound;                   ///< upper bound by limit analysis, where it was asked for
   std::optional<double> resting_bound;           ///< the same for blocks that hold as they lie; no larger

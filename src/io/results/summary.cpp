@@ -30,7 +30,7 @@ JsonObject energy_object(const EnergyRow &row) {
 
 std::vector<JsonObject> stage_objects(const RunSummary &summary) {
   std::vector<JsonObject> objects;
-  for (const auto &[name, verdict, result] : summary.stages) {
+  for (const auto &[name, verdict, result, slid_block] : summary.stages) {
     objects.push_back(JsonObject()
                           .add("name", name)
                           .add("verdict", verdict)
@@ -41,7 +41,10 @@ std::vector<JsonObject> stage_objects(const RunSummary &summary) {
                           .add("kinetic", result.kinetic)
                           .add("moved", result.moved)
                           .add("removed", result.removed)
-                          .add("loose", result.loose));
+                          .add("loose", result.loose)
+                          .add("slide", result.slide)
+                          .add("slid_block", slid_block)
+                          .add("slid_blocks", result.slid_blocks));
   }
   return objects;
 }

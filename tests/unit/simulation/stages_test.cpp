@@ -453,6 +453,8 @@ TEST(Stages, GoThroughNumbersUnchanged) {
   state.memory.settled_looks = 1;
   state.memory.last.motion = 0.25;
   state.results = {{Verdict::settled, 1.5, 7, 8, 1e-6, 2.0, 3.0, 0}, {Verdict::done, 1.5, 0, 0, 0, 0, 0, 4}};
+  state.results[0].slide = 0.25;
+  state.results[0].slid_block = 17;
   state.removed = {3, 5, 9, 11};
   state.unloading = {{4, {{1.0, 2.0}, 3.0}, {4.0, 5.0, 6.0, 7.0}, 8.0, 9.0}};
   const StageNumbers numbers = to_numbers(state);
@@ -461,6 +463,8 @@ TEST(Stages, GoThroughNumbersUnchanged) {
   EXPECT_EQ(to_numbers(again).reals, numbers.reals);
   EXPECT_EQ(again.verdict, Verdict::failed);
   EXPECT_EQ(again.results[1].removed, 4);
+  EXPECT_EQ(again.results[0].slide, 0.25);
+  EXPECT_EQ(again.results[0].slid_block, 17);
   EXPECT_EQ(again.unloading[0].gradient.yy, 7.0);
 }
 

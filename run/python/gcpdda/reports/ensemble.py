@@ -28,6 +28,10 @@ def ensemble_page(ensemble, title):
     page.cards({"members": f"{summary['done']} of {summary['count']}", "hold": str(summary["holds"]),
                 "fail": str(summary["fails"]), "undecided": str(summary["undecided"]),
                 "cannot run": str(summary["cannot_run"])})
+    if summary.get("holds_after_slide"):
+        page.text(f"{summary['holds_after_slide']} members held only after blocks slid while they settled: the "
+                  "strength may have failed where they were. Column message names the blocks; a smaller "
+                  "failure_motion of that stage takes such slides for failure.", "note")
     page.section("Members")
     if summary["measure"] == "factor" and summary["factors"]:
         page.pictures((picture(draw_factors(members)),

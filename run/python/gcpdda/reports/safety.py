@@ -14,8 +14,13 @@ COLOURS = {"settled": "#2e7d4f", "failed": "#b0332a"}
 def safety_page(search, title, frames):
     page = Page(title)
     summary, settled = search.summary, search.settled
-    # A search without trials has been asked for the bound alone.
-    page.verdict(*(factor_words(summary) if summary["trials"] else bound_words(summary)))
+    # A search without trials has failed before the first one, or has been asked for the bound alone.
+    has_failed = not summary["trials"] and summary["fails"] is not None
+    page.verdict(*(factor_words(summary) if summary["trials"] or has_failed else bound_words(summary)))
+    if has_failed and summary["settled"]["message"]:
+        page.text(summary["settled"]["message"], "note")
+    for slide in summary.get("earlier_slides", ()):
+        page.text(slide_words(slide, "factor" if summary["trials"] or has_failed else "bound"), "note")
     if summary["trials"] and "first_block_holds" in summary:
         page.verdict(*first_block_words(summary))
     mechanism = search.mechanism
@@ -35,8 +40,12 @@ def safety_page(search, title, frames):
         most, name, _ = moved_most(settled.frame("last"))
         factor = summary["settled"]["factor"]
         strength = "their full strength" if factor == 1.0 else f"strengths divided by {factor:g}"
-        words = "Trials begin from this state" if summary["trials"] else "Limit analysis is done at this state"
-        page.text(f"{words}, in which the blocks rest with {strength}. {name} has moved most, by {length(most)}.")
+        if has_failed:
+            words = f"The blocks have not settled with {strength}, and there is no state from which trials could begin."
+        else:
+            words = "Trials begin from this state" if summary["trials"] else "Limit analysis is done at this state"
+            words += f", in which the blocks rest with {strength}."
+        page.text(f"{words} {name} has moved most, by {length(most)}.")
         page.pictures((picture(settled.plot.field("displacement")), "Displacement while settling."),
                       (picture(settled.plot.crosses()), "Principal stresses in the settled state."))
     add_provenance(page, search, settled.path / "scene.toml", facts(settled), "fos")
@@ -77,6 +86,13 @@ def first_block_words(summary):
     factor = 0.5 * (holds + fails)
     return (f"First block: factor {factor:.4g}, holds at {holds:.5g} and fails at {fails:.5g}.",
             "good" if factor >= 1.0 else "bad")
+
+
+def slide_words(slide, result):
+    """What a slide before the search means for the factor or the bound."""
+    return (f"{slide['words'][0].upper()}{slide['words'][1:]}. The {result} is that of the place where the blocks came "
+            "to hold, and their strength without reduction may already have failed (a factor below 1). Try a smaller "
+            "failure_motion in that stage, or fos.largest_motion.")
 
 
 def bound_words(summary):
