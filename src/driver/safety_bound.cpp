@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace gcpdda {
@@ -21,7 +22,8 @@ namespace {
 struct LimitRegion {
   LimitJoint joint;
   double cohesion = 0.0; ///< Pa
-  double bonded = 0.0;   ///< length of it on which bonds are whole, that have joints of their own, m
+  bool is_bond = false;
+  double bonded = 0.0; ///< length of it on which bonds are whole, that have joints of their own, m
   std::array<Vec2, 2> force{};
   std::array<double, 2> torque{};
 };
@@ -85,6 +87,7 @@ LimitRegion closed_joint(const Simulation &settled, const RegionForce &region, c
       region.normal_force * dot(region.force, region.normal) >= 0.0 ? region.normal : -1.0 * region.normal;
   joint.tan_friction = is_residual ? law.residual_tan_friction : law.tan_friction;
   joint.tension = region.bonded ? length * law.tension : 0.0;
+  found.is_bond = region.bonded;
   joint.is_weakened = is_weakened(scene.reduction, static_cast<std::size_t>(number));
   found.cohesion = is_residual ? law.residual_cohesion : law.cohesion;
   if (law.is_barton_bandis) {
@@ -110,6 +113,31 @@ LimitRegion open_joint(const Simulation &settled, std::int32_t law_number, Vec2 
   found.joint.is_weakened = is_weakened(scene.reduction, static_cast<std::size_t>(number));
   found.cohesion = law.has_bonds ? law.residual_cohesion : law.cohesion;
   return found;
+}
+
+constexpr double same_line = 0.98; // cosine
+
+/// Where points lie along a joint, smaller first, m.
+std::pair<double, double> places_on(const LimitJoint &joint, Vec2 one, Vec2 other) {
+  const Vec2 along = perp(joint.normal);
+  return std::minmax({dot(one - joint.begin, along), dot(other - joint.begin, along)});
+}
+
+/// The length of a joint that lies on another one of the same pair, m.
+double common_length(const LimitJoint &joint, const LimitJoint &other) {
+  if (dot(joint.normal, other.normal) < same_line) {
+    return 0.0;
+  }
+  const auto [low, high] = places_on(joint, joint.begin, joint.end);
+  const auto [from, to] = places_on(joint, other.begin, other.end);
+  return std::max(0.0, std::min(high, to) - std::max(low, from));
+}
+
+/// Whether a point lies beside a joint and not beyond its ends.
+bool is_beside(const LimitJoint &joint, Vec2 point) {
+  const auto [low, high] = places_on(joint, joint.begin, joint.end);
+  const double place = dot(point - joint.begin, perp(joint.normal));
+  return place >= low && place <= high;
 }
 
 /// Let a joint reach along its line to where a point lies beside it.
@@ -191,12 +219,11 @@ LimitRegion joint_of_corner(const Simulation &settled, const CandidatePair &pair
 }
 
 /// Where corners of the blocks of a pair stand before edges of each other, or beside the ends of them, their
-/// joint may close.
+/// joint may close. A bond keeps its length: its tension acts on no more of the side than it glues.
 /// @param motion  the farthest that a corner is from an edge and from its ends, and that it turns
 /// @param joints  of the pair, those that are closed at first
 void add_open_joints(const Simulation &settled, const CandidatePair &pair, const Motion &motion,
                      std::vector<LimitRegion> &joints) {
-  constexpr double same_line = 0.98; // cosine
   const BlockSystem &blocks = settled.blocks();
   const std::array<TrialOutline, 2> outlines{TrialOutline(blocks, pair.lower.value),
                                              TrialOutline(blocks, pair.higher.value)};
@@ -211,32 +238,26 @@ void add_open_joints(const Simulation &settled, const CandidatePair &pair, const
         if (standing == Standing::away || !may_lie_on(corners, corner, out, motion.turn)) {
           continue;
         }
-        const auto known = std::find_if(joints.begin(), joints.end(), [&](const LimitRegion &joint) {
-          return dot(joint.joint.normal, normal) > same_line;
+        const Vec2 point = corners.vertex[corner];
+        const auto on_line = [&](const LimitRegion &region) {
+          return dot(region.joint.normal, normal) > same_line;
+        };
+        if (std::any_of(joints.begin(), joints.end(), [&](const LimitRegion &region) {
+              return region.is_bond && on_line(region) && is_beside(region.joint, point);
+            })) {
+          continue;
+        }
+        const auto known = std::find_if(joints.begin(), joints.end(), [&](const LimitRegion &region) {
+          return !region.is_bond && on_line(region);
         });
         if (known == joints.end()) {
           joints.push_back(joint_of_corner(settled, pair, side, k, corners, corner, normal));
         } else if (standing == Standing::before) {
-          extend(known->joint, corners.vertex[corner]);
+          extend(known->joint, point);
         }
       }
     }
   }
-}
-
-/// The length of a region that lies on a bond of the same pair, m.
-double common_length(const RegionForce &region, const RegionForce &bond) {
-  constexpr double same_line = 0.98; // cosine
-  if (std::abs(dot(region.normal, bond.normal)) < same_line) {
-    return 0.0;
-  }
-  const Vec2 along = perp(region.normal);
-  const double middle = dot(bond.point - region.point, along);
-  const double sign = dot(region.normal, bond.normal) > 0.0 ? 1.0 : -1.0;
-  const double a = middle + sign * bond.extent_begin;
-  const double b = middle + sign * bond.extent_end;
-  return std::max(0.0, std::min(region.extent_end, std::max(a, b)) -
-                           std::max(region.extent_begin, std::min(a, b)));
 }
 
 /// @param slip  of each block, in sizes of it
@@ -248,9 +269,6 @@ std::vector<LimitRegion> regions_of(Simulation &settled, double slip) {
     const std::array<std::size_t, 2> rows{pair.lower.value, pair.higher.value};
     for (std::size_t k = 0; k < regions.size(); ++k) {
       LimitRegion region = closed_joint(settled, regions[k], settled.history().state(number, k), pair);
-      for (const RegionForce &other : regions) {
-        region.bonded += other.bonded && !regions[k].bonded ? common_length(regions[k], other) : 0.0;
-      }
       for (std::size_t side = 0; side < 2; ++side) {
         const ContactPart part = contact_part(regions[k], side == 0, blocks.motion[rows[side]].centroid);
         region.force[side] = part.force;
@@ -272,6 +290,9 @@ std::vector<LimitRegion> regions_of(Simulation &settled, double slip) {
       return block.keeps_its_velocity() ? std::int64_t{-1} : std::int64_t{block.id.value};
     };
     for (LimitRegion &region : of_pair[number]) {
+      for (const LimitRegion &other : of_pair[number]) {
+        region.bonded += other.is_bond && !region.is_bond ? common_length(region.joint, other.joint) : 0.0;
+      }
       region.joint.first = id_of(pair.lower);
       region.joint.second = id_of(pair.higher);
       const double length = norm(region.joint.end - region.joint.begin);
