@@ -53,6 +53,8 @@ def test_other_maps(leaning, opening):
                  leaning.plot.strength):
         check_map(draw())
     check_map(opening.plot.field("permanent", since="fall"))
+    with pytest.raises(ValueError, match="give since=NAME"):
+        opening.plot.field("permanent")
     check_map(opening.plot.before_after("stress"))
     assert any("tension of a bolt" in text for text in check_map(leaning.plot.field()))
 
