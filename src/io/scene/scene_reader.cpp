@@ -101,10 +101,11 @@ struct TreeOfStage {
   std::optional<toml::table> root;
   bool changes = false;                          ///< this stage sets something
   std::optional<toml::source_region> stress_set; ///< where it sets the in-situ stress
+  std::optional<toml::source_region> water_set;  ///< where it sets gravity, or water
 };
 
 TreeOfStage tree_of_stage(const Text &text, std::size_t last, Faults &faults) {
-  TreeOfStage tree{parse_scene(text.toml, faults), false, {}};
+  TreeOfStage tree{parse_scene(text.toml, faults), false, {}, {}};
   for (std::size_t i = 0; i < text.sets.size(); ++i) {
     apply_set(*tree.root, text.sets[i], i, faults);
   }
@@ -117,6 +118,9 @@ TreeOfStage tree_of_stage(const Text &text, std::size_t last, Faults &faults) {
          tree.changes && entry != set->end(); ++entry) {
       if (k == last && sets_stress(entry->first.str())) {
         tree.stress_set = entry->first.source();
+      }
+      if (k == last && sets_gravity_or_water(entry->first.str())) {
+        tree.water_set = entry->first.source();
       }
       apply_change(*tree.root, entry->first, entry->second, faults);
     }
@@ -141,6 +145,9 @@ void read_changes(const Text &text, Faults &faults, Scene &scene) {
     const FaultyNodes faulty = check_keys(*tree.root, own);
     const SceneSource source{*tree.root, faulty, own};
     read_parts(source, text.file, *after);
+    if (tree.water_set) { // else it has been told
+      expect_gravity_of_water(source, after->water, tree.water_set);
+    }
     if (tree.stress_set) {
       after->in_situ = read_in_situ(source, *after);
       read_stressed_sides(source, *after);
@@ -201,6 +208,7 @@ SceneReading read_alone(std::string_view text, const std::string &file,
     }
     const FaultyNodes faulty = check_keys(*root, faults);
     read_parts({*root, faulty, faults}, file, reading.scene);
+    expect_gravity_of_water({*root, faulty, faults}, reading.scene.water, std::nullopt);
     reading.scene.in_situ = read_in_situ({*root, faulty, faults}, reading.scene);
     read_stressed_sides({*root, faulty, faults}, reading.scene);
     reading.scene.stages = read_stages({*root, faulty, faults}, reading.scene);

@@ -240,6 +240,11 @@ bool sets_load(std::string_view dotted) {
   return path && path->front() == "block" && path->back() == "load";
 }
 
+bool sets_gravity_or_water(std::string_view dotted) {
+  const auto path = split(trimmed(dotted));
+  return path && (path->front() == "water" || (path->front() == "run" && path->back() == "gravity"));
+}
+
 std::optional<toml::table> parse_scene(std::string_view text, Faults &faults) {
   return parse(text, nullptr, faults);
 }

@@ -31,5 +31,7 @@ bool is_named_list(std::string_view key);
 /// block?
 bool sets_stress(std::string_view path);
 bool sets_load(std::string_view path);
+/// Is it that of gravity or of a value of the water?
+bool sets_gravity_or_water(std::string_view path);
 
 } // namespace gcpdda::scene_text

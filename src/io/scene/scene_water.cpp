@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace gcpdda::scene_text {
 
 namespace {
@@ -30,11 +32,31 @@ void expect_line(const SceneSource &source, const Section &section, const std::v
 
 } // namespace
 
-std::vector<Water> read_water(const SceneSource &source, const JointLaws &joints) {
-  std::vector<Water> all;
+void expect_gravity_of_water(const SceneSource &source, const std::vector<Water> &water,
+                             const std::optional<toml::source_region> &where) {
   Vec2 gravity = RunSettings{}.gravity;
   const Section run = section(source.root, "run", source.faulty);
   run.read("gravity", gravity);
+  if (!run.known("gravity") || (gravity.x == 0.0 && gravity.y < 0.0)) {
+    return;
+  }
+  for (const NamedSection &named :
+       named_sections(source.root, "water", source.faulty, source.faults.origins())) {
+    const bool is_there = std::any_of(water.begin(), water.end(),
+                                      [&](const Water &one) { return one.name == named.name && one.active; });
+    if (is_there) {
+      source.faults.add(
+          where.value_or(named.section.source()),
+          fmt::format("{} needs gravity along -y", named.section.label()),
+          "its pressure grows downwards from a line of heights",
+          where ? fmt::format("set run.gravity = [0.0, -9.81], or water.{}.active = false", named.name)
+                : "write gravity = [0.0, -9.81], or leave the water out");
+    }
+  }
+}
+
+std::vector<Water> read_water(const SceneSource &source, const JointLaws &joints) {
+  std::vector<Water> all;
   for (const NamedSection &named :
        named_sections(source.root, "water", source.faulty, source.faults.origins())) {
     const Section &section = named.section;
@@ -45,11 +67,6 @@ std::vector<Water> read_water(const SceneSource &source, const JointLaws &joints
     section.read("active", water.active);
     expect_line(source, section, water.phreatic);
     water.joints = find_joints(source, section, "joints", joints);
-    if (run.known("gravity") && (gravity.x != 0.0 || gravity.y >= 0.0)) {
-      source.faults.add(section.source(), fmt::format("{} needs gravity along -y", section.label()),
-                        "its pressure grows downwards from a line of heights",
-                        "write gravity = [0.0, -9.81], or leave the water out");
-    }
     if (section.sound("phreatic") != nullptr) {
       all.push_back(std::move(water));
     }

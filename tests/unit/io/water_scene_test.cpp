@@ -49,5 +49,29 @@ TEST(WaterScene, GravityAsideHasNoDepth) {
             "line of heights, write gravity = [0.0, -9.81], or leave the water out");
 }
 
+// A stage may tilt gravity where no water is there. What the stage sets is at fault, not the table.
+TEST(WaterScene, GravityAsideNeedsWaterThatIsActiveInItsStage) {
+  std::string staged = small_scene;
+  staged.erase(staged.find("duration"), std::string("duration = 2.0\n").size());
+  const std::string lake = staged + "[water.lake]\nphreatic = [[0, 1], [3, 1]]\n";
+  const std::string first = "[[stage]]\nkind = \"settle\"\nlimit = 1\n";
+  const auto stage = [&](const std::string &set) { return first + "set = { " + set + " }\n"; };
+  const std::string aside = "\"run.gravity\" = [1, -9]";
+  const std::string dry = "\"water.lake.active\" = false";
+  const std::string wet = "\"water.lake.active\" = true";
+  const auto told = [](const std::string &text) { return messages(read_scene(text, "s.toml", {})); };
+  const std::vector<std::string> none;
+  EXPECT_EQ(told(lake + "active = false\n" + first + stage(aside)), none);
+  EXPECT_EQ(told(lake + first + stage(dry) + stage(aside)), none);
+  EXPECT_EQ(told(lake + first + stage(aside + ", " + dry)), none);
+  const std::string what =
+      ": error: [water.lake] needs gravity along -y, its pressure grows downwards from a "
+      "line of heights, set run.gravity = [0.0, -9.81], or water.lake.active = false";
+  EXPECT_EQ(told(lake + first + stage(aside)), std::vector{"s.toml:18:9" + what});
+  EXPECT_EQ(told(lake + first + stage(dry) + stage(aside) + stage(wet)), std::vector{"s.toml:26:9" + what});
+  EXPECT_EQ(told(lake + first + stage(aside) + stage("\"run.gravity\" = [0, -9]")),
+            std::vector{"s.toml:18:9" + what});
+}
+
 } // namespace
 } // namespace gcpdda::water_scene_test
