@@ -69,15 +69,24 @@ Diagnostic remark(const Bolt &bolt, Severity severity, const char *what, const c
   return {severity, bolt.where, fmt::format("bolt '{}' {}", bolt.name, what), why, hint};
 }
 
+constexpr double near_an_end = 1e-6; ///< of a bolt: an end as near to a block lies in it
+
 /// What is odd about a bolt that has been put in.
 void note_bolt(const Bolt &bolt, const std::vector<BoltPiece> &pieces, bool has_links, Diagnostics &notes) {
   if (pieces.empty()) {
     notes.push_back(remark(bolt, Severity::warning, "lies outside the blocks", "it holds nothing",
-                           "check 'from' and 'to'"));
+                           "move 'from' and 'to' into blocks; an end on an edge lies in none"));
+  } else if (!has_links && (pieces.front().begin > near_an_end || pieces.back().end < 1.0 - near_an_end)) {
+    const bool is_head = pieces.front().begin > near_an_end;
+    notes.push_back(remark(bolt, Severity::warning,
+                           is_head ? "crosses no joint, and its head lies in no block"
+                                   : "crosses no joint, and its tip lies in no block",
+                           "it acts only between two blocks, and an end on an edge lies in none",
+                           is_head ? "move 'from' into a block" : "move 'to' into a block"));
   } else if (!has_links) {
     notes.push_back(remark(bolt, Severity::warning, "crosses no joint", "it acts only between two blocks",
                            "make it longer, or leave it out"));
-  } else if (pieces.back().end < 1.0 - 1e-6) {
+  } else if (pieces.back().end < 1.0 - near_an_end) {
     notes.push_back(remark(bolt, Severity::warning, "ends outside the blocks",
                            "its tip is taken to be where it leaves the last one", "check 'to'"));
   }
