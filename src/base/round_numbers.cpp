@@ -19,6 +19,12 @@ double round_number(double x) {
   return 10.0 * power;
 }
 
+double two_digits_below(double x) {
+  constexpr double rounding = 1e-12;
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
+  return std::floor(x / unit * (1.0 + rounding)) * unit;
+}
+
 std::vector<double> round_ticks(double low, double high, int about) {
   if (!(high > low)) {
     return {low};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Round numbers for axes and histograms: 1, 2 or 5 times a power of ten, and their multiples.
+// Round numbers for axes and histograms, 1, 2 or 5 times a power of ten and their multiples, and for hints.
 
 #include <string>
 #include <vector>
@@ -9,6 +9,9 @@ namespace gcpdda {
 
 /// The round number nearest to a positive `x`, by ratio.
 double round_number(double x);
+
+/// A positive `x` rounded down to two digits; one that has two to within rounding keeps them.
+double two_digits_below(double x);
 
 /// Multiples of a round number from `low` to `high`, both of which may be among them, in ascending order.
 /// There are between about 0.7 `about` and 1.5 `about` of them; `low` alone where the range is empty.

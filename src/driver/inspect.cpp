@@ -197,6 +197,9 @@ private:
     std::string text =
         line("step", fmt::format("{:.6g} s ({}), {}", plan.time_step, given ? "as given" : "automatic",
                                  words_on_steps(simulation_)));
+    if (bound.is_set_by_motion()) {
+      return text + line("", words_on_motion_bound(simulation_)) + rayleigh_line();
+    }
     if (bound.block < 0 || bound.omega_max <= 0.0) {
       return text + line("", "nothing limits it: forces move no block");
     }
@@ -222,7 +225,7 @@ private:
                     "fastest joint: without it the step would be at most {:.6g} s, {:.3g} times as long",
                     rayleigh.mass_damping, rayleigh.stiffness_damping,
                     0.5 * rayleigh.stiffness_damping * bound.omega_max, frequency, bound.undamped_step,
-                    bound.undamped_step / bound.time_step));
+                    bound.undamped_step / bound.stable_step));
   }
 
   /// Where a stage has its own, and what it costs if the joints and bolts are those of the start.

@@ -1,11 +1,13 @@
 #include "driver/run_words.hpp"
 
+#include "base/round_numbers.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/strain_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <numeric>
 
 namespace gcpdda {
@@ -13,10 +15,12 @@ namespace gcpdda {
 namespace {
 
 /// What to try where blocks move too far in a step, with values that differ from those of this run.
-std::string words_on_shorter_step(const Simulation &simulation) {
+/// @param longest  of the steps that can help, s
+std::string words_on_shorter_step(const Simulation &simulation,
+                                  double longest = std::numeric_limits<double>::infinity()) {
   const Stage &stage = simulation.stages()[static_cast<std::size_t>(simulation.stage().index)];
-  const double shorter = std::min(0.5 * simulation.plan().time_step, simulation.bound().time_step);
-  std::string step = fmt::format("run.time_step = {:.2g}", shorter);
+  const double shorter = std::min({0.5 * simulation.plan().time_step, simulation.bound().time_step, longest});
+  std::string step = fmt::format("run.time_step = {:.2g}", two_digits_below(shorter));
   if (stage.kind != StageKind::settle) {
     return step;
   }
@@ -42,7 +46,9 @@ std::string fault_message(const Simulation &simulation) {
     return fmt::format(
         "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "
         "could pass through a block; try {}",
-        where, fault.value, fault.limit, words_on_shorter_step(simulation));
+        where, fault.value, fault.limit,
+        words_on_shorter_step(simulation, StepBound::share_of_motion * fault.limit / fault.value *
+                                              simulation.plan().time_step));
   case Fault::Cause::not_finite:
     break;
   }
@@ -157,8 +163,21 @@ std::string words_on_blocks(const Simulation &simulation) {
       imbalance_of(work), simulation.partition().by_metis ? "METIS" : "space-filling curve");
 }
 
+std::string words_on_motion_bound(const Simulation &simulation) {
+  const StepBound &bound = simulation.bound();
+  return fmt::format(
+      "at most {:.6g} s, set by block '{}': at its {:.6g} m/s it moves {:.4g} m in it, {:g} of "
+      "a quarter of the narrowest block width",
+      bound.time_step, block_name(simulation.scene(), bound.fastest.block), bound.fastest.speed,
+      bound.time_step * bound.fastest.speed, StepBound::share_of_motion);
+}
+
 std::string words_on_time_step(const Simulation &simulation) {
   const StepBound &bound = simulation.bound();
+  if (bound.is_set_by_motion()) {
+    return fmt::format("step {:.6g} s, {}; recommended {}", simulation.plan().time_step,
+                       words_on_steps(simulation), words_on_motion_bound(simulation));
+  }
   return fmt::format("step {:.6g} s, {}; recommended at most {:.6g} s = safety {:g} x limit "
                      "{:.3f} / omega_max {:.6g} rad/s (contact stiffness over each block's boundary)",
                      simulation.plan().time_step, words_on_steps(simulation), bound.time_step, bound.safety,

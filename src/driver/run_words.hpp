@@ -29,6 +29,9 @@ std::string words_on_blocks(const Simulation &simulation);
 /// The time step, how many there are, and what bounds it.
 std::string words_on_time_step(const Simulation &simulation);
 
+/// The step that a block with a given velocity sets, where one does.
+std::string words_on_motion_bound(const Simulation &simulation);
+
 /// The stiffness and strength of a joint law.
 std::string words_on_law(const JointLaw &law);
 

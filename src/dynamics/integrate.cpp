@@ -53,6 +53,15 @@ RigidDof PrescribedMotion::displacement(double time) const {
   return row.displacement + (0.5 * (time - row.time)) * (row.velocity + velocity(time));
 }
 
+double PrescribedMotion::fastest(double begin, double end, double radius) const {
+  const auto speed = [&](const RigidDof &v) { return norm(v.u) + radius * std::abs(v.r); };
+  double most = std::max(speed(velocity(begin)), speed(velocity(end)));
+  for (const Row &row : rows_) { // a velocity between two rows is slower than one of both
+    most = row.time > begin && row.time < end ? std::max(most, speed(row.velocity)) : most;
+  }
+  return most;
+}
+
 namespace {
 
 /// Rows with four vertices on their way to the lanes.

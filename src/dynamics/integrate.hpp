@@ -31,6 +31,8 @@ public:
 
   [[nodiscard]] RigidDof velocity(double time) const;
   [[nodiscard]] RigidDof displacement(double time) const; ///< since t = 0
+  /// The largest speed of a point as far from the centroid as `radius` (m) between two times (s), m/s.
+  [[nodiscard]] double fastest(double begin, double end, double radius) const;
 
 private:
   struct Row {

@@ -1,6 +1,7 @@
 #include "simulation/impact_watch.hpp"
 
 #include "base/exact_sum.hpp"
+#include "base/round_numbers.hpp"
 #include "io/results/id_slabs.hpp"
 
 #include <algorithm>
@@ -219,14 +220,11 @@ Diagnostic warning_of(const Simulation &simulation, const ImpactGain &gain) {
   const StepBound &bound = simulation.bound();
   const double longest = std::min(time_step * std::sqrt(0.5 * ImpactWatch::worth_telling / share),
                                   bound.omega_max > 0.0 ? 0.4 / bound.omega_max : time_step);
-  const auto two_digits = [](double value) { // rounded down
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-    return std::floor(value / unit) * unit;
-  };
   const bool in_seconds = simulation.scene().run.time_step > 0.0 || bound.omega_max == 0.0;
-  const std::string hint = in_seconds ? fmt::format("use run.time_step = {:.2g} or less", two_digits(longest))
-                                      : fmt::format("use run.safety = {:.2g} or less",
-                                                    two_digits(longest * bound.omega_max / bound.limit));
+  const std::string hint = in_seconds
+                               ? fmt::format("use run.time_step = {:.2g} or less", two_digits_below(longest))
+                               : fmt::format("use run.safety = {:.2g} or less",
+                                             two_digits_below(longest * bound.omega_max / bound.limit));
   return {
       Severity::warning,
       {},

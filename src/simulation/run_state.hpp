@@ -84,6 +84,7 @@ struct RunState {
   StageClock clock;
   Scheme scheme;
   StepBound bound;
+  FastestBlock fastest_given; ///< fastest_at_start()
   FidelityReport fidelity;
   std::vector<BlockLook> looks;          ///< at each owned block, of the last look at a stage
   std::vector<std::int64_t> look_sums;   ///< scratch

@@ -290,6 +290,7 @@ void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
     unpack_rows(message, run.blocks);
   }
   run.blocks.num_fixed = run.blocks.num_rows() - run.blocks.num_owned;
+  run.fastest_given = fastest_at_start(run);
 }
 
 // By cell, of the initial configuration. Faces that touch count as contacts whatever their rounding.

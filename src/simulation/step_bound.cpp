@@ -3,6 +3,7 @@
 #include "contact/laws/region_law.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "dynamics/frequency_bound.hpp"
+#include "dynamics/integrate.hpp"
 #include "simulation/run_state.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 namespace gcpdda {
@@ -74,7 +76,81 @@ void bound_by_all_dashpots(RunState &run, double rayleigh_ratio) {
   }
 }
 
+/// Collective.
+FastestBlock fastest_of_all(const Communicator &communicator, const std::vector<FastestBlock> &mine) {
+  FastestBlock fastest;
+  const auto see = [&](const FastestBlock &block) {
+    if (block.speed > fastest.speed ||
+        (block.speed == fastest.speed && block.block < fastest.block && block.block >= 0)) {
+      fastest = block;
+    }
+  };
+  for (const FastestBlock &block : mine) {
+    see(block);
+  }
+  for (const std::vector<FastestBlock> &other : communicator.all_gather(std::vector{fastest})) {
+    see(other.front());
+  }
+  return fastest;
+}
+
+/// Of points of a block, m/s.
+double speed_of(const BlockSystem &blocks, std::size_t row) {
+  constexpr double one_second = 1.0; // nothing accelerates it
+  return motion_bound(blocks, row, one_second);
+}
+
+/// Blocks that are free may move as the scene says until a stage brings them to rest. The velocities at hand
+/// would give restarts other steps. Collective.
+FastestBlock fastest_of_stage(const RunState &run) {
+  const Stage &stage = run.clock.stage();
+  const auto before = std::span(run.clock.stages).first(static_cast<std::size_t>(run.clock.state.index));
+  const bool came_to_rest =
+      std::any_of(before.begin(), before.end(), [](const Stage &s) { return s.kind == StageKind::settle; });
+  std::vector<FastestBlock> found;
+  if (!came_to_rest) {
+    found.push_back(run.fastest_given);
+  }
+  const double begin = run.clock.state.start_time;
+  const double end = begin + stage.duration;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const BlockProperties &block = run.blocks.properties[row];
+    if (!block.keeps_its_velocity()) {
+      continue;
+    }
+    const auto &prescribed = run.loads.prescribed;
+    const auto motion = std::lower_bound(prescribed.begin(), prescribed.end(), block.id,
+                                         [](const auto &entry, BlockId id) { return entry.first < id; });
+    const bool follows_table = motion != prescribed.end() && motion->first == block.id;
+    found.push_back(
+        {follows_table ? motion->second.fastest(begin, end, block.radius) : speed_of(run.blocks, row),
+         block.id.value});
+  }
+  return fastest_of_all(run.communicator, found);
+}
+
+/// A block that moves too far in a step ends the run. Collective.
+void bound_by_motion(RunState &run) {
+  run.bound.fastest = fastest_of_stage(run);
+  run.bound.motion_step =
+      num_blocks(run.scene) > 1 && run.bound.fastest.speed > 0.0
+          ? StepBound::share_of_motion * most_motion_in_step(run) / run.bound.fastest.speed
+          : std::numeric_limits<double>::infinity();
+  run.bound.time_step = std::min(run.bound.stable_step, run.bound.motion_step);
+}
+
 } // namespace
+
+FastestBlock fastest_at_start(const RunState &run) {
+  std::vector<FastestBlock> found;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const BlockProperties &block = run.blocks.properties[row];
+    if (!block.keeps_its_velocity()) {
+      found.push_back({speed_of(run.blocks, row), block.id.value});
+    }
+  }
+  return fastest_of_all(run.communicator, found);
+}
 
 void find_bound(RunState &run) {
   double omega_squared = 0.0;
@@ -135,9 +211,10 @@ void find_bound(RunState &run) {
     run.bound.limit = locally_damped;
   }
   bound_by_all_dashpots(run, run.bound.damping_ratio - joint_ratio);
-  run.bound.time_step = run.bound.omega_max > 0.0 ? run.bound.safety * run.bound.limit / run.bound.omega_max
-                                                  : std::numeric_limits<double>::infinity();
-  run.bound.undamped_step = run.bound.time_step * undamped_share;
+  run.bound.stable_step = run.bound.omega_max > 0.0 ? run.bound.safety * run.bound.limit / run.bound.omega_max
+                                                    : std::numeric_limits<double>::infinity();
+  run.bound.undamped_step = run.bound.stable_step * undamped_share;
+  bound_by_motion(run);
 }
 
 void scale_masses(RunState &run) {

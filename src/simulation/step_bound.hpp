@@ -3,12 +3,22 @@
 // What limits the time step.
 
 #include <cstdint>
+#include <limits>
 
 namespace gcpdda {
 
 struct RunState;
 
+/// The block that moves fastest among some.
+struct FastestBlock {
+  double speed = 0.0;      ///< of any of its points, m/s; 0: none moves
+  std::int64_t block = -1; ///< the first of several
+};
+
 struct StepBound {
+  /// Of the farthest that a block may move in a step, in a step that blocks with given velocities set.
+  static constexpr double share_of_motion = 0.9;
+
   double omega_max = 0.0; ///< rad/s, 0 where forces move no block
   double limit = 2.0;     ///< stable W of scheme and damping; 2 stands in where every W is unstable
   bool always_unstable = false;
@@ -16,11 +26,21 @@ struct StepBound {
   /// set the limit
   double safety = 0.0;
   double undamped_step = 0.0; ///< the step without Rayleigh damping, s
-  double time_step = 0.0;     ///< safety * limit / omega_max, s
+  double stable_step = 0.0;   ///< safety * limit / omega_max, s
+  double time_step = 0.0;     ///< the shorter one of this and of motion_step, s
   double damping_ratio = 0.0; ///< modal ratio the limit was computed with
   std::int64_t block = -1;    ///< the one that sets omega_max; the first of several
   double without_bolts = 0.0; ///< what omega_max would be then, rad/s
+  FastestBlock fastest;       ///< of those to which the scene gives a velocity in this stage
+  /// The step in which it moves by share_of_motion of the farthest that a block may, s.
+  double motion_step = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool is_set_by_motion() const { return motion_step < stable_step; }
 };
+
+/// The fastest of the blocks that have just been taken from the scene and that no velocity is prescribed for.
+/// Collective.
+FastestBlock fastest_at_start(const RunState &run);
 
 /// Sets run.bound for the stage that begins. Collective.
 void find_bound(RunState &run);

@@ -134,6 +134,17 @@ TEST_F(Inspect, TellsTheStiffnessOfAnAllowedOverlap) {
   EXPECT_EQ(count_of(outcome_.out, "k_t/k_n 0.5, friction angle 30 deg, cohesion 0 Pa"), 1) << outcome_.out;
 }
 
+TEST_F(Inspect, TellsTheStepOfAFastBlock) {
+  folder_->write("fast.toml", odd_scene() + block_toml("fast", rectangle({0.0, 5.0}, {1.0, 6.0}),
+                                                       "velocity = [90, 0, 0]"));
+  const Outcome outcome = run_gcpdda(0, {"inspect", "fast.toml"}, *folder_);
+  fs::remove(folder_->path() / "fast.toml");
+  EXPECT_EQ(match(outcome.out, "set by block '(\\w+)'"), "fast");
+  const double bound = 0.9 * 0.25 * sliver_width / 90.0;
+  EXPECT_NEAR(number(outcome.out, "at most (\\S+) s, set by"), bound, six_digits * bound);
+  EXPECT_LE(number(outcome.out, "step +(\\S+) s \\(automatic\\)"), bound);
+}
+
 TEST_F(Inspect, TellsTheStepAndWhoLimitsIt) {
   EXPECT_EQ(match(outcome_.out, "set by block '(\\w+)'"), "sliver");
   const double omega = number(outcome_.out, "omega_max (\\S+) rad/s");

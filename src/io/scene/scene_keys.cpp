@@ -20,7 +20,7 @@ constexpr Key keys_before_joints[] = {
   {"run.duration", Kind::number, optional, above_to(0, 1e12), "", "<required without [[stage]]>", "2.0", "[s] Simulated time; with [[stage]] the stages say how long they last."},
   {"run.gravity", Kind::vector2, optional, from_to(-1e6, 1e6), "", "[0.0, -9.81]", "[0.0, -9.81]", "[m/s2] Acceleration of gravity."},
   {"run.gravity_ramp", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.0", "[s] Time over which gravity rises smoothly from zero."},
-  {"run.time_step", Kind::number_or_auto, optional, above_to(0, 1e12), "", "\"auto\"", "1e-4", "[s] Time step, used as given, or \"auto\" for the largest one that meets the stability bound."},
+  {"run.time_step", Kind::number_or_auto, optional, above_to(0, 1e12), "", "\"auto\"", "1e-4", "[s] Time step, used as given, or \"auto\" for the largest one that meets the stability bound and in which blocks with a given velocity move by less than a quarter of the narrowest block width."},
   {"run.safety", Kind::number, optional, above_to(0, 1), "", "0.55", "0.55", "Fraction of the stability bound that \"auto\" takes. Settle stages take 0.9, unless safety is below 0.55."},
   {"run.scheme", Kind::choice, optional, any, "generalized-alpha newmark-dda central-difference explicit-generalized-alpha", "\"generalized-alpha\"", "\"generalized-alpha\"", "Time integration."},
   {"run.spectral_radius", Kind::number, optional, from_to(0, 1), "", "0.5", "0.5", "Spectral radius at infinite frequency of generalized-alpha and explicit-generalized-alpha: 1 keeps all high frequencies, 0 removes them in one step."},

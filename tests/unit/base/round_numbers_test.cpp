@@ -18,6 +18,13 @@ int only_digit(double x) {
   return std::abs(digit - std::round(digit)) < 1e-9 ? static_cast<int>(std::round(digit)) : 0;
 }
 
+TEST(RoundNumbers, OfTwoDigitsAreBelowOrEqual) {
+  EXPECT_DOUBLE_EQ(two_digits_below(0.0005), 0.0005);
+  EXPECT_DOUBLE_EQ(two_digits_below(0.00025), 0.00025);
+  EXPECT_DOUBLE_EQ(two_digits_below(2.29e-4), 2.2e-4);
+  EXPECT_DOUBLE_EQ(two_digits_below(999.0), 990.0);
+}
+
 TEST(RoundNumbers, AreNearAndRound) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> power(-12.0, 12.0);
