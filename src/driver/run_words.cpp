@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -284,6 +285,23 @@ std::string words_on_loads(const std::vector<LinerLoad> &loads) {
       sum(&LinerHistoryRow::yielded), sum(&LinerHistoryRow::broken));
 }
 
+/// Of bolts or liners, what is in place at the end; the rest bears nothing.
+template <class Load> std::vector<Load> in_place(const std::vector<Load> &loads) {
+  std::vector<Load> found;
+  std::copy_if(loads.begin(), loads.end(), std::back_inserter(found),
+               [](const Load &load) { return load.in_place; });
+  return found;
+}
+
+/// The sentence on those in place, and how many have been taken away.
+template <class Load> std::string words_on_place(const std::string &kind, const std::vector<Load> &loads) {
+  const std::vector<Load> left = in_place(loads);
+  const std::size_t away = loads.size() - left.size();
+  const std::string words = left.empty() ? kind + ": none is in place" : words_on_loads(left);
+  return away == 0 ? words
+                   : fmt::format("{}; {} {} been taken away", words, away, away == 1 ? "has" : "have");
+}
+
 void warn_of_thrust(const LinerLoad &load, const Scene &scene, std::vector<std::string> &words) {
   constexpr double strong_concrete = 60e6; // Pa
   const auto support = std::find_if(scene.supports.begin(), scene.supports.end(),
@@ -309,10 +327,10 @@ std::vector<std::string> words_on_support(const RunSummary &summary, const Scene
     warn_of_thrust(load, scene, words);
   }
   if (!summary.bolts.empty()) {
-    words.push_back(words_on_loads(summary.bolts));
+    words.push_back(words_on_place("bolts", summary.bolts));
   }
   if (!summary.liners.empty()) {
-    words.push_back(words_on_loads(summary.liners));
+    words.push_back(words_on_place("liners", summary.liners));
   }
   return words;
 }

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace gcpdda::run_words_test {
 namespace {
@@ -51,6 +52,33 @@ TEST(BartonBandisLaw, HasTheAngleOfTheDefaultLawUnlessGivenOne) {
   expect_angle(30.0, of_bonds, "");
   expect_angle(0.0, of_bonds, "residual_friction_angle_deg = 0\n");
   expect_angle(33.0, "law = \"barton-bandis\"\njrc = 6\njcs = 1e7\nresidual_friction_angle_deg = 33\n", "");
+}
+
+BoltLoad bolt_load(const std::string &name, double tension, bool in_place) {
+  BoltLoad load;
+  load.last.name = name;
+  load.axial = tension;
+  load.in_place = in_place;
+  return load;
+}
+
+// The closing line speaks of what bears something at the end.
+TEST(WordsOnSupport, LeaveOutBoltsThatHaveBeenTakenAway) {
+  const Scene scene = good(scene_with("", ""));
+  RunSummary summary;
+  summary.bolts = {bolt_load("old", 5e4, false), bolt_load("new", 2e4, true)};
+  EXPECT_EQ(
+      words_on_support(summary, scene),
+      std::vector<std::string>{"bolts: largest tension 2e+04 N in 'new', largest shear 0 N in 'new'; of 1 "
+                               "bolts 0 yielded and 0 broke; 1 has been taken away"});
+  summary.bolts.pop_back();
+  EXPECT_EQ(words_on_support(summary, scene),
+            std::vector<std::string>{"bolts: none is in place; 1 has been taken away"});
+  summary.bolts = {bolt_load("new", 2e4, true)};
+  EXPECT_EQ(
+      words_on_support(summary, scene),
+      std::vector<std::string>{"bolts: largest tension 2e+04 N in 'new', largest shear 0 N in 'new'; of 1 "
+                               "bolts 0 yielded and 0 broke"});
 }
 
 } // namespace
