@@ -43,7 +43,8 @@ void RegionSplitter::Outline::follow(const BlockView &block) {
     passed += e > 0 && parts[e] ? 1 : 0;
     stretch[e] = num_parts > 0 ? passed % num_parts : 0;
   }
-  // The only vertex of this kind has a stretch on each side, or nothing would tell both parts from each other.
+  // The only vertex of this kind has a stretch on each side, or nothing would tell both parts from each
+  // other.
   for (std::size_t e = 0; e < n && num_parts == 1 && block.has_parted_sides; ++e) {
     stretch[e] = (e + n - start) % n < n / 2 ? 0 : 1;
   }
