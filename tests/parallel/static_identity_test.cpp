@@ -93,11 +93,11 @@ TEST(Identity, OfStaticStagesWithBondsAndDilation) {
 }
 
 /// A slope whose bedding is bonded on every third part of 3 m. In the second stage the bonds are weakened.
-std::string bridged_slope_toml(double cohesion) {
+Scene bridged_slope(double cohesion) {
   std::string toml = "[run]\n[material.rock]\ndensity = 2600.0\nyoungs_modulus = 5e9\npoissons_ratio = 0.25\n"
                      "[joint.default]\nnormal_stiffness = 2e9\nfriction_angle_deg = 38.0\n"
                      "[joint.bridge]\nnormal_stiffness = 4e9\ncohesion = 5e5\ntension = 2e5\n"
-                     "residual_cohesion = 0.0\n[output]\ninterval = 0.02\ncheckpoint_interval = 0.04\n"
+                     "residual_cohesion = 0.0\n[output]\ninterval = 0.01\ncheckpoint_interval = 0.008\n"
                      "[region]\nmaterial = \"rock\"\nfixed = [\"bottom\", \"left\", \"right\"]\n"
                      "[region.slope]\ntoe_length = 10.0\ncrest_length = 20.0\ndepth = 5.0\n"
                      "[[region.slope.bench]]\nheight = 20.0\nface_angle_deg = 60.0\n"
@@ -110,23 +110,26 @@ std::string bridged_slope_toml(double cohesion) {
                           x + 3.0, y + 0.1 * (x + 3.0), (part + line) % 3 == 0 ? "bridge" : "default");
     }
   }
-  return toml +
-         fmt::format("[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 20.0\nsolver = \"static\"\n"
-                     "[[stage]]\nname = \"weak\"\nkind = \"settle\"\nlimit = 20.0\nsolver = \"static\"\n"
-                     "set = {{\"joint.bridge.cohesion\" = {0}, \"joint.bridge.tension\" = {0}}}\n"
-                     "[[stage]]\nkind = \"run\"\nduration = 0.05\n",
-                     cohesion);
+  Scene scene = testing::scene_of(
+      toml +
+      fmt::format("[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 20.0\nsolver = \"static\"\n"
+                  "[[stage]]\nname = \"weak\"\nkind = \"settle\"\nlimit = 20.0\nsolver = \"static\"\n"
+                  "set = {{\"joint.bridge.cohesion\" = {0}, \"joint.bridge.tension\" = {0}}}\n"
+                  "[[stage]]\nkind = \"run\"\nduration = 0.02\n",
+                  cohesion));
+  testing::prepare_region(scene);
+  return scene;
 }
 
 // Bonds on parts of straight sides, of which some break.
 TEST(Identity, OfBondedPartsOfSides) {
-  const Scene scene = testing::scene_of(bridged_slope_toml(1e3));
+  const Scene scene = bridged_slope(1e3);
   const TwoRuns runs(scene);
   EXPECT_GE(runs.counted("refreshes"), 1);
   if (runs.world().size() > 1) {
     EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
   }
-  const TwoRuns unbroken(testing::scene_of(bridged_slope_toml(5e5)));
+  const TwoRuns unbroken(bridged_slope(5e5));
   if (runs.world().is_root()) {
     EXPECT_NE(summary_text(runs.alone(), "stages"), summary_text(unbroken.alone(), "stages"))
         << "bonds break";
