@@ -177,8 +177,12 @@ void keep_unshaken(RunState &run) {
   }
 }
 
+bool has_begun_to_shake(const RunState &run) {
+  return run.scene.earthquake.shakes() && run.clock.time() >= shaking_since(run);
+}
+
 std::optional<FarthestBlock> permanent_displacement(const RunState &run) {
-  if (!run.scene.earthquake.shakes() || run.clock.time() < shaking_since(run)) {
+  if (!has_begun_to_shake(run)) {
     return std::nullopt;
   }
   const bool is_remembered = run.communicator.max(run.blocks.unshaken.empty() ? 0.0 : 1.0) > 0.0;

@@ -35,6 +35,7 @@ struct FarthestBlock {
 /// Before the marks of the stage that has just begun: remembers where blocks were when the stage before it
 /// began, if the ground has begun to shake in that stage.
 void keep_unshaken(RunState &run);
+[[nodiscard]] bool has_begun_to_shake(const RunState &run);
 /// Motion against the ground since the stage began in which the ground began to shake, or since t = 0 in a
 /// scene without stages; nothing before the shaking. Collective.
 [[nodiscard]] std::optional<FarthestBlock> permanent_displacement(const RunState &run);

@@ -10,7 +10,8 @@
 // motion slips little, and by itself it is no slide; nor is any motion that is within what the pile may sag
 // (largest_sag()), as the slip of columns that sag beside each other: 2 % of a block in a slope of 100 m.
 // Slip that goes to and fro is no slide either, since the motion bounds it. The second line counts blocks
-// that topple or fall, whose contacts need not slip.
+// that topple or fall, whose contacts need not slip. What blocks slide once the ground has begun to shake is
+// told as permanent displacement (ground.hpp).
 
 #include "simulation/run_state.hpp"
 

@@ -396,7 +396,7 @@ void end_stage(RunState &run) {
   run.clock.state.end_time = run.clock.time();
   run.clock.state.ended = true;
   if (stage.kind == StageKind::settle) {
-    if (run.clock.state.verdict == Verdict::settled) {
+    if (run.clock.state.verdict == Verdict::settled && !has_begun_to_shake(run)) {
       note_slide(run, run.clock.state.results.back());
     }
     close_statics(run);

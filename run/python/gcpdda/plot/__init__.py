@@ -104,8 +104,8 @@ class Plots:
         plain = joints or arrows or chains or crosses or pressure
         frames = self._frames(frame)
         if ("permanent" in (field, arrows)) != (since is not None):
-            raise ValueError("'permanent' as field or arrows and the argument 'since' belong together: give since=NAME, "
-                             "the stage from whose beginning the displacement counts, or neither")
+            raise ValueError("'permanent' as field or arrows and the argument 'since' belong together: give "
+                             "since=NAME, the stage from whose beginning the displacement counts, or neither")
         start = self.result.before(since) if since else None
         layers = [Blocks(field or ("none" if plain else "displacement"), start,
                          Shown(self.result.start) if compare else None), Water()]
