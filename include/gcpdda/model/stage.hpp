@@ -122,7 +122,7 @@ struct StageResult {
   std::int64_t slid_blocks = 0; ///< number of those that have slid by telling_slide or more
   /// A slide from which on users are told, in sizes of a block.
   static constexpr double telling_slide = 0.02;
-  [[nodiscard]] bool has_slid() const { return slide >= telling_slide; }
+  [[nodiscard]] bool has_slid() const { return slide >= telling_slide; } ///< so far that users are told
 };
 
 } // namespace gcpdda
