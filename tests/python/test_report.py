@@ -234,7 +234,7 @@ def test_of_a_run_that_goes_on(opening, tmp_path):
 
 def test_of_a_run_that_fails_at_once(tmp_path):
     """Before the first row of energy.csv is written."""
-    scene = gcpdda.Scene(name="fast", fidelity="rigid", duration=1.0)
+    scene = gcpdda.Scene(name="fast", fidelity="rigid", duration=1.0, time_step=1e-3)
     scene.material("rock", density=2600)
     scene.joint("default", normal_stiffness=1e9, friction_angle_deg=30)
     scene.block("ground", [[-5, -1], [5, -1], [5, 0], [-5, 0]], material="rock", fixed=True)
