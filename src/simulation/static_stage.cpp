@@ -1,6 +1,7 @@
 #include "simulation/static_stage.hpp"
 
 #include "base/check.hpp"
+#include "dynamics/deformable.hpp"
 #include "dynamics/half_works.hpp"
 #include "simulation/evaluation.hpp"
 #include "simulation/held_blocks.hpp"
@@ -8,7 +9,6 @@
 #include "simulation/stage_runner.hpp"
 #include "simulation/static_evaluation.hpp"
 #include "simulation/step_report.hpp"
-#include "statics/unbalanced_forces.hpp"
 
 #include <algorithm>
 #include <array>
@@ -74,15 +74,21 @@ void leave_statics(RunState &run, const std::string &reason,
 
 // The damping of pseudo-time, and what holds the load back, take all that the forces do together. By the
 // trapezoid: half over the step that ends here, and half over the one that begins, which is found already.
-void book_static_work(RunState &run) {
+enum class Step { behind, ahead };
+void book_static_work(RunState &run, Step step) {
   statics::for_rows(run.statics->moving(), [&](std::size_t row) {
-    const std::array<double, 6> force = statics::unbalanced_forces(run.blocks, row);
-    const std::array<double, 6> &step = run.blocks.pseudo[row].velocity;
-    double done = 0.0;
-    for (std::size_t i = 0; i < step.size(); ++i) {
-      done += force[i] * step[i];
+    const BlockSystem &blocks = run.blocks;
+    const std::array<double, 6> &v = blocks.pseudo[row].velocity;
+    RigidDof force = blocks.contact[row].force + blocks.anchor_force(row);
+    double done_by_gradient = 0.0;
+    if (blocks.is_deformable(row)) {
+      const Deformation &d = blocks.deformation_of(row);
+      const Mat2 increment = step == Step::ahead ? statics::gradient_after(d.trial, v) - d.trial
+                                                 : blocks.gradient_increment(row);
+      force.r = 0.0;
+      done_by_gradient = contract(unbalanced_on_gradient(d), increment);
     }
-    run.blocks.ledger[row].damping -= 0.5 * done;
+    run.blocks.ledger[row].damping -= 0.5 * (work(force, {{v[0], v[1]}, v[2]}) + done_by_gradient);
   });
 }
 
@@ -170,7 +176,7 @@ void open_statics(RunState &run) {
   evaluate_statically(run);
   run.statics->hold(run.blocks);
   find_static_motion(run);
-  book_static_work(run);
+  book_static_work(run, Step::ahead);
 }
 
 /// Where a window ends in which neither the unbalanced ratio nor the share of loose blocks has fallen to half
@@ -411,14 +417,14 @@ void static_step(RunState &run) {
   }
   move_and_evaluate(run);
   ++run.clock.step_count;
-  book_static_work(run);
+  book_static_work(run, Step::behind);
   const bool takes_back = !run.clock.stage().is_trial(); // whose dynamic step begins where the trial does
   if (takes_back && run.communicator.max(run.local_fault ? 1.0 : 0.0) > 0.0) {
     run.local_fault.reset();
     run.statics->turn_back(run.blocks);
-    book_static_work(run);
+    book_static_work(run, Step::ahead);
     move_and_evaluate(run);
-    book_static_work(run);
+    book_static_work(run, Step::behind);
     leave_statics(
         run, "a joint would have closed by more than half of a block",
         fmt::format("increments = {} in the stage lets the load in more slowly; where that does not "
@@ -429,7 +435,7 @@ void static_step(RunState &run) {
   }
   if (is_static(run)) {
     find_static_motion(run);
-    book_static_work(run);
+    book_static_work(run, Step::ahead);
   }
   report_statically(run);
 }

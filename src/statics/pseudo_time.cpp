@@ -253,7 +253,23 @@ void PseudoTime::advance(BlockSystem &system, double a, double b, double limit, 
   state.momentum = momentum.value();
 }
 
-// x + v - v, and (I + G)^-1 (I + G) F.
+namespace {
+
+/// R and I + E of a step v of F.
+std::pair<Mat2, Mat2> parts_of(const std::array<double, 6> &v) {
+  const Rotation turn = Rotation::of(0.5 * (v[4] - v[3]));
+  const double shear = 0.5 * (v[3] + v[4]);
+  return {{turn.c, -turn.s, turn.s, turn.c}, {1.0 + v[2], shear, shear, 1.0 + v[5]}};
+}
+
+} // namespace
+
+Mat2 gradient_after(const Mat2 &gradient, const std::array<double, 6> &v) {
+  const auto [turn, stretch] = parts_of(v);
+  return turn * stretch * gradient;
+}
+
+// x + v - v, and (I + E)^-1 R^T R (I + E) F, of which the first two are R^T [R (I + E)^-1 R^T].
 void PseudoTime::turn_back(BlockSystem &system) const {
   for_rows(moving_, [&](std::size_t row) {
     std::array<double, 6> &v = system.pseudo[row].velocity;
@@ -261,10 +277,12 @@ void PseudoTime::turn_back(BlockSystem &system) const {
       part = -part;
     }
     if (system.is_deformable(row)) {
-      const Mat2 back = inverse(Mat2{1.0 - v[2], -v[3], -v[4], 1.0 - v[5]});
+      const auto [turn, stretch] = parts_of(v);
+      const Mat2 back = transposed(turn) * inverse(Mat2{2.0, 0.0, 0.0, 2.0} - stretch) * turn;
+      const double spin = 0.5 * (v[4] - v[3]);
       v[2] = back.xx - 1.0;
-      v[3] = back.xy;
-      v[4] = back.yx;
+      v[3] = back.xy - spin;
+      v[4] = back.yx + spin;
       v[5] = back.yy - 1.0;
     }
   });
@@ -277,7 +295,7 @@ void PseudoTime::move(BlockSystem &system) const {
     trial.motion.u += Vec2{v[0], v[1]};
     if (system.is_deformable(row)) {
       Deformation &d = system.deformation_of(row);
-      trial.gradient = d.trial + Mat2{v[2], v[3], v[4], v[5]} * d.trial;
+      trial.gradient = gradient_after(d.trial, v);
       trial.motion.r += angle_between(d.trial, trial.gradient);
       set_trial(system, row, trial);
       d.gradient = trial.gradient;

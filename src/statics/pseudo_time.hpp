@@ -120,6 +120,11 @@ struct IterationRules {
 /// rho of a model of so many mobile blocks.
 double mass_share(std::int64_t num_blocks);
 
+/// F of a deformable block after a step v of its six freedoms, of which the last four are dF F^-1 to first
+/// order: R(w) (I + E) F, with w and E the antisymmetric and the symmetric part. A step that turns leaves the
+/// strain as it was, while (I + v) F would stretch the block by w^2/2.
+Mat2 gradient_after(const Mat2 &gradient, const std::array<double, 6> &v);
+
 class PseudoTime {
 public:
   PseudoTime(const Communicator &communicator, const IterationRules &rules)
