@@ -1,10 +1,8 @@
 #include "driver/safety_factor.hpp"
 
-#include "base/check.hpp"
-#include "driver/run_facts.hpp"
 #include "driver/safety_bound.hpp"
 #include "driver/safety_search.hpp"
-#include "driver/stop_signal.hpp"
+#include "driver/settled_state.hpp"
 #include "driver/svg.hpp"
 #include "driver/trial_facts.hpp"
 #include "driver/trial_frames.hpp"
@@ -18,7 +16,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <iostream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -33,44 +30,35 @@ namespace fs = std::filesystem;
 class SafetyFactor {
 public:
   SafetyFactor(const Communicator &world, const Scene &scene, const SafetyOptions &options)
-      : world_(world), scene_(scene), options_(options) {}
+      : world_(world), scene_(scene), options_(options), settled_(world_, scene_, options_) {}
 
   void leave_out_earthquake() { report_.leaves_earthquake_out = true; }
 
   SafetyOutcome find() {
-    const ExitCode code = begin();
-    if (code == exit_code::undecided && options_.settled.empty() && has_failed_settling()) {
+    const ExitCode code = settled_.find([this] { prepare_directory(); });
+    report_.settled = settled_.run();
+    report_.earlier_slides = settled_.slides();
+    report_.fails = settled_.fails();
+    if (code == exit_code::undecided && options_.settled.empty() && settled_.has_failed()) {
       conclude_without_search();
     }
     if (code != exit_code::done) {
-      return {code, std::move(report_), std::move(message_)};
+      return {code, std::move(report_), settled_.message()};
     }
-    return {options_.only_bound ? bound() : search(), std::move(report_), std::move(message_)};
+    return {options_.only_bound ? bound() : search(), std::move(report_), {}};
   }
 
 private:
-  // A scene that is refused, or a state that cannot be taken, leaves no folder behind and removes nothing.
-  ExitCode begin() {
-    if (options_.settled.empty()) {
-      return settle_as_it_can();
-    }
-    const ExitCode code = take_settled();
-    if (code == exit_code::done) {
-      on_root(world_, [&] { prepare_directory(); });
-    }
-    return code;
-  }
-
   void prepare_directory() { prepare_safety_directory(options_.directory, options_.overwrite, lock_); }
 
   ExitCode bound() {
-    Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_directory()});
+    Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_.directory()});
     try {
       const SafetyBounds bounds = bounds_at(settled, report_.settled.factor);
       report_.bound = bounds.sliding;
       report_.resting_bound = bounds.resting;
     } catch (const UnsolvedProgramme &unsolved) {
-      say(std::string(unsolved.what()) + "\n");
+      tell(std::string(unsolved.what()) + "\n");
       return exit_code::undecided;
     }
     report_.is_bound_alone = true;
@@ -95,8 +83,8 @@ private:
         break;
       }
       if (run_trials(factors, confirms)) {
-        say(fmt::format("stopped by a signal in trial {}; a search does not go on from there\n",
-                        trials_.size()));
+        tell(fmt::format("stopped by a signal in trial {}; a search does not go on from there\n",
+                         trials_.size()));
         conclude(); // with what is known so far
         return exit_code::stopped;
       }
@@ -105,109 +93,12 @@ private:
     return report_.is_found() ? exit_code::done : exit_code::undecided;
   }
 
-  void say(const std::string &text) const {
-    if (world_.is_root() && !options_.quiet) {
-      std::cerr << text << std::flush;
-    }
-  }
-
-  /// With full strength, or where the blocks do not come to rest so, with the most that is tried. Blocks that
-  /// fail on the way have failed at that factor.
-  ExitCode settle_as_it_can() {
-    ExitCode code = settle(1.0, options_.overwrite, [this] { prepare_directory(); });
-    note_failure_on_the_way();
-    const double from = scene_.reduction.from;
-    if ((code == exit_code::done || code == exit_code::undecided) && !has_settled() && from < 1.0) {
-      say(fmt::format(
-          "the blocks {} with their full strength, now with their strengths divided by fos.from = "
-          "{:g}\n",
-          report_.settled.rests_far ? "slide by more than fos.largest_motion while they settle"
-                                    : "do not settle",
-          from));
-      code = settle(from, true, {});
-      note_failure_on_the_way();
-    }
-    if (code == exit_code::done && !has_settled()) {
-      code = exit_code::undecided;
-    }
-    if (code == exit_code::undecided) {
-      message_ = words_on_no_rest(report_.settled);
-      report_.settled.message = message_;
-      say(message_ + "\n");
-    }
-    return code;
-  }
-
-  [[nodiscard]] bool has_failed_settling() const { return report_.settled.verdict == Verdict::failed; }
-
-  /// What blocks slide before the search is as far from where they were as what they slide in a trial. Of a
-  /// mechanism it is not known: the slide is that of any block.
-  void note_slides(const std::vector<RunSummary::StageLine> &stages) {
-    report_.earlier_slides = slides_of(stages);
-    slide_ = 0.0;
-    for (const RunSummary::StageLine &stage : stages) {
-      slide_ = std::max(slide_, stage.result.slide);
-    }
-    if (has_settled() && !watches_mechanism() && slide_ >= scene_.reduction.largest_motion) {
-      report_.settled.rests_far = true;
-      report_.settled.verdict = Verdict::failed;
-    }
-  }
-
-  void note_failure_on_the_way() {
-    if (report_.settled.verdict == Verdict::failed) {
-      report_.fails = report_.settled.factor;
-    }
-  }
-
-  /// The state an earlier search has settled; of no cost to this one.
-  ExitCode take_settled() {
-    const Simulation found(world_, settling_scene(scene_, options_.settled_factor), {options_.settled});
-    num_blocks_ = found.num_blocks();
-    start_time_ = found.time();
-    report_.settled.factor = options_.settled_factor;
-    report_.settled.verdict = found.finished() ? found.stage().verdict : Verdict::undecided;
-    report_.settled.time = found.time();
-    report_.settled.steps = found.step_count();
-    note_slides(stage_lines(found.scene(), found.stages(), found.stage().results));
-    if (has_settled()) {
-      return exit_code::done;
-    }
-    if (report_.settled.rests_far) {
-      message_ =
-          fmt::format("the blocks of the run in {} slid by {:.2g} of their size while they settled, more "
-                      "than fos.largest_motion = {:g}; leave --settled out",
-                      options_.settled.string(), slide_, scene_.reduction.largest_motion);
-      say(message_ + "\n");
-      return exit_code::undecided;
-    }
-    message_ = fmt::format("the run in {} has not settled, let it go on (gcpdda restart) or leave --settled "
-                           "out",
-                           options_.settled.string());
-    say(message_ + "\n");
-    return exit_code::undecided;
-  }
-
-  [[nodiscard]] bool has_settled() const { return report_.settled.verdict == Verdict::settled; }
-
-  /// The settled state, on all ranks.
-  ExitCode settle(double factor, bool overwrite, const std::function<void()> &prepare) {
-    RunOptions options{settled_directory(), overwrite, false, {}, options_.quiet};
-    options.prepare = prepare;
-    const RunOutcome outcome = run_and_tell(world_, settling_scene(scene_, factor), options);
-    report_.settled = trial_of(facts_of(factor, outcome, 0.0, false));
-    report_.settled.steps = outcome.summary.steps;
-    note_slides(outcome.summary.stages);
-    start_time_ = outcome.summary.time;
-    num_blocks_ = outcome.summary.blocks;
-    message_ = outcome.exit_code == exit_code::numerical_failure ? outcome.summary.message : std::string();
-    return outcome.exit_code;
-  }
+  void tell(const std::string &text) const { say(world_, options_, text); }
 
   /// Trials at once.
   std::size_t choose_groups() {
     const std::int64_t per_trial =
-        std::clamp<std::int64_t>(num_blocks_ / options_.fewest_blocks_per_rank, 1, world_.size());
+        std::clamp<std::int64_t>(settled_.num_blocks() / options_.fewest_blocks_per_rank, 1, world_.size());
     const std::int64_t groups = world_.size() / per_trial;
     group_number_ = static_cast<int>(world_.rank() * groups / world_.size());
     group_.emplace(world_.split(group_number_));
@@ -249,7 +140,7 @@ private:
                       ? ""
                       : outcome.summary.message;
         if (group_->is_root()) {
-          TrialFacts facts = facts_of(factor, outcome, start_time_, watches_mechanism());
+          TrialFacts facts = facts_of(factor, outcome, settled_.end_time(), watches_mechanism());
           look_how_far(confirms ? confirmation_directory(factor) : trial_directory(factor), facts);
           mine.push_back(facts);
         }
@@ -267,7 +158,7 @@ private:
       return;
     }
     const auto area_in = [&](const std::vector<Vec2> &region) {
-      return area_moved_by(rules.largest_motion, region, settled_directory(), directory);
+      return area_moved_by(rules.largest_motion, region, settled_.directory(), directory);
     };
     facts.first_rests_far = area_in({}) > 0.0 ? 1 : 0;
     const double area = facts.first_rests_far != 0 ? area_in(rules.region) : 0.0;
@@ -287,7 +178,7 @@ private:
   RunOutcome run_in(const fs::path &directory, const Scene &scene, const fs::path &from, double factor) {
     const bool shows = !options_.quiet && group_number_ == 0; // of trials at once the first one's
     const Scene before =
-        from == settled_directory() ? settling_scene(scene_, report_.settled.factor) : trial_scene(factor);
+        from == settled_.directory() ? settling_scene(scene_, report_.settled.factor) : trial_scene(factor);
     RunOptions options{directory, true, false, from, true};
     options.computed_with = &before;
     options.once = true;
@@ -298,7 +189,7 @@ private:
 
   RunOutcome run_trial(double factor) {
     const Scene trial = trial_scene(factor);
-    const RunOutcome outcome = run_in(trial_directory(factor), trial, settled_directory(), factor);
+    const RunOutcome outcome = run_in(trial_directory(factor), trial, settled_.directory(), factor);
     return fell_through(outcome, trial) ? run_dynamic_trial(trial_directory(factor), factor) : outcome;
   }
   RunOutcome run_confirmation(double factor) {
@@ -318,7 +209,7 @@ private:
   RunOutcome run_dynamic_trial(const fs::path &directory, double factor) {
     Scene trial = trial_scene(factor);
     trial.stages.back().solver = Solver::dynamic;
-    return run_in(directory, trial, settled_directory(), factor);
+    return run_in(directory, trial, settled_.directory(), factor);
   }
 
   /// What every group has found goes to all; the first trouble ends the search on all ranks.
@@ -359,10 +250,10 @@ private:
           stopped = true;
           stopped_.insert(facts.factor);
         }
-        say(fmt::format("factor {:.6g}: {}{} after {:.4g} s, {} steps, {:.2f} CPU s on {} rank{} {}\n",
-                        facts.factor, word_of(trial.verdict), confirms ? " by the dynamic step" : "",
-                        trial.time, trial.steps, trial.cpu_s, trial.ranks, trial.ranks == 1 ? "" : "s",
-                        trial.message));
+        tell(fmt::format("factor {:.6g}: {}{} after {:.4g} s, {} steps, {:.2f} CPU s on {} rank{} {}\n",
+                         facts.factor, word_of(trial.verdict), confirms ? " by the dynamic step" : "",
+                         trial.time, trial.steps, trial.cpu_s, trial.ranks, trial.ranks == 1 ? "" : "s",
+                         trial.message));
       }
     }
     return stopped;
@@ -411,14 +302,8 @@ private:
   [[nodiscard]] std::optional<Verdict> verdict_on_first_block(double factor) const {
     return verdict_of(factor) ? std::optional(trials_.at(factor).first_block) : std::nullopt;
   }
-  /// The factor is that of a mechanism, besides which that of the first block is found.
-  [[nodiscard]] bool watches_mechanism() const {
-    return scene_.reduction.ignored_area > 0.0 || !scene_.reduction.region.empty();
-  }
+  [[nodiscard]] bool watches_mechanism() const { return gcpdda::watches_mechanism(scene_.reduction); }
 
-  [[nodiscard]] fs::path settled_directory() const {
-    return options_.settled.empty() ? options_.directory / "settled" : options_.settled;
-  }
   [[nodiscard]] fs::path trial_directory(double factor) const {
     return options_.directory / "trials" / fmt::format("F{:.9g}", factor);
   }
@@ -430,7 +315,7 @@ private:
   void conclude() {
     const SafetySearch search = follow(range(), [&](double factor) { return verdict_of(factor); });
     report_.tolerance = scene_.reduction.tolerance;
-    report_.settled.directory = fs::absolute(settled_directory()).lexically_normal();
+    report_.settled.directory = fs::absolute(settled_.directory()).lexically_normal();
     report_.holds = search.holds;
     report_.fails = search.fails;
     report_.undecided = search.undecided;
@@ -479,7 +364,7 @@ private:
   /// Where the blocks fail before there is a state to begin from.
   void conclude_without_search() {
     report_.tolerance = scene_.reduction.tolerance;
-    report_.settled.directory = fs::absolute(settled_directory()).lexically_normal();
+    report_.settled.directory = fs::absolute(settled_.directory()).lexically_normal();
     note_families();
     if (!options_.quiet) {
       on_root(world_, [&] {
@@ -504,9 +389,9 @@ private:
       return trial.decisive && trial.verdict == Verdict::settled &&
              trial.moved >= scene_.reduction.failure_motion;
     };
-    if (slide_ >= scene_.reduction.failure_motion && !watches_mechanism()) {
+    if (settled_.slide() >= scene_.reduction.failure_motion && !watches_mechanism()) {
       report_.first_slide = report_.settled;
-      report_.first_slide->moved = slide_;
+      report_.first_slide->moved = settled_.slide();
       return;
     }
     const auto first = std::find_if(report_.trials.begin(), report_.trials.end(), slides);
@@ -517,25 +402,22 @@ private:
 
   // Root alone, which reads the frames of both runs.
   [[nodiscard]] DrawnTrial drawn_trial(double factor, double ignored_area) const {
-    return drawn_trial_of(scene_, settled_directory(), trials_.at(factor).directory, ignored_area);
+    return drawn_trial_of(scene_, settled_.directory(), trials_.at(factor).directory, ignored_area);
   }
 
   Communicator world_;
   const Scene &scene_;
   SafetyOptions options_;
+  SettledState settled_;
   FolderLock lock_; ///< of the folder, until the report is written
   std::optional<Communicator> group_;
   int group_number_ = 0;
-  double start_time_ = 0.0; ///< of all trials, s
-  std::int64_t num_blocks_ = 0;
-  double slide_ = 0.0; ///< largest slide of a block in a settle stage before the search, in sizes of it
   std::map<double, StrengthTrial> trials_; ///< by factor
   std::set<double> unconfirmed_;           ///< factors whose verdict is by the static solver alone
   std::map<double, Verdict> by_statics_;   ///< verdicts of the static solver whose confirmation is undecided
   bool has_confirmed_ = false; ///< the dynamic step has come to a verdict on an end of the bracket
   std::set<double> stopped_;   ///< factors of those without a verdict because the signal came
   SafetyReport report_;
-  std::string message_; ///< why there is no factor
 };
 
 } // namespace

@@ -247,6 +247,10 @@ bool is_weakened(const StrengthReduction &reduction, std::size_t law) {
   return chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(law)) > 0;
 }
 
+bool watches_mechanism(const StrengthReduction &reduction) {
+  return reduction.ignored_area > 0.0 || !reduction.region.empty();
+}
+
 Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   const auto is_settle = [](const Stage &stage) { return stage.kind == StageKind::settle; };
   const auto last_settle = std::find_if(scene.stages.rbegin(), scene.stages.rend(), is_settle).base();

@@ -53,6 +53,9 @@ inline constexpr std::string_view settled_weaker = "# settled by gcpdda fos: str
 /// Whether the strengths of a law are divided.
 bool is_weakened(const StrengthReduction &reduction, std::size_t law);
 
+/// The factor is that of a mechanism, besides which that of the first block is found.
+bool watches_mechanism(const StrengthReduction &reduction);
+
 /// Name of the stage in which the dynamic step confirms what the static solver has found at rest.
 inline constexpr const char *confirming_stage = "confirm";
 
