@@ -1,5 +1,6 @@
 #include "io/checkpoint/checkpoint_reader.hpp"
 
+#include "io/checkpoint/checkpoint_facts.hpp"
 #include "io/checkpoint/checkpoint_layout.hpp"
 #include "io/checkpoint/checkpoint_seal.hpp"
 #include "io/hdf5/hdf5_collective_file.hpp"
@@ -22,75 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A checkpoint that opens, by what it says of itself.
-struct Found {
-  fs::path path;
-  RunFacts facts;
-  std::int64_t checksum = 0;
-};
-
-std::int64_t only_number(const hdf5::File &file, const char *name) {
-  const auto values = hdf5::read_numbers<std::int64_t>(file, name);
-  if (values.size() != 1) {
-    throw FileError(fmt::format("{} is not one number", name));
-  }
-  return values.front();
-}
-
-std::vector<ResultFile> read_results(const hdf5::File &file) {
-  const auto names = hdf5::read_numbers<std::uint8_t>(file, checkpoint::result_names);
-  const auto bytes = hdf5::read_numbers<std::int64_t>(file, checkpoint::result_bytes);
-  const auto rows = hdf5::read_numbers<std::int64_t>(file, checkpoint::result_rows);
-  if (std::count(names.begin(), names.end(), '\n') != std::ssize(bytes) || rows.size() != bytes.size()) {
-    throw FileError(fmt::format("{} and its sizes are not equally many", checkpoint::result_names));
-  }
-  std::vector<ResultFile> results(bytes.size());
-  auto begin = names.begin();
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    const auto end = std::find(begin, names.end(), '\n');
-    results[k] = {std::string(begin, end), bytes[k], rows[k]};
-    begin = end + 1;
-  }
-  return results;
-}
-
-/// By one process alone, of a file whose bytes are those that were written.
-Found look_at(const fs::path &path) {
-  const hdf5::QuietErrors quiet;
-  const hdf5::File file(hdf5::open_to_read(path));
-  Found found;
-  found.path = path;
-  RunFacts &facts = found.facts;
-  facts.step = only_number(file, "/clock/step");
-  facts.contact_steps = only_number(file, "/run/contact_steps");
-  facts.scene = {only_number(file, "/scene/num_blocks"),
-                 only_number(file, "/scene/num_mobile"),
-                 static_cast<std::uint64_t>(only_number(file, "/scene/blocks")),
-                 static_cast<std::uint64_t>(only_number(file, "/scene/materials")),
-                 {}};
-  const auto parts = hdf5::read_numbers<std::int64_t>(file, checkpoint::scene_parts);
-  if (parts.size() != facts.scene.parts.size()) {
-    throw FileError(fmt::format("{} has {} numbers", checkpoint::scene_parts, parts.size()));
-  }
-  std::copy(parts.begin(), parts.end(), facts.scene.parts.begin());
-  for (const auto &[name, member] : checkpoint::real_facts) {
-    const auto values = hdf5::read_numbers<double>(file, name);
-    if (values.size() != 1) {
-      throw FileError(fmt::format("{} is not one number", name));
-    }
-    facts.*member = values.front();
-  }
-  for (const auto &[name, member] : checkpoint::real_lists) {
-    facts.*member = hdf5::read_numbers<double>(file, name);
-  }
-  for (const auto &[name, member] : checkpoint::whole_lists) {
-    facts.*member = hdf5::read_numbers<std::int64_t>(file, name);
-  }
-  facts.results = read_results(file);
-  found.checksum = only_number(file, checkpoint::checksum);
-  return found;
-}
-
 /// Throws where the scene is another one.
 void expect_same_scene(const SceneIdentity &saved, const SceneIdentity &scene) {
   if (saved.num_blocks != scene.num_blocks || saved.num_mobile != scene.num_mobile) {
@@ -110,7 +42,7 @@ void expect_same_scene(const SceneIdentity &saved, const SceneIdentity &scene) {
 /// Reads rows and sums up what it has read.
 class SummedInput {
 public:
-  SummedInput(const Communicator &communicator, const Found &found)
+  SummedInput(const Communicator &communicator, const FoundCheckpoint &found)
       : communicator_(communicator), input_(communicator, found.path), checksum_(found.checksum) {
     if (communicator.is_root()) {
       sum_facts(found.facts);
@@ -187,7 +119,7 @@ private:
 /// Reads the rows of this rank.
 class StateReader {
 public:
-  StateReader(const Communicator &communicator, const Found &found)
+  StateReader(const Communicator &communicator, const FoundCheckpoint &found)
       : communicator_(communicator), found_(found), input_(communicator, found) {}
 
   std::vector<RegionRecord> restore(BlockSystem &blocks) {
@@ -321,7 +253,7 @@ private:
   }
 
   Communicator communicator_;
-  const Found &found_;
+  const FoundCheckpoint &found_;
   SummedInput input_;
   std::vector<std::vector<double>> block_values_;
   bool has_shaken_ = false;
@@ -342,7 +274,7 @@ template <class T> void share(const Communicator &communicator, std::vector<T> &
 }
 
 /// The root's finding for all.
-void share(const Communicator &communicator, Found &found) {
+void share(const Communicator &communicator, FoundCheckpoint &found) {
   std::string path = found.path.string();
   communicator.broadcast(path);
   found.path = path;
@@ -398,14 +330,14 @@ std::vector<Sealed> sealed_files(const fs::path &directory, std::vector<std::str
 }
 
 /// The root's file for all, and what it holds once all its bytes have been compared. Collective.
-Found look_at_sealed(const Communicator &communicator, Sealed file) {
+FoundCheckpoint look_at_sealed(const Communicator &communicator, Sealed file) {
   std::string path = file.path.string();
   communicator.broadcast(path);
   file.path = path;
   std::vector<checkpoint::Seal> seal{file.seal};
   share(communicator, seal);
   checkpoint::expect_unchanged(communicator, file.path, seal.front());
-  Found found;
+  FoundCheckpoint found;
   on_root(communicator, [&] { found = look_at(file.path); });
   share(communicator, found);
   return found;
@@ -442,7 +374,7 @@ std::vector<fs::path> checkpoint_files(const fs::path &directory) {
 void expect_readable_checkpoint(const Communicator &communicator, const fs::path &path) {
   Sealed file{path, {}};
   on_root(communicator, [&] { file.seal = checkpoint::read_seal(path); });
-  const Found found = look_at_sealed(communicator, file);
+  const FoundCheckpoint found = look_at_sealed(communicator, file);
   SummedInput input(communicator, found);
   const auto fields = [&](const auto &table, std::int64_t num_rows) {
     for (const auto &field : table) {
@@ -479,7 +411,7 @@ Restored restore_newest_checkpoint(const Communicator &communicator, const fs::p
   for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
     const Sealed file = communicator.is_root() ? files[k] : Sealed{};
     try {
-      const Found candidate = look_at_sealed(communicator, file);
+      const FoundCheckpoint candidate = look_at_sealed(communicator, file);
       expect_same_scene(candidate.facts.scene, scene);
       if (prepare) {
         prepare(candidate.facts);
