@@ -30,7 +30,9 @@ namespace fs = std::filesystem;
 class SafetyFactor {
 public:
   SafetyFactor(const Communicator &world, const Scene &scene, const SafetyOptions &options)
-      : world_(world), scene_(scene), options_(options), settled_(world_, scene_, options_) {}
+      : world_(world), scene_(scene), options_(options), settled_(world_, scene_, options_) {
+    report_.left_out_stages = left_out_stages(scene);
+  }
 
   void leave_out_earthquake() { report_.leaves_earthquake_out = true; }
 

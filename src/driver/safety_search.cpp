@@ -242,6 +242,17 @@ Scene settling_scene(const Scene &scene, double factor) {
   return start;
 }
 
+std::vector<std::string> left_out_stages(const Scene &scene) {
+  std::vector<std::string> names;
+  for (auto stage = scene.stages.rbegin(); stage != scene.stages.rend() && stage->kind != StageKind::settle;
+       ++stage) {
+    if (stage->takes_steps() && stage->after) {
+      names.insert(names.begin(), stage->name);
+    }
+  }
+  return names;
+}
+
 bool is_weakened(const StrengthReduction &reduction, std::size_t law) {
   const std::vector<std::int32_t> &chosen = reduction.families;
   return chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(law)) > 0;

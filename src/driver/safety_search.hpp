@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string_view>
+#include <string>
 #include <vector>
 
 namespace gcpdda {
@@ -46,6 +47,9 @@ Scene searched_scene(Scene scene);
 /// The scene up to the end of its last settle stage, strengths divided by `factor` from the beginning.
 /// @throws SceneError where no stage is of kind settle
 Scene settling_scene(const Scene &scene, double factor);
+
+/// Stages that change the scene after the last settle stage and take time, which are no part of a search.
+std::vector<std::string> left_out_stages(const Scene &scene);
 
 /// How Scene::resolved begins after a settling_scene() with another factor than 1; the factor follows.
 inline constexpr std::string_view settled_weaker = "# settled by gcpdda fos: strengths as below divided by ";

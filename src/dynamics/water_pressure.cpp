@@ -59,8 +59,11 @@ PressureIntegral pressure_on_edge(const Water &water, Vec2 begin, Vec2 tangent, 
 } // namespace
 
 WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const Water> water, double gravity,
-                     TrialOutline &outline) {
+                     const RigidDof *from, TrialOutline &outline) {
   WaterLoad load;
+  const Vec2 centroid = system.motion[row].centroid;
+  const RigidDof back = from != nullptr ? *from - system.trial[row] : RigidDof{};
+  const Rotation turn = Rotation::of(back.r);
   outline.find(system, row);
   const auto &[vertex, normal, length] = outline;
   const std::span<const std::int32_t> joints = system.edge_joints(row);
@@ -71,8 +74,12 @@ WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const
         continue;
       }
       const Vec2 tangent = perp(normal[k]);
-      const PressureIntegral p = pressure_on_edge(of, vertex[k], tangent, length[k], of.density * gravity);
-      const Vec2 moment = p.total * (vertex[k] - system.motion[row].centroid) + p.along * tangent;
+      const Vec2 arm = vertex[k] - centroid;
+      const PressureIntegral p =
+          from != nullptr ? pressure_on_edge(of, centroid + back.u + turn(arm), turn(tangent), length[k],
+                                             of.density * gravity)
+                          : pressure_on_edge(of, vertex[k], tangent, length[k], of.density * gravity);
+      const Vec2 moment = p.total * arm + p.along * tangent;
       load.force += -p.total * normal[k];
       load.dyad += outer(-1.0 * normal[k], moment);
     }

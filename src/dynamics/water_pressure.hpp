@@ -11,6 +11,11 @@
 // that falls straight from the level in a tension crack to the toe of a slide gives the triangle of uplift
 // that Hoek and Bray assume on its plane.
 //
+// A trial of a search for the factor of safety asks whether the blocks hold under the water that presses them
+// where they are. There p is that of where each point of a block was when the trial began, normal to the edge
+// as it lies: a block that slides keeps its pressure, as in limit equilibrium, and finds no hold by leaving
+// the line behind.
+//
 // Along an edge p is linear between the points of the line and where it vanishes; the integrals are exact for
 // the edges as they lie in the trial configuration.
 
@@ -31,8 +36,9 @@ struct WaterLoad {
 };
 
 /// @param gravity  downwards acceleration, m/s2
+/// @param from  displacement of the row (m, and its angle) where the line is looked up; null: where it is
 /// @param outline  place for the row's outline
 WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const Water> water, double gravity,
-                     TrialOutline &outline);
+                     const RigidDof *from, TrialOutline &outline);
 
 } // namespace gcpdda

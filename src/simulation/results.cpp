@@ -3,7 +3,7 @@
 #include "io/results/id_slabs.hpp"
 
 #include "dynamics/deformable.hpp"
-#include "dynamics/water_pressure.hpp"
+#include "simulation/water_loads.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -84,7 +84,7 @@ Mat2 dyad_of_loads(const RunState &run, std::size_t index) {
   }
   if (!run.scene.water.empty()) {
     TrialOutline outline;
-    dyad += water_load(blocks, index, run.scene.water, -run.loads.gravity(run.scene.run).y, outline).dyad;
+    dyad += water_on(run, index, -run.loads.gravity(run.scene.run).y, outline).dyad;
   }
   return dyad;
 }

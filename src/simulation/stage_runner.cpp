@@ -481,10 +481,10 @@ void begin_next_stage(RunState &run) {
   plan_stage(run);
   prepare_matrices(run);
   refresh(run, std::move(memory));
+  mark_stage(run); // first: the water of a trial presses where blocks are now
   evaluate_still(run);
   run.loads.time = run.clock.time();
   accelerate_owned(run);
-  mark_stage(run);
   if (stage.goes_on_failing) {
     hold_after_statics(run);
   }

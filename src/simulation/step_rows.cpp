@@ -10,6 +10,7 @@
 #include "simulation/ground.hpp"
 #include "simulation/held_blocks.hpp"
 #include "simulation/stage_changes.hpp"
+#include "simulation/water_loads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -176,9 +177,8 @@ std::size_t StepRows::advance_free(std::size_t first, std::size_t end) {
 
 void StepRows::gather_forces(std::size_t first, std::size_t last, const BodyForces &body) {
   for (std::size_t row = first; row < last; ++row) {
-    const WaterLoad water = run_.scene.water.empty()
-                                ? WaterLoad{}
-                                : water_load(run_.blocks, row, run_.scene.water, -body.gravity.y, outline_);
+    const WaterLoad water =
+        run_.scene.water.empty() ? WaterLoad{} : water_on(run_, row, -body.gravity.y, outline_);
     const AppliedForces applied = gather_block(row, body, water);
     if (run_.blocks.is_deformable(row)) {
       gather_gradient(row, water);

@@ -2,6 +2,7 @@
 
 #include "geometry/polygon.hpp"
 #include "problem.hpp"
+#include "safety_limits.hpp"
 #include "simulation/results.hpp"
 #include "support/contact_regions.hpp"
 
@@ -218,6 +219,41 @@ set = { "water.table.active" = true }
   ASSERT_EQ(simulation.stage_results().size(), 2U);
   EXPECT_EQ(simulation.stage_results()[0].verdict, Verdict::settled);
   EXPECT_EQ(simulation.stage_results()[1].verdict, Verdict::failed);
+}
+
+// A settle stage asks whether the slide rests where it is: it does not by sliding out of its pressure.
+TEST(Water, ASlideFindsNoHoldByLeavingItsWater) {
+  for (const std::string solver : {"static", "dynamic"}) {
+    for (const double level : {3.0, 4.4}) { // m, of 4.45
+      const Slide slide{.level = level};
+      const double limit = slide.driving() / slide.normal();
+      for (const double factor : {0.98, 1.01}) {
+        const std::string toml =
+            without_duration(slide.toml(factor * limit, 1.0, "")) +
+            fmt::format("[[stage]]\nkind = \"settle\"\nlimit = 20.0\nsolver = \"{}\"\n", solver);
+        Simulation simulation(Communicator::self(), scene_of(toml));
+        run_stages(simulation, step);
+        // Below the limit it creeps under local damping until it fails or the time is over.
+        EXPECT_EQ(simulation.stage_results()[0].verdict == Verdict::settled, factor > 1.0)
+            << solver << ", crack filled to " << level << " m, factor " << factor;
+      }
+    }
+  }
+}
+
+// The head falls along the plane, so that a slide which went on would find less pressure where it goes.
+TEST(Water, SearchesKeepThePressureOfAFilledCrack) {
+  for (const double level : {1.5, 4.0}) {
+    const Slide slide{.level = level};
+    const double friction = 1.2 * slide.driving() / slide.normal();
+    for (const std::string solver : {"static", "dynamic"}) {
+      const SafetyOutcome found = search_quietly(
+          scene_of(without_duration(slide.toml(friction, 1.0, "")) +
+                   fmt::format("[[stage]]\nkind = \"settle\"\nlimit = 20.0\nsolver = \"{}\"\n", solver)));
+      ASSERT_TRUE(found.report.holds && found.report.fails) << solver << level;
+      EXPECT_NEAR(0.5 * (*found.report.holds + *found.report.fails), 1.2, 0.01 * 1.2) << solver << level;
+    }
+  }
 }
 
 } // namespace

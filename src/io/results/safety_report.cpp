@@ -246,6 +246,7 @@ std::string json_text(const SafetyReport &report) {
              .add("undecided", report.undecided)
              .add("settled", trial_object(report.settled))
              .add("earlier_slides", slides)
+             .add("left_out_stages", report.left_out_stages)
              .add("trials", trials)
              .add("moving", moving)
              .text() +
@@ -298,6 +299,12 @@ std::string to_text(const SafetyReport &report) {
                   undecided_text(report) + slide_text(report) + earlier_slides_text(report), families);
   if (report.leaves_earthquake_out) {
     text += "the earthquake of the scene is left out: the factor is that of blocks that were never shaken\n";
+  }
+  for (const std::string &stage : report.left_out_stages) {
+    text += fmt::format(
+        "warning: stage '{}' is left out with what it changes, since it comes after the last settle "
+        "stage; kind = \"settle\" in it takes it into the search\n",
+        stage);
   }
   text += mechanism_text(report);
   if (report.first_block) {

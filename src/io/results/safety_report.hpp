@@ -86,12 +86,13 @@ inline bool is_narrow(double width, double holds, double tolerance) {
 
 /// What gcpdda fos has found.
 struct SafetyReport {
-  std::vector<std::string> families;  ///< laws that were weakened
-  bool leaves_earthquake_out = false; ///< of the scene
-  double tolerance = 0.0;             ///< asked for
-  std::optional<double> holds;        ///< largest factor at which the blocks settled
-  std::optional<double> fails;        ///< smallest one at which they failed
-  std::vector<double> undecided;      ///< factors between these two without a verdict
+  std::vector<std::string> families;        ///< laws that were weakened
+  bool leaves_earthquake_out = false;       ///< of the scene
+  std::vector<std::string> left_out_stages; ///< with what they change: those behind the last settle stage
+  double tolerance = 0.0;                   ///< asked for
+  std::optional<double> holds;              ///< largest factor at which the blocks settled
+  std::optional<double> fails;              ///< smallest one at which they failed
+  std::vector<double> undecided;            ///< factors between these two without a verdict
   StrengthTrial settled; ///< the run up to the settled state, or the last one that did not come there
   std::vector<EarlierSlide> earlier_slides;      ///< up to the settled state
   std::vector<StrengthTrial> trials;             ///< by factor
