@@ -12,10 +12,10 @@
 namespace gcpdda::testing::static_energy_test {
 namespace {
 
-// A slab tips over the edge of a pier, falls 3 m and comes to rest on the ground. It turns by up to a twentieth
-// of its width in an evaluation. What is left of the weight's work is the trapezoid of contact forces over the
-// steps in which it lands, 3 % for a rigid slab as well. A turn that stretched the slab would leave a strain of
-// half its square: 3 times the work of the weight in the stiffest.
+// A slab tips over the edge of a pier, falls 3 m and comes to rest on the ground. It turns by up to a
+// twentieth of its width in an evaluation. What is left of the weight's work is the trapezoid of contact
+// forces over the steps in which it lands, 3 % for a rigid slab as well. A turn that stretched the slab would
+// leave a strain of half its square: 3 times the work of the weight in the stiffest.
 TEST(StaticEnergy, ADeformableSlabThatTurnsAsItFallsGainsNone) {
   const auto settle_slab = [](const std::string &modulus) {
     const std::string toml =
@@ -32,7 +32,8 @@ TEST(StaticEnergy, ADeformableSlabThatTurnsAsItFallsGainsNone) {
     run_stages(simulation);
     EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled) << modulus;
     const EnergyRow row = ledger.row(simulation.state());
-    EXPECT_LT(row.gravity, -2.0 * rock_density * earth_gravity) << modulus; // 1 m2 has gone down by 2 m or more
+    EXPECT_LT(row.gravity, -2.0 * rock_density * earth_gravity)
+        << modulus; // 1 m2 has gone down by 2 m or more
     EXPECT_LT(std::abs(row.residual), 0.06 * -row.gravity) << modulus;
   };
   for (const char *modulus : {"1e8", "1e9", "2e11"}) {
