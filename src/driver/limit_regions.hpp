@@ -15,8 +15,10 @@ namespace gcpdda {
 struct LimitRegion {
   LimitJoint joint;
   double cohesion = 0.0; ///< Pa
+  std::int32_t law = 0;  ///< number among the laws that have names
   bool is_bond = false;
-  double bonded = 0.0; ///< length of it on which bonds are whole, that have joints of their own, m
+  bool is_open = false; ///< it may close
+  double bonded = 0.0;  ///< length of it on which bonds are whole, that have joints of their own, m
   std::array<Vec2, 2> force{};
   std::array<double, 2> torque{};
 };
