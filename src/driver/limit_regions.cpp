@@ -192,7 +192,7 @@ double distance_to(const LimitJoint &joint, Vec2 point) {
   return norm(point - (joint.begin + share * along));
 }
 
-/// The joints of a region that is closed. Blocks press on each other along the normal of an edge on which a
+/// The joints of a region that is closed. Blocks push on each other along the normal of an edge on which a
 /// corner of the other block lies. The mean normal of a region is another one where the region has a part of
 /// what overlaps at a corner alone, such as the side of a toe or what a vertex within a straight side parts:
 /// such a part acts along all normals with which corners there lie on edges. As it is, it would hold blocks
