@@ -1,7 +1,5 @@
 #include "dynamics/water_pressure.hpp"
 
-#include <algorithm>
-
 namespace gcpdda {
 
 namespace {
@@ -31,28 +29,27 @@ struct PressureIntegral {
   }
 };
 
-/// An edge from `begin` along `tangent`.
-PressureIntegral pressure_on_edge(const Water &water, Vec2 begin, Vec2 tangent, double length,
-                                  double unit_weight) {
+/// Of an edge from `begin` along `tangent` the stretch from s to `last`.
+PressureIntegral pressure_on_stretch(const Water &water, Vec2 begin, Vec2 tangent, double s, double last,
+                                     double unit_weight) {
   PressureIntegral sum;
-  const auto pressure = [&](double s) {
-    const Vec2 x = begin + s * tangent;
+  const auto pressure = [&](double at) {
+    const Vec2 x = begin + at * tangent;
     return unit_weight * (water.head(x.x) - x.y);
   };
-  double s = 0.0;
-  double here = pressure(0.0);
+  double here = pressure(s);
   const std::size_t count = water.phreatic.size();
   for (std::size_t k = 0; k < count && tangent.x != 0.0; ++k) {
     const Vec2 corner = water.phreatic[tangent.x > 0.0 ? k : count - 1 - k];
     const double at_corner = (corner.x - begin.x) / tangent.x;
-    if (at_corner > s && at_corner < length) {
+    if (at_corner > s && at_corner < last) {
       const double there = unit_weight * (corner.y - (begin.y + at_corner * tangent.y));
       sum.add(s, here, at_corner, there);
       s = at_corner;
       here = there;
     }
   }
-  sum.add(s, here, length, pressure(length));
+  sum.add(s, here, last, pressure(last));
   return sum;
 }
 
@@ -66,23 +63,22 @@ WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const
   const Rotation turn = Rotation::of(back.r);
   outline.find(system, row);
   const auto &[vertex, normal, length] = outline;
-  const std::span<const std::int32_t> joints = system.edge_joints(row);
   for (const Water &of : water) {
-    for (std::size_t k = 0; k < vertex.size() && of.active; ++k) {
-      const std::int32_t joint = joints.empty() ? -1 : joints[k];
-      if (!of.joints.empty() && !std::binary_search(of.joints.begin(), of.joints.end(), joint)) {
-        continue;
-      }
+    if (!of.active) {
+      continue;
+    }
+    for_wet_stretches(system, row, of, [&](std::size_t k, double first, double last) {
       const Vec2 tangent = perp(normal[k]);
       const Vec2 arm = vertex[k] - centroid;
       const PressureIntegral p =
-          from != nullptr ? pressure_on_edge(of, centroid + back.u + turn(arm), turn(tangent), length[k],
-                                             of.density * gravity)
-                          : pressure_on_edge(of, vertex[k], tangent, length[k], of.density * gravity);
+          from != nullptr ? pressure_on_stretch(of, centroid + back.u + turn(arm), turn(tangent),
+                                                first * length[k], last * length[k], of.density * gravity)
+                          : pressure_on_stretch(of, vertex[k], tangent, first * length[k], last * length[k],
+                                                of.density * gravity);
       const Vec2 moment = p.total * arm + p.along * tangent;
       load.force += -p.total * normal[k];
       load.dyad += outer(-1.0 * normal[k], moment);
-    }
+    });
   }
   return load;
 }

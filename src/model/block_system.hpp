@@ -108,6 +108,16 @@ struct DeformedEdge {
   double unit = 0.0;   ///< 1/|slope|: this times the slope is the normal
 };
 
+/// A part of an edge and the law by which water tables choose it (contact/start_contacts.hpp).
+struct WaterStretch {
+  std::int32_t edge = 0;
+  std::int32_t law = -1; ///< -1: dry in every water table with a list of laws
+  double begin = 0.0;    ///< share of the edge's length from its first vertex
+  double end = 1.0;
+
+  friend bool operator==(const WaterStretch &, const WaterStretch &) = default;
+};
+
 /// A dead load at a material point.
 struct MaterialLoad {
   Vec2 point;              ///< X, reference axes, m
@@ -262,6 +272,10 @@ struct BlockSystem {
   std::vector<Deformation> deformation;
   RowOffsets matrix_begin; ///< one entry for blocks with anchors or dashpots
   std::vector<BlockMatrix> matrix;
+  /// Of edges that water tables do not choose by the law of the edge itself: stretches that cover these
+  /// edges, ascending by edge and begin.
+  RowOffsets water_stretch_begin;
+  std::vector<WaterStretch> water_stretch;
   RowOffsets load_begin;
   std::vector<MaterialLoad> load;
   RowOffsets anchor_begin;
@@ -315,6 +329,10 @@ struct BlockSystem {
     return deformation[deformation_begin[row]];
   }
   [[nodiscard]] Deformation &deformation_of(std::size_t row) { return deformation[deformation_begin[row]]; }
+  [[nodiscard]] std::span<const WaterStretch> water_stretches(std::size_t row) const {
+    return {water_stretch.data() + water_stretch_begin[row],
+            water_stretch_begin[row + 1] - water_stretch_begin[row]};
+  }
   [[nodiscard]] std::span<const MaterialLoad> loads_of(std::size_t row) const {
     return {load.data() + load_begin[row], load_begin[row + 1] - load_begin[row]};
   }
@@ -374,6 +392,7 @@ struct BlockSystem {
                                            &BlockSystem::reference_normal),
                            std::make_tuple(&BlockSystem::deformation_begin, &BlockSystem::deformation),
                            std::make_tuple(&BlockSystem::matrix_begin, &BlockSystem::matrix),
+                           std::make_tuple(&BlockSystem::water_stretch_begin, &BlockSystem::water_stretch),
                            std::make_tuple(&BlockSystem::load_begin, &BlockSystem::load),
                            std::make_tuple(&BlockSystem::anchor_begin, &BlockSystem::anchor),
                            std::make_tuple(&BlockSystem::dashpot_begin, &BlockSystem::dashpot),

@@ -18,4 +18,8 @@ double Water::head(double x) const {
   return a.y + (b.y - a.y) * ((x - a.x) / (b.x - a.x));
 }
 
+bool Water::wets(std::int32_t law) const {
+  return joints.empty() || std::binary_search(joints.begin(), joints.end(), law);
+}
+
 } // namespace gcpdda

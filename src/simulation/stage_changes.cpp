@@ -9,6 +9,7 @@
 #include "geometry/polygon.hpp"
 #include "io/results/id_slabs.hpp"
 #include "model/fidelity.hpp"
+#include "simulation/wet_joints.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -110,6 +111,7 @@ void free_block(RunState &run, std::int64_t id, const SceneBlock &block) {
                         stiffness_bound(run.scene.joints, block.material).normal, run.scene.run);
     append_block(freed, BlockId{id}, block, material, choice.kind, run.scene.run.plane_strain);
     part_sides(freed, run.scene.joints);
+    keep_wet_joints(run.blocks, id, freed);
   }
   rebuild(
       run.blocks, [&](std::size_t row) { return run.blocks.properties[row].id.value != id; }, freed);

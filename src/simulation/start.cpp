@@ -26,6 +26,8 @@
 #include "simulation/scene_size.hpp"
 #include "simulation/stage_changes.hpp"
 #include "simulation/stage_runner.hpp"
+#include "simulation/water_doubts.hpp"
+#include "simulation/wet_joints.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -335,6 +337,8 @@ void distribute(RunState &run, const Beginning &beginning) {
   identify(run, slab);
   take_blocks(run, std::exchange(slab, {}));
   give_back_free_memory();
+  find_wet_joints(run);
+  doubt_water(run);
   if (run.scene.in_situ.present) {
     apply_in_situ_stress(run);
   }

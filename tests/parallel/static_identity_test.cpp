@@ -70,6 +70,23 @@ TEST(Identity, OfStagesWithTheStaticSolver) {
   expect_same_after_restart(runs, scene);
 }
 
+// Water in joints whose law no edge names: blocks know which of their stretches are wet wherever they
+// migrate.
+TEST(Identity, OfWaterInJoints) {
+  const std::string opening = "[[6, 2], [8, 2], [8, 4], [6, 4]]";
+  const std::string water = "[water.low]\njoints = [\"default\"]\nphreatic = [[0, 2], [20, 5], [40, 3]]\n";
+  const Scene scene = testing::scene_of(static_wall_toml(20, 16, opening) + water);
+  const TwoRuns runs(scene);
+  if (runs.world().size() > 1) {
+    EXPECT_GE(runs.counted("cross_rank_contacts"), 50);
+  }
+  const TwoRuns dry(testing::scene_of(static_wall_toml(20, 16, opening)));
+  if (runs.world().is_root()) {
+    EXPECT_NE(summary_text(runs.alone(), "energy"), summary_text(dry.alone(), "energy"));
+  }
+  expect_same_after_restart(runs, scene);
+}
+
 // Joints that dilate, and bonds of which some break: those that hang over the opening.
 TEST(Identity, OfStaticStagesWithBondsAndDilation) {
   const std::string opening = "[[6, 2], [8, 2], [8, 4], [6, 4]]";

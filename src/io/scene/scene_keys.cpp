@@ -178,7 +178,7 @@ constexpr Key keys_after_joints[] = {
   {"water", Kind::named_tables, optional, any, "", "", "[water.winter]", "Water in joints and around blocks: below its phreatic line it presses on every edge that it wets, so that the contacts carry the effective forces."},
   {"water.*", Kind::table, optional, any, "", "", "[water.winter]", "One water table."},
   {"water.*.phreatic", Kind::points, required, from_to(-1e9, 1e9), "", "", "[[0, 0], [40, 12]]", "[m] Phreatic line, its points from left to right; level to the left and to the right of it. The pressure is density times gravity times the depth below it."},
-  {"water.*.joints", Kind::names, optional, any, "", "<all edges>", "[\"bedding\"]", "Laws of the edges that it wets; other edges stay dry. Edges that have no law of their own have no name: leave this out to wet them too."},
+  {"water.*.joints", Kind::names, optional, any, "", "<all edges>", "[\"bedding\"]", "Laws of the joints that it wets; others stay dry. Both faces of a joint are wet where the contact at the start has a listed law, whichever block names it; laws by materials and \"default\" count. What faces nothing is wet where the edge itself names a listed law."},
   {"water.*.density", Kind::number, optional, above_to(0, 1e12), "", "1000.0", "1000.0", "[kg/m3] Density."},
   {"water.*.active", Kind::boolean, optional, any, "", "true", "false", "Whether it is there; a stage may set this, as all of [water.NAME]."},
 

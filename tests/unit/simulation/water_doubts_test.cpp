@@ -1,0 +1,90 @@
+// Warnings of water tables that act on nothing, or twice.
+
+#include "simulation/simulation.hpp"
+
+#include "support/scenes.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace gcpdda::testing::water_doubts_test {
+namespace {
+
+std::vector<std::string> warnings_of(const std::string &toml) {
+  std::vector<std::string> texts;
+  for (const Diagnostic &note : Simulation(Communicator::world(), scene_of(toml)).notes()) {
+    if (note.severity == Severity::warning) {
+      texts.push_back(to_string(note));
+    }
+  }
+  return texts;
+}
+
+void expect_one(const std::vector<std::string> &texts, const std::string &expected) {
+  ASSERT_EQ(texts.size(), 1U) << expected << "\n" << fmt::format("{}", fmt::join(texts, "\n"));
+  EXPECT_NE(texts[0].find(expected), std::string::npos) << texts[0];
+}
+
+/// A slab on a floor, under a joint between their materials.
+std::string slab(const std::string &water, const std::string &stages = "") {
+  return "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600\n[material.clay]\ndensity = 2000\n"
+         "[joint.default]\nnormal_stiffness = 5e9\nfriction_angle_deg = 40\n"
+         "[joint.pair]\nmaterials = [\"rock\", \"clay\"]\nfriction_angle_deg = 30\n" +
+         water +
+         "[[block]]\nname = \"floor\"\nmaterial = \"clay\"\nfixed = true\n"
+         "vertices = [[-60, -5], [60, -5], [60, 0], [-60, 0]]\n"
+         "[[block]]\nname = \"slab\"\nmaterial = \"rock\"\n"
+         "vertices = [[0, 0], [10, 0], [10, 2], [0, 2]]\n"
+         "[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 20\n" +
+         stages;
+}
+
+std::string table(const std::string &name, double level, const std::string &more = "") {
+  return fmt::format("[water.{}]\nphreatic = [[-50, {}], [50, {}]]\n{}", name, level, level, more);
+}
+
+TEST(WaterDoubts, NoneForTablesThatWetSomething) {
+  EXPECT_EQ(warnings_of(slab(table("w", 3.0))), std::vector<std::string>{});
+  EXPECT_EQ(warnings_of(slab(table("w", 3.0, "joints = [\"pair\"]\n"))), std::vector<std::string>{});
+  EXPECT_EQ(warnings_of(slab(table("low", -1.0, "active = false\n"))), std::vector<std::string>{});
+}
+
+TEST(WaterDoubts, TableWhoseLawsNoJointHas) {
+  expect_one(
+      warnings_of(slab(table("w", 3.0, "joints = [\"default\"]\n"))),
+      "test.toml:14:10: warning: [water.w] wets no edge of a block that can move, no contact at the start "
+      "and no edge without one has its law 'default', list laws of joints between blocks, or leave out "
+      "'joints' to wet all edges");
+}
+
+TEST(WaterDoubts, TableThatLiesTooLow) {
+  expect_one(
+      warnings_of(slab(table("w", -1.0))),
+      "test.toml:13:12: warning: [water.w] wets no edge of a block that can move, all edges that it may "
+      "wet lie above its phreatic line, and it acts on nothing, raise 'phreatic', or leave the table out");
+  const std::string rises = "[[stage]]\nname = \"wet\"\nkind = \"settle\"\nlimit = 20\n"
+                            "set = { \"water.w.phreatic\" = [[-50, 1], [50, 1]] }\n";
+  EXPECT_EQ(warnings_of(slab(table("w", -1.0), rises)), std::vector<std::string>{});
+}
+
+TEST(WaterDoubts, TwoTablesThatAddUp) {
+  expect_one(
+      warnings_of(slab(table("v", 3.0) + table("w", 3.0, "joints = [\"pair\"]\n"))),
+      "[water.v] and [water.w] are both active at the start and press on the same edge of block 'slab', "
+      "their pressures add up there, set water.v.active = false where water.w is active, or let them wet "
+      "different 'joints'");
+  const auto raise = [](const std::string &set) {
+    return "[[stage]]\nname = \"wet\"\nkind = \"settle\"\nlimit = 20\nset = { \"water.w.active\" = true" +
+           set + " }\n";
+  };
+  const std::string tables = table("v", 1.0) + table("w", 3.0, "active = false\n");
+  expect_one(warnings_of(slab(tables, raise(""))), "both active in stage 'wet' and press on the same edge");
+  EXPECT_EQ(warnings_of(slab(tables, raise(", \"water.v.active\" = false"))), std::vector<std::string>{});
+}
+
+} // namespace
+} // namespace gcpdda::testing::water_doubts_test
