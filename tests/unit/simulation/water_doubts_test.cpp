@@ -16,7 +16,8 @@ namespace {
 
 std::vector<std::string> warnings_of(const std::string &toml) {
   std::vector<std::string> texts;
-  for (const Diagnostic &note : Simulation(Communicator::world(), scene_of(toml)).notes()) {
+  const Simulation simulation(Communicator::world(), scene_of(toml));
+  for (const Diagnostic &note : simulation.notes()) {
     if (note.severity == Severity::warning) {
       texts.push_back(to_string(note));
     }
@@ -56,7 +57,7 @@ TEST(WaterDoubts, NoneForTablesThatWetSomething) {
 TEST(WaterDoubts, TableWhoseLawsNoJointHas) {
   expect_one(
       warnings_of(slab(table("w", 3.0, "joints = [\"default\"]\n"))),
-      "test.toml:14:10: warning: [water.w] wets no edge of a block that can move, no contact at the start "
+      "test.toml:15:10: warning: [water.w] wets no edge of a block that can move, no contact at the start "
       "and no edge without one has its law 'default', list laws of joints between blocks, or leave out "
       "'joints' to wet all edges");
 }
@@ -64,7 +65,7 @@ TEST(WaterDoubts, TableWhoseLawsNoJointHas) {
 TEST(WaterDoubts, TableThatLiesTooLow) {
   expect_one(
       warnings_of(slab(table("w", -1.0))),
-      "test.toml:13:12: warning: [water.w] wets no edge of a block that can move, all edges that it may "
+      "test.toml:14:12: warning: [water.w] wets no edge of a block that can move, all edges that it may "
       "wet lie above its phreatic line, and it acts on nothing, raise 'phreatic', or leave the table out");
   const std::string rises = "[[stage]]\nname = \"wet\"\nkind = \"settle\"\nlimit = 20\n"
                             "set = { \"water.w.phreatic\" = [[-50, 1], [50, 1]] }\n";
