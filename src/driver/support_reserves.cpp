@@ -25,7 +25,7 @@ Capacity capacity_of(const LinkLaw &law, const LinkMemory &memory) {
   const auto finite = [](double value) { return std::isfinite(value) ? value : unlimited; };
   const LinerSection &section = law.section;
   if (section.thickness == 0.0) {
-    const double axial = finite(law.axial_yield);
+    const double axial = finite(axial_capacity(law, memory));
     return {axial, law.slack_in_compression ? 0.0 : axial,
             law.shear_stiffness > 0.0 ? finite(law.shear_yield) : 0.0, 0.0};
   }

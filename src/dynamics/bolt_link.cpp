@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace gcpdda {
 
@@ -29,6 +30,57 @@ struct Yielding {
     }
   }
 };
+
+/// What the grout bears after a slip.
+double bond_left(const LinkLaw &law, double slip) {
+  return slip > 0.0 ? std::max(0.0, law.bond_capacity - law.bond_strength * slip) : law.bond_capacity;
+}
+
+/// How far a bar slips under a force beyond what its grout bears. Equilibrium with the spring of the bar,
+///   trial - k slip = +-bond_left(g + slip),
+/// is linear on either side of g = 0. None where the bar is drawn out: the spring gives way less steeply than
+/// the grout does.
+std::optional<double> slip_in_grout(const LinkLaw &law, double slipped, double trial) {
+  const double k = law.axial_stiffness;
+  const double beyond = std::abs(trial) - bond_left(law, slipped);
+  if (trial < 0.0) { // first back to the full length, then on
+    const double back = std::max(0.0, slipped);
+    const double slip = beyond / (k + law.bond_strength);
+    return slip <= back ? -slip : -(back + (beyond - (k + law.bond_strength) * back) / k);
+  }
+  const double even = std::max(0.0, -slipped);
+  if (beyond <= k * even) {
+    return beyond / k;
+  }
+  return k > law.bond_strength ? std::optional(even + (beyond - k * even) / (k - law.bond_strength))
+                               : std::nullopt;
+}
+
+/// Let the grout slip under a force beyond what it bears.
+/// @return  the force that is left
+double slip_grout(const LinkLaw &law, LinkMemory &memory, double trial) {
+  const double before = memory.grout_slip;
+  const double out = law.bond_capacity / law.bond_strength; // slip at which nothing is left
+  const std::optional<double> slip = slip_in_grout(law, before, trial);
+  const double after = slip ? std::min(before + *slip, out) : std::max(before, 0.0);
+  const auto work_to = [&](double g) {
+    const double drawn = std::max(0.0, g);
+    return law.bond_capacity * g - 0.5 * law.bond_strength * drawn * drawn;
+  };
+  memory.dissipated += std::abs(work_to(after) - work_to(before));
+  memory.axial_slip += after - before;
+  memory.grout_slip = after;
+  memory.broken = !slip || after >= out;
+  return std::copysign(bond_left(law, after), trial);
+}
+
+/// A link that breaks loses what it stores.
+void lose_all(const LinkLaw &law, LinkMemory &memory) {
+  memory.dissipated += stored_energy(law, memory);
+  memory.axial = 0.0;
+  memory.shear = 0.0;
+  memory.broken = true;
+}
 
 /// The law of an element of a liner.
 LinkLaw law_of_liner(const SupportType &support, double length) {
@@ -97,19 +149,28 @@ LinkLaw law_of(const SupportType &support, const BoltLink &link) {
   const bool is_grouted = support.kind == SupportType::Kind::grouted;
   const double stiffness =
       support.axial_stiffness > 0.0 ? support.axial_stiffness : support.axial_rigidity / link.length;
-  const double bond = is_grouted && std::isfinite(link.bond_length) && std::isfinite(support.bond_strength)
-                          ? support.bond_strength * link.bond_length
-                          : SupportType::unlimited;
-  const double capacity = std::min(support.axial_yield, bond);
+  const double embedded = std::min(link.grout[0], link.grout[1]);
+  const bool is_limited = is_grouted && std::isfinite(embedded) && std::isfinite(support.bond_strength);
+  // More than the grout bears cannot be put in.
+  const double capacity = std::min(support.axial_yield, is_limited ? support.bond_strength * link.bond_length
+                                                                   : SupportType::unlimited);
   LinkLaw law;
+  if (is_limited) {
+    law.bond_capacity = support.bond_strength * embedded / support.spacing;
+    law.bond_strength = support.bond_strength / support.spacing;
+  }
   law.axial_stiffness = stiffness / support.spacing;
   law.shear_stiffness = is_grouted ? support.shear_stiffness / support.spacing : 0.0;
-  law.axial_yield = capacity / support.spacing;
+  law.axial_yield = support.axial_yield / support.spacing;
   law.shear_yield = support.shear_yield / support.spacing;
   law.pretension = std::min(support.pretension, capacity) / support.spacing;
   law.rupture = support.rupture_strain * link.length;
   law.slack_in_compression = !is_grouted;
   return law;
+}
+
+double axial_capacity(const LinkLaw &law, const LinkMemory &memory) {
+  return std::min(law.axial_yield, bond_left(law, memory.grout_slip));
 }
 
 // From displacements, not from world positions: a distant origin costs no digits.
@@ -152,22 +213,24 @@ LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, doub
   }
   const double trial = law.pretension + law.axial_stiffness * (extension - memory.axial_slip);
   const bool is_slack = law.slack_in_compression && trial < 0.0;
-  const Yielding axial(is_slack ? 0.0 : trial, law.axial_stiffness, law.axial_yield);
+  const double bond = bond_left(law, memory.grout_slip);
+  const bool slips = bond < law.axial_yield && std::abs(trial) > bond && !is_slack;
+  const double held = is_slack ? 0.0 : slips ? slip_grout(law, memory, trial) : trial;
+  const Yielding axial(held, law.axial_stiffness, law.axial_yield);
   const Yielding shear(law.shear_stiffness * (slide - memory.shear_slip), law.shear_stiffness,
                        law.shear_yield);
   memory.axial = axial.force;
   memory.axial_slip += axial.slip;
+  memory.steel_slip += axial.slip;
   memory.shear = shear.force;
   memory.shear_slip += shear.slip;
   memory.dissipated += axial.dissipated + shear.dissipated;
-  memory.axial_gives = is_slack || axial.slip != 0.0;
+  memory.axial_gives = is_slack || slips || axial.slip != 0.0;
   memory.shear_gives = shear.slip != 0.0;
-  memory.yielded = memory.yielded || axial.slip != 0.0 || shear.slip != 0.0;
-  if (extension + law.pretension / law.axial_stiffness > law.rupture) {
-    memory.dissipated += stored_energy(law, memory);
-    memory.axial = 0.0;
-    memory.shear = 0.0;
-    memory.broken = true;
+  memory.yielded = memory.yielded || slips || axial.slip != 0.0 || shear.slip != 0.0;
+  const double slipped = memory.axial_slip - memory.steel_slip; // in all lengths of grout
+  if (memory.broken || extension + law.pretension / law.axial_stiffness - slipped > law.rupture) {
+    lose_all(law, memory);
   }
   return memory;
 }

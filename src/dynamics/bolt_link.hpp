@@ -24,10 +24,16 @@
 // deformation: stretch, bending with one point of inflexion (the moment Q L/2 at the ends, none in the
 // middle), and bending by a constant moment M (dynamics/liner_section.hpp).
 //
-// Both are elastic and perfectly plastic: e_p and s_p grow where N and Q would exceed their capacity. The
-// axial capacity is the yield force or, where less, what the grout on the shorter side bears. A cable with a
-// free length is slack in compression. Rupture: e + T_0/k_a beyond rupture_strain L breaks it for good. What
-// plastic flow and rupture take is counted link by link. A liner yields, cracks and breaks by its section.
+// Both are elastic and plastic: e_p and s_p grow where N and Q would exceed their capacity. The steel bears
+// its yield force. Grout of the length l on the shorter side of the joint bears b l, b its strength per
+// metre; with a slip g in the grout, which pulling makes larger, it bears
+//     b (l - max(g, 0)),
+// because the bar has been drawn out of it by g. The slip of an evaluation is solved for with that decrease,
+// so N depends on where the ends are and not on the number of evaluations on the way there. The weaker of
+// steel and grout flows, e_p = e_y + g with e_y the flow of the steel. At g = l the bar is out, and the link
+// is broken for good. A cable with a free length is slack in compression. Rupture: an elongation of the steel
+// e - g + T_0/k_a beyond rupture_strain L breaks it for good. What plastic flow, slip and rupture take is
+// counted link by link. A liner yields, cracks and breaks by its section.
 //
 // Forces are taken at the trial configuration like contact forces. All numbers are per metre of thickness:
 // those of a bolt divided by its spacing out of plane.
@@ -45,12 +51,14 @@ namespace gcpdda {
 
 /// Constants of one link, per metre of thickness.
 struct LinkLaw {
-  double axial_stiffness = 0.0; ///< Pa
-  double shear_stiffness = 0.0; ///< Pa; 0: none
-  double axial_yield = SupportType::unlimited;
+  double axial_stiffness = 0.0;                  ///< Pa
+  double shear_stiffness = 0.0;                  ///< Pa; 0: none
+  double axial_yield = SupportType::unlimited;   ///< of the steel
+  double bond_capacity = SupportType::unlimited; ///< b l, what the grout bears before it slips
+  double bond_strength = 0.0;                    ///< b, Pa; what a metre of slip takes of bond_capacity
   double shear_yield = SupportType::unlimited;
   double pretension = 0.0;
-  double rupture = SupportType::unlimited; ///< extension with that of the pre-tension, m
+  double rupture = SupportType::unlimited; ///< elongation of the steel, m
   bool slack_in_compression = false;
   double bending_stiffness = 0.0; ///< k_b, N; of a liner, and the next two
   double length = 0.0;            ///< L, m
@@ -74,6 +82,9 @@ struct LinkMemory {
   // Of the last evaluation, for the static solver.
   bool axial_gives = false; ///< N has flown, or the link is slack
   bool shear_gives = false; ///< Q has flown
+  // Parts of e_p of a grouted bolt, m.
+  double steel_slip = 0.0; ///< e_y
+  double grout_slip = 0.0; ///< g, from where `BoltLink::grout` is measured
 
   friend bool operator==(const LinkMemory &, const LinkMemory &) = default;
 };
@@ -90,12 +101,18 @@ struct BoltLink {
   std::array<LinkEnd, 2> end;       ///< by block id
   bool head_first = true;           ///< end[0] is on the side of the bolt's head, or first on the face
   double length = 0.0;              ///< L, m
-  double bond_length = 0.0;         ///< grout on the shorter side, m
+  double bond_length = 0.0;         ///< grout on the shorter side when it was put in, m
   std::array<double, 2> overhang{}; ///< from the link's ends to the bolt's: towards the head, the tip, m
+  /// From the middle of the link to where the grouted bar ends: towards the head, the tip, m; unlimited
+  /// towards a face plate, and of a cable or liner.
+  std::array<double, 2> grout{SupportType::unlimited, SupportType::unlimited};
   LinkMemory memory;
 };
 
 LinkLaw law_of(const SupportType &support, const BoltLink &link);
+
+/// What a link of a bolt bears along its axis after the slip of its grout, N/m.
+double axial_capacity(const LinkLaw &law, const LinkMemory &memory);
 
 /// How a link lies in the trial configuration.
 struct LinkPose {

@@ -4,8 +4,8 @@
 #include "geometry/holds_point.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
+#include <utility>
 
 namespace gcpdda {
 
@@ -39,6 +39,38 @@ void drop_doubles(std::vector<BoltPiece> &pieces) {
     }
   }
   pieces = std::move(kept);
+}
+
+/// Where the grouted bar around a joint between two pieces begins and ends, as shares of the bolt: at a void
+/// that no link spans.
+std::pair<double, double> bar_around(const std::vector<BoltPiece> &pieces, std::size_t joint,
+                                     double widest_gap) {
+  const auto goes_on = [&](std::size_t k) {
+    return pieces[k].block == pieces[k + 1].block || pieces[k + 1].begin - pieces[k].end <= widest_gap;
+  };
+  std::size_t first = joint;
+  while (first > 0 && goes_on(first - 1)) {
+    --first;
+  }
+  std::size_t last = joint + 1;
+  while (last + 1 < pieces.size() && goes_on(last)) {
+    ++last;
+  }
+  return {pieces[first].begin, pieces[last].end};
+}
+
+/// Of the bar on one side of a link no more than a length is left in rock. Where it has been drawn out, what
+/// is in the grout is counted from here on.
+void end_bar(BoltLink &link, std::size_t side, double left) {
+  if (left >= link.grout[side]) {
+    return;
+  }
+  double &slip = link.memory.grout_slip;
+  if (slip > 0.0) {
+    link.grout[link.grout[0] < link.grout[1] ? 0 : 1] -= slip;
+    slip = 0.0;
+  }
+  link.grout[side] = std::min(link.grout[side], left);
 }
 
 } // namespace
@@ -109,11 +141,37 @@ std::vector<BoltLink> links_of(const Bolt &bolt, std::int64_t index, const Suppo
                                  support.active_length);
     const double to_head = (middle - first.begin) * length;
     const double to_tip = (last.end - middle) * length;
-    link.bond_length = std::min(support.plate ? std::numeric_limits<double>::infinity() : to_head, to_tip);
     link.overhang = {to_head - 0.5 * link.length, to_tip - 0.5 * link.length};
+    const auto [begin, end] = bar_around(pieces, k, support.active_length / length);
+    link.grout = {support.plate && begin == first.begin ? SupportType::unlimited : (middle - begin) * length,
+                  (end - middle) * length};
+    link.bond_length = std::min(link.grout[0], link.grout[1]);
     links.push_back(link);
   }
   return links;
+}
+
+void end_bars_at_voids(std::vector<BoltLink> &links, const std::function<bool(std::int64_t)> &is_gone) {
+  const auto place = [](const BoltLink &link) { return link.overhang[0] + 0.5 * link.length; };
+  auto bolt_begin = links.begin();
+  for (auto gone_link = links.begin(); gone_link != links.end(); ++gone_link) {
+    const BoltLink &gone = *gone_link;
+    bolt_begin = bolt_begin->bolt == gone.bolt ? bolt_begin : gone_link;
+    const std::size_t head = gone.head_first ? 0 : 1;
+    const bool head_goes = is_gone(gone.end[head].block);
+    const bool tip_goes = is_gone(gone.end[1 - head].block);
+    if (gone.liner >= 0 || !(head_goes || tip_goes)) {
+      continue;
+    }
+    for (auto link = bolt_begin; link != links.end() && link->bolt == gone.bolt; ++link) {
+      const double towards_tip = place(*link) - place(gone);
+      if (head_goes && towards_tip > 0.0) {
+        end_bar(*link, 0, towards_tip);
+      } else if (tip_goes && towards_tip < 0.0) {
+        end_bar(*link, 1, -towards_tip);
+      }
+    }
+  }
 }
 
 } // namespace gcpdda

@@ -6,6 +6,7 @@
 #include "gcpdda/model/scene.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -27,5 +28,10 @@ void append_pieces(const Bolt &bolt, std::int64_t index, std::span<const Vec2> p
 /// @param pieces  of the bolt, in any order; sorted on return
 std::vector<BoltLink> links_of(const Bolt &bolt, std::int64_t index, const SupportType &support,
                                std::vector<BoltPiece> &pieces);
+
+/// Blocks have been excavated: bars end where they went, and only grout in the rock that is left counts.
+/// Links at these blocks stay as they are, to be taken out.
+/// @param links  in the order of their bolts; their memory has been shared
+void end_bars_at_voids(std::vector<BoltLink> &links, const std::function<bool(std::int64_t)> &is_gone);
 
 } // namespace gcpdda

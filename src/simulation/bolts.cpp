@@ -168,6 +168,10 @@ void Bolts::remove(const std::function<bool(const BoltLink &)> &is_gone) {
   connected_ = false;
 }
 
+void Bolts::end_at_voids(const std::function<bool(std::int64_t)> &is_gone) {
+  end_bars_at_voids(links_, is_gone);
+}
+
 void Bolts::take_laws(const Scene &scene) {
   laws_.clear();
   for (const BoltLink &link : links_) {
@@ -330,7 +334,7 @@ void Bolts::add_energies_at(const BlockSystem &system, double share, LinkEnergie
 }
 
 // How far the line of a link goes on beyond its ends, towards the bolt's head and its tip; negative where it
-// stops short of them.
+// stops short of them. A bar ends where the rock does.
 std::array<double, 2> Bolts::reach_of(std::size_t link) const {
   const auto to_head = [&](std::size_t k) { return links_[k].overhang[0] + 0.5 * links_[k].length; };
   const auto half_way = [&](std::size_t a, std::size_t b) {
@@ -339,8 +343,8 @@ std::array<double, 2> Bolts::reach_of(std::size_t link) const {
   const BoltLink &own = links_[link];
   const bool is_first = link == 0 || links_[link - 1].bolt != own.bolt;
   const bool is_last = link + 1 == links_.size() || links_[link + 1].bolt != own.bolt;
-  return {is_first ? own.overhang[0] : half_way(link - 1, link),
-          is_last ? own.overhang[1] : half_way(link, link + 1)};
+  return {std::min(is_first ? own.overhang[0] : half_way(link - 1, link), own.grout[0] - 0.5 * own.length),
+          std::min(is_last ? own.overhang[1] : half_way(link, link + 1), own.grout[1] - 0.5 * own.length)};
 }
 
 std::vector<LinkLine> Bolts::lines(const Communicator &communicator, const BlockSystem &system) const {
@@ -435,17 +439,13 @@ void Bolts::to_numbers(const std::vector<BoltLink> &links, std::vector<std::int6
     const LinkMemory &m = link.memory;
     counts.insert(counts.end(), {link.bolt, a.block, b.block, link.head_first ? 1 : 0, m.yielded ? 1 : 0,
                                  m.broken ? 1 : 0, link.liner, m.cracked ? 1 : 0});
-    numbers.insert(numbers.end(), {a.point.x,        a.point.y,
-                                   a.along.x,        a.along.y,
-                                   b.point.x,        b.point.y,
-                                   b.along.x,        b.along.y,
-                                   link.length,      link.bond_length,
-                                   link.overhang[0], link.overhang[1],
-                                   m.axial_slip,     m.shear_slip,
-                                   m.dissipated,     m.axial,
-                                   m.shear,          m.extension,
-                                   m.slide,          m.turn_slip,
-                                   m.moment,         m.turn});
+    numbers.insert(numbers.end(),
+                   {a.point.x,        a.point.y,        a.along.x,     a.along.y,     b.point.x,
+                    b.point.y,        b.along.x,        b.along.y,     link.length,   link.bond_length,
+                    link.overhang[0], link.overhang[1], m.axial_slip,  m.shear_slip,  m.dissipated,
+                    m.axial,          m.shear,          m.extension,   m.slide,       m.turn_slip,
+                    m.moment,         m.turn,           link.grout[0], link.grout[1], m.steel_slip,
+                    m.grout_slip});
   }
 }
 
@@ -467,6 +467,9 @@ Bolts Bolts::from_numbers(std::span<const std::int64_t> counts, std::span<const 
     link.overhang = {x[10], x[11]};
     link.memory = {x[12],     x[13],     x[14],     x[15], x[16], x[17], x[18],
                    c[4] != 0, c[5] != 0, c[7] != 0, x[19], x[20], x[21]};
+    link.memory.steel_slip = x[24];
+    link.memory.grout_slip = x[25];
+    link.grout = {x[22], x[23]};
     link.liner = static_cast<std::int32_t>(c[6]);
   }
   return bolts;

@@ -80,6 +80,8 @@ public:
                       std::span<const std::int64_t> which, Diagnostics &notes);
   /// Take out the links for which it holds. The memory has been shared.
   void remove(const std::function<bool(const BoltLink &)> &is_gone);
+  /// Bars end where blocks have been excavated. The memory has been shared.
+  void end_at_voids(const std::function<bool(std::int64_t)> &is_gone);
   /// The laws of the scene from here on.
   void take_laws(const Scene &scene);
 
@@ -139,7 +141,7 @@ public:
 
   /// For a checkpoint, and back.
   static constexpr std::size_t counts_per_link = 8;
-  static constexpr std::size_t numbers_per_link = 22;
+  static constexpr std::size_t numbers_per_link = 26;
   static void to_numbers(const std::vector<BoltLink> &links, std::vector<std::int64_t> &counts,
                          std::vector<double> &numbers);
   static Bolts from_numbers(std::span<const std::int64_t> counts, std::span<const double> numbers);

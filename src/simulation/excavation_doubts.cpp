@@ -1,6 +1,7 @@
 #include "simulation/excavation_doubts.hpp"
 
 #include "model/generators.hpp"
+#include "simulation/cut_bolts.hpp"
 #include "simulation/loads.hpp"
 #include "simulation/stage_changes.hpp"
 
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <fmt/format.h>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +57,29 @@ void doubt_loads(RunState &run) {
       }
     }
     before = &blocks;
+  }
+}
+
+void doubt_bolts(RunState &run) {
+  std::set<std::int32_t> told; // by an earlier stage
+  for (const Stage &stage : run.clock.stages) {
+    if (run.bolts.empty()) {
+      return;
+    }
+    for (std::size_t bolt = 0; stage.after && bolt < stage.after->bolts.size(); ++bolt) {
+      if (!stage.after->bolts[bolt].active) { // taken out before
+        told.insert(static_cast<std::int32_t>(bolt));
+      }
+    }
+    if (stage.kind != StageKind::excavate) {
+      continue;
+    }
+    CutBolts cut = cut_bolts(run, select_blocks(run, stage.excavated));
+    cut.forget([&](std::int32_t bolt) { return told.contains(bolt); });
+    for (const std::set<std::int32_t> *bolts : {&cut.taken_away, &cut.without_plate, &cut.crossed}) {
+      told.insert(bolts->begin(), bolts->end());
+    }
+    warn_of_cuts(run, stage, cut);
   }
 }
 

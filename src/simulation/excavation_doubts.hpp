@@ -10,5 +10,7 @@ namespace gcpdda {
 void doubt_monitors(RunState &run);
 /// Warn of loads that a stage sets on blocks which it or an earlier stage excavates. Collective.
 void doubt_loads(RunState &run);
+/// Warn of bolts in place that a stage takes away, or that lose their hold in part. Collective.
+void doubt_bolts(RunState &run);
 
 } // namespace gcpdda

@@ -9,6 +9,7 @@
 #include "geometry/polygon.hpp"
 #include "io/results/id_slabs.hpp"
 #include "model/fidelity.hpp"
+#include "simulation/cut_bolts.hpp"
 #include "simulation/wet_joints.hpp"
 
 #include <algorithm>
@@ -252,11 +253,14 @@ void change_support(RunState &run, const std::vector<Bolt> &bolts, const std::ve
   if (scene.bolts.empty() && scene.liners.empty()) {
     return;
   }
+  const auto is_gone = [&](std::int64_t id) { return is_removed(run.clock.state, id); };
+  if (run.clock.stage().kind == StageKind::excavate) { // rock beyond viscous sides goes on
+    run.bolts.end_at_voids(is_gone);
+  }
   run.bolts.remove([&](const BoltLink &link) {
     const bool is_active = link.liner >= 0 ? scene.liners[static_cast<std::size_t>(link.liner)].active
                                            : scene.bolts[static_cast<std::size_t>(link.bolt)].active;
-    return !is_active || is_removed(run.clock.state, link.end[0].block) ||
-           is_removed(run.clock.state, link.end[1].block);
+    return !is_active || is_gone(link.end[0].block) || is_gone(link.end[1].block);
   });
   run.bolts.install(run.communicator, scene, run.blocks, put_in(bolts, scene.bolts), run.notes);
   run.bolts.install_liners(run.communicator, scene, run.blocks, put_in(liners, scene.liners), run.notes);
@@ -302,6 +306,13 @@ void excavate(RunState &run, const Stage &stage) {
         {Severity::warning, stage.where, fmt::format("stage '{}' removes no blocks", stage.name),
          "no block that is left has its centroid in 'region', belongs to 'openings' or is named in 'blocks'",
          "move 'region' to where blocks are, or leave the stage out"});
+  }
+  if (!run.bolts.empty()) {
+    CutBolts cut = cut_bolts(run, ids);
+    cut.forget([&](std::int32_t bolt) {
+      return stage.after && !stage.after->bolts[static_cast<std::size_t>(bolt)].active;
+    });
+    warn_of_cuts(run, stage, cut);
   }
   excavate(run, ids, stage.relax);
 }

@@ -390,6 +390,7 @@ void start(RunState &run, const Beginning &beginning) {
     doubt_gaps(run);
     doubt_monitors(run);
     doubt_loads(run);
+    doubt_bolts(run);
   }
   stop_on_errors(run.notes);
   std::stable_sort(run.notes.begin(), run.notes.end(), // warnings in one block

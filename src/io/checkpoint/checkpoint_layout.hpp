@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 /// Of the lists below and of the seal: it rises with every change of them.
-inline constexpr std::int64_t version = 18;
+inline constexpr std::int64_t version = 19;
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";

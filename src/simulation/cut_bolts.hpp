@@ -1,0 +1,31 @@
+#pragma once
+
+// Bolts that an excavation takes away or leaves with less hold: warnings.
+
+#include "simulation/run_state.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <vector>
+
+namespace gcpdda {
+
+/// What an excavation does to bolts, by index into Scene::bolts.
+struct CutBolts {
+  std::set<std::int32_t> taken_away;    ///< their last link goes
+  std::set<std::int32_t> without_plate; ///< the block at their face plate goes
+  std::set<std::int32_t> crossed;       ///< cables through the opening, both ends of which stay
+
+  /// Leave out the bolts for which it holds.
+  void forget(const std::function<bool(std::int32_t)> &is_known);
+};
+
+/// In the posed trial configuration. Collective.
+/// @param ids  of the excavated blocks, ascending
+[[nodiscard]] CutBolts cut_bolts(const RunState &run, const std::vector<std::int64_t> &ids);
+
+/// One warning for each kind, unless it has been given.
+void warn_of_cuts(RunState &run, const Stage &stage, const CutBolts &cut);
+
+} // namespace gcpdda
