@@ -243,5 +243,49 @@ TEST(BoltedBlock, IsHeldByADowel) {
   }
 }
 
+/// A unit square below a fixed beam of 0.5 m and more fixed rock, held by a bar with a plate that reaches 2.5
+/// m above it and is grouted with `bond`, N/m. The rock above the beam is excavated.
+std::string cut_bar_toml(double bond) {
+  return head({.fidelity = "rigid", .youngs_modulus = 1e9, .poissons_ratio = 0.25}) +
+         block_toml("beam", rectangle({-2.0, 1.0}, {2.0, 1.5}), "fixed = true") +
+         block_toml("above", rectangle({-2.0, 1.5}, {2.0, 5.0}), "fixed = true") +
+         block_toml("square", rectangle({-0.5, 0.0}, {0.5, 1.0})) +
+         support_toml(fmt::format("kind = \"grouted\"\naxial_stiffness = 1e9\nactive_length = 0.4\n"
+                                  "plate = true\nbond_strength = {:.17g}\n",
+                                  bond)) +
+         bolt_toml({0.0, 0.2}, {0.0, 3.5}) +
+         "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n[[stage]]\nkind = \"excavate\"\n"
+         "blocks = [\"above\"]\n[[stage]]\nkind = \"run\"\nduration = 0.2\n";
+}
+
+// The l = 0.5 m of grout that are left bear half the weight, W = 2 b l, and less as the bar is drawn out by
+// x: m x'' = W - b (l - x), so x = l (cosh(w t) - 1) with w^2 = b/m = g/(2 l).
+TEST(BoltedBlock, DrawsItsBarOutOfTheRockThatAnExcavationLeaves) {
+  Simulation simulation(Communicator::self(), scene_of(without_duration(cut_bar_toml(weight))));
+  run_stages(simulation);
+  ASSERT_EQ(simulation.bolts().links().size(), 1U);
+  EXPECT_NEAR(simulation.bolts().links()[0].grout[1], 0.5, 1e-12);
+  const double omega = std::sqrt(earth_gravity / (2.0 * 0.5));
+  const double drawn = 0.5 * (std::cosh(omega * 0.2) - 1.0);
+  // The bar had been stretched by W/k = 2.6e-5 m, and comes to a slip within a step of 1e-4 s.
+  EXPECT_NEAR(-displacement_of(simulation, 2).u.y, drawn, 1e-3 * drawn + 2.0 * weight / 1e9);
+  EXPECT_NEAR(simulation.bolts().links()[0].memory.axial, weight * (0.5 - drawn), 2e-3 * weight);
+}
+
+// 2 % more than the weight holds, on what is left of the grout; 2 % less does not.
+TEST(BoltedBlock, NeedsTheGroutOfTheRockThatIsLeft) {
+  for (const double share : {0.98, 1.02}) {
+    Simulation simulation(Communicator::self(),
+                          scene_of(without_duration(cut_bar_toml(share * weight / 0.5))));
+    run_stages(simulation);
+    const double fallen = -displacement_of(simulation, 2).u.y;
+    if (share < 1.0) {
+      EXPECT_GT(fallen, 1e-3);
+    } else {
+      EXPECT_LT(fallen, 1e-4);
+    }
+  }
+}
+
 } // namespace
 } // namespace gcpdda::testing::bolted_block_test

@@ -2,6 +2,7 @@
 
 #include "simulation/simulation.hpp"
 #include "support/scenes.hpp"
+#include "support/setting.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -47,6 +48,49 @@ TEST(BoltNotes, SayWhichEndLiesInNoBlockAndHowToMoveIt) {
   EXPECT_EQ(said_of_bolt(0.2, 0.8), "bolt 'bolt0' crosses no joint, it acts only between two blocks, make it "
                                     "longer, or leave it out\n");
   EXPECT_EQ(said_of_bolt(0.5, 2.0), "");
+}
+
+/// What is said of two bolts through three blocks above each other, of which a stage excavates one.
+std::string said_of_cut(const std::string &support, const std::string &excavated,
+                        const std::string &stage = "") {
+  std::string toml = "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2000\n[joint.default]\n"
+                     "normal_stiffness = 1e8\nfriction_angle_deg = 30\n[support.steel]\n" +
+                     support;
+  for (int k = 0; k < 3; ++k) {
+    toml += block_toml(fmt::format("b{}", k), rectangle({0.0, 1.0 * k}, {4.0, 1.0 + k}), "fixed = true");
+  }
+  toml += block_toml("cap", rectangle({0.0, 3.0}, {4.0, 3.5}));
+  for (const double x : {1.0, 3.0}) {
+    toml += fmt::format("[[bolt]]\nname = \"at{0}\"\nsupport = \"steel\"\nfrom = [{0}, 0.5]\n"
+                        "to = [{0}, 2.5]\n",
+                        x);
+  }
+  toml += "[[stage]]\nkind = \"run\"\nduration = 0.01\n" + stage +
+          fmt::format("[[stage]]\nname = \"cut\"\nkind = \"excavate\"\nblocks = [\"{}\"]\n", excavated);
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  const std::size_t at_start = simulation.notes().size();
+  run_stages(simulation);
+  EXPECT_TRUE(at_start == simulation.notes().size() || !stage.empty()) << "said twice";
+  std::string said;
+  for (const Diagnostic &note : simulation.notes()) {
+    said += note.what.starts_with("bolt") ? note.what + "\n" : "";
+  }
+  return said;
+}
+
+TEST(BoltNotes, SayWhichBoltsAnExcavationCuts) {
+  const std::string cable = "kind = \"anchored\"\naxial_stiffness = 1e7\n";
+  const std::string bar = "kind = \"grouted\"\naxial_stiffness = 1e7\nactive_length = 0.2\nplate = true\n"
+                          "bond_strength = 1e5\n";
+  EXPECT_EQ(said_of_cut(cable, "b0"), "bolt 'at1' and 1 more are taken away by stage 'cut'\n");
+  EXPECT_EQ(said_of_cut(cable, "b1"),
+            "bolt 'at1' and 1 more cross rock between head and anchor that stage 'cut' excavates\n");
+  EXPECT_EQ(said_of_cut(cable, "b1", "[[stage]]\nkind = \"change\"\nset = { \"bolt.at3.active\" = false }\n"),
+            "bolt 'at1' crosses rock between head and anchor that stage 'cut' excavates\n");
+  EXPECT_EQ(said_of_cut(bar, "b0"), "bolt 'at1' and 1 more lose their face plates in stage 'cut'\n");
+  EXPECT_EQ(said_of_cut(bar, "b1"), "bolt 'at1' and 1 more are taken away by stage 'cut'\n");
+  EXPECT_EQ(said_of_cut(bar, "b2"), "");
+  EXPECT_EQ(said_of_cut(cable, "cap"), "");
 }
 
 } // namespace
