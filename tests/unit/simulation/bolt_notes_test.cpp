@@ -57,7 +57,8 @@ std::string said_of_cut(const std::string &support, const std::string &excavated
                      "normal_stiffness = 1e8\nfriction_angle_deg = 30\n[support.steel]\n" +
                      support;
   for (int k = 0; k < 3; ++k) {
-    toml += block_toml(fmt::format("b{}", k), rectangle({0.0, 1.0 * k}, {4.0, 1.0 + k}), "fixed = true");
+    toml += block_toml(fmt::format("b{}", k), rectangle({0.0, 1.0 * k}, {4.0, 1.0 + k}),
+                       k < 2 ? "fixed = true" : "");
   }
   toml += block_toml("cap", rectangle({0.0, 3.0}, {4.0, 3.5}));
   for (const double x : {1.0, 3.0}) {
