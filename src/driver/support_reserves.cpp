@@ -36,7 +36,9 @@ Capacity capacity_of(const LinkLaw &law, const LinkMemory &memory) {
   most.compression = finite(section.compressive_strength * t);
   // The largest plastic moment of all thrusts (dynamics/liner_section.hpp).
   most.moment = finite((section.compressive_strength + tensile) * t * t / 8.0);
-  most.shear = std::min(finite(section.shear_limit), finite(2.0 * most.moment / law.length));
+  const double pressed = std::max({0.0, section.away[0], section.away[1]}) * most.compression;
+  most.shear = std::min({finite(section.shear_limit), finite(section.bond_limit) + pressed,
+                         finite(2.0 * most.moment / law.length)});
   return most;
 }
 

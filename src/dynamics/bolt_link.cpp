@@ -83,7 +83,8 @@ void lose_all(const LinkLaw &law, LinkMemory &memory) {
 }
 
 /// The law of an element of a liner.
-LinkLaw law_of_liner(const SupportType &support, double length) {
+LinkLaw law_of_liner(const SupportType &support, const BoltLink &link) {
+  const double length = link.length;
   const double t = support.thickness;
   const double nu = support.poissons_ratio;
   const double plane_modulus = support.youngs_modulus / (1.0 - nu * nu);
@@ -97,12 +98,18 @@ LinkLaw law_of_liner(const SupportType &support, double length) {
   law.bending_stiffness = rigidity / length;
   law.length = length;
   law.section = section_of(support);
+  // Rock lies on the right: with Q > 0 the first end on the face is drawn into the void.
+  const std::size_t first = link.head_first ? 0 : 1;
+  law.section.away = {link.end[first].away, link.end[1 - first].away};
   return law;
 }
 
 /// Held by the section. What a crack takes is what the element stores less after it: the strength falls at
-/// once, with no deformation that could do work.
+/// once, with no deformation that could do work. A crack that has opened closes without thrust.
 LinkMemory respond_as_liner(const LinkLaw &law, LinkMemory memory) {
+  const double opened = std::max(0.0, memory.extension);
+  const bool is_open = memory.cracked && memory.axial_slip > opened;
+  memory.axial_slip = is_open ? opened : memory.axial_slip;
   const LinerForces trial{law.axial_stiffness * (memory.extension - memory.axial_slip),
                           law.shear_stiffness * (memory.slide - memory.shear_slip),
                           law.bending_stiffness * (memory.turn - memory.turn_slip)};
@@ -123,16 +130,17 @@ LinkMemory respond_as_liner(const LinkLaw &law, LinkMemory memory) {
   memory.axial_slip += slip.axial;
   memory.shear_slip += slip.shear;
   memory.turn_slip += slip.moment;
-  memory.axial_gives = slip.axial != 0.0;
+  memory.axial_gives = is_open || slip.axial != 0.0;
   memory.shear_gives = slip.shear != 0.0;
-  const bool yields = memory.axial_gives || memory.shear_gives || slip.moment != 0.0;
+  const bool yields = slip.axial != 0.0 || memory.shear_gives || slip.moment != 0.0;
   memory.yielded = memory.yielded || yields;
   if (yields) {
     memory.dissipated += cracks
                              ? stored - stored_energy(law, memory)
                              : held.axial * slip.axial + held.shear * slip.shear + held.moment * slip.moment;
   }
-  if (std::abs(held.shear) > law.section.shear_limit) {
+  if (std::abs(held.shear) > law.section.shear_limit ||
+      pull_on_bond(law.section, held) > law.section.bond_limit) {
     memory.dissipated += stored_energy(law, memory);
     take({});
     memory.broken = true;
@@ -144,7 +152,7 @@ LinkMemory respond_as_liner(const LinkLaw &law, LinkMemory memory) {
 
 LinkLaw law_of(const SupportType &support, const BoltLink &link) {
   if (support.kind == SupportType::Kind::liner) {
-    return law_of_liner(support, link.length);
+    return law_of_liner(support, link);
   }
   const bool is_grouted = support.kind == SupportType::Kind::grouted;
   const double stiffness =

@@ -93,6 +93,8 @@ struct LinkEnd {
   std::int64_t block = -1;
   Vec2 point; ///< X, reference axes, m
   Vec2 along; ///< D, from the block of lower id towards the other one
+  /// Half of the angle by which a liner turns away from the rock between this element and the next one, rad.
+  double away = 0.0;
 };
 
 struct BoltLink {

@@ -23,9 +23,18 @@ double share_of(double force, double capacity) {
 } // namespace
 
 LinerSection section_of(const SupportType &support) {
-  return {support.thickness, support.compressive_strength, support.tensile_strength,
+  return {support.thickness,
+          support.compressive_strength,
+          support.tensile_strength,
           support.residual_tensile_strength,
-          std::min(support.adhesion * support.bond_width, support.shear_strength * support.thickness)};
+          support.shear_strength * support.thickness,
+          support.adhesion * support.bond_width,
+          {}};
+}
+
+double pull_on_bond(const LinerSection &section, const LinerForces &forces) {
+  const auto [above, below] = section.away;
+  return std::max(forces.shear + above * forces.axial, below * forces.axial - forces.shear);
 }
 
 double plastic_moment(const LinerSection &section, double tensile_strength, double axial) {
@@ -67,7 +76,8 @@ double strength_used(const LinerSection &section, bool is_cracked, double length
                                       : share_of(forces.axial * t + 6.0 * end, tensile * t * t);
   return std::max({share_of(-forces.axial, section.compressive_strength * t), stretched,
                    share_of(end, plastic_moment(section, tensile, forces.axial)),
-                   share_of(std::abs(forces.shear), section.shear_limit)});
+                   share_of(std::abs(forces.shear), section.shear_limit),
+                   share_of(pull_on_bond(section, forces), section.bond_limit)});
 }
 
 } // namespace gcpdda

@@ -15,12 +15,17 @@
 // constant moment M by M_p(N), then Q, whose moments at the ends are Q L/2, by 2 (M_p - |M|)/L. Thrust comes
 // first because it alone cannot be taken by the other two.
 //
-// Q is also the force by which one of the two blocks pulls the liner off. Beyond adhesion times the width of
-// the bond beside a joint the liner peels off [Barrett and McCreath, Tunn. Undergr. Space
-// Technol. 10 (1995) 79-89],
-// beyond the shear strength times t the block punches through it; either way the element is broken for good.
+// Q is also the force by which one of the two blocks pulls the liner off. Where the liner turns away from the
+// rock by 2 a between an element and the next one, thrust presses it on to the rock with -2 a N, half of it
+// beside either joint, as the pressure N/r behind a ring. Where
+//     |Q| + a N
+// at the block that pulls is beyond adhesion times the width of the bond beside a joint, the liner peels off
+// [Barrett and McCreath, Tunn. Undergr. Space Technol. 10 (1995) 79-89, on flat ones]; where |Q| is beyond
+// the shear strength times t, the block punches through. Either way the element is broken for good.
 
 #include "gcpdda/model/support.hpp"
+
+#include <array>
 
 namespace gcpdda {
 
@@ -30,8 +35,11 @@ struct LinerSection {
   double tensile_strength = SupportType::unlimited;
   double residual_strength = 0.0;
   double shear_limit = SupportType::unlimited; ///< largest |Q|, N/m
+  double bond_limit = SupportType::unlimited;  ///< largest |Q| + a N, N/m
+  std::array<double, 2> away{};                ///< a at the block that pulls where Q > 0, where Q < 0; rad
 };
 
+/// Of a liner that goes straight on.
 LinerSection section_of(const SupportType &support);
 
 /// What an element bears.
@@ -43,6 +51,9 @@ struct LinerForces {
 
 /// Capacity in bending at a thrust (N/m, tension positive) with a tensile strength (Pa); N.
 double plastic_moment(const LinerSection &section, double tensile_strength, double axial);
+
+/// By how much of the bond a block pulls the liner off, N/m.
+double pull_on_bond(const LinerSection &section, const LinerForces &forces);
 
 /// An extreme fibre of an element of some length (m) has more than the tensile strength.
 bool is_overstretched(const LinerSection &section, double length, const LinerForces &forces);

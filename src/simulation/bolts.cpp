@@ -52,7 +52,7 @@ LinkEnd in_reference_axes(const BlockSystem &system, std::size_t row, const Link
     const Rotation turn = Rotation::of(system.displacement[row].r);
     back = {turn.c, turn.s, -turn.s, turn.c};
   }
-  return {world.block, back(world.point - system.centroid(row)), back(world.along)};
+  return {world.block, back(world.point - system.centroid(row)), back(world.along), world.away};
 }
 
 struct LinkRecord {
@@ -445,7 +445,7 @@ void Bolts::to_numbers(const std::vector<BoltLink> &links, std::vector<std::int6
                     link.overhang[0], link.overhang[1], m.axial_slip,  m.shear_slip,  m.dissipated,
                     m.axial,          m.shear,          m.extension,   m.slide,       m.turn_slip,
                     m.moment,         m.turn,           link.grout[0], link.grout[1], m.steel_slip,
-                    m.grout_slip});
+                    m.grout_slip,     a.away,           b.away});
   }
 }
 
@@ -460,7 +460,8 @@ Bolts Bolts::from_numbers(std::span<const std::int64_t> counts, std::span<const 
     const auto x = numbers.subspan(k * numbers_per_link, numbers_per_link);
     BoltLink &link = bolts.links_.emplace_back();
     link.bolt = static_cast<std::int32_t>(c[0]);
-    link.end = {LinkEnd{c[1], {x[0], x[1]}, {x[2], x[3]}}, LinkEnd{c[2], {x[4], x[5]}, {x[6], x[7]}}};
+    link.end = {LinkEnd{c[1], {x[0], x[1]}, {x[2], x[3]}, x[26]},
+                LinkEnd{c[2], {x[4], x[5]}, {x[6], x[7]}, x[27]}};
     link.head_first = c[3] != 0;
     link.length = x[8];
     link.bond_length = x[9];

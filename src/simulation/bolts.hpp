@@ -141,7 +141,7 @@ public:
 
   /// For a checkpoint, and back.
   static constexpr std::size_t counts_per_link = 8;
-  static constexpr std::size_t numbers_per_link = 26;
+  static constexpr std::size_t numbers_per_link = 28;
   static void to_numbers(const std::vector<BoltLink> &links, std::vector<std::int64_t> &counts,
                          std::vector<double> &numbers);
   static Bolts from_numbers(std::span<const std::int64_t> counts, std::span<const double> numbers);

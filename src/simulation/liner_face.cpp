@@ -145,6 +145,23 @@ BoltLink element_between(std::int64_t index, std::int64_t first, Vec2 from, std:
   return link;
 }
 
+Vec2 direction_of(const BoltLink &element) {
+  return element.head_first ? element.end[0].along : -element.end[0].along;
+}
+
+/// Where an element ends at the node from which the other one goes on, the liner turns; rock lies on the
+/// right.
+void note_turn(BoltLink &element, BoltLink &next) {
+  LinkEnd &tail = element.end[element.head_first ? 1 : 0];
+  LinkEnd &head = next.end[next.head_first ? 0 : 1];
+  if (tail.block == head.block && tail.point == head.point) {
+    const Vec2 from = direction_of(element);
+    const Vec2 to = direction_of(next);
+    tail.away = 0.5 * std::atan2(cross(from, to), dot(from, to));
+    head.away = tail.away;
+  }
+}
+
 } // namespace
 
 LinerPath path_of(const Liner &liner, double thickness, bool has_rock_on_right) {
@@ -229,6 +246,9 @@ LinerElements elements_of(std::int64_t index, const LinerPath &path, double thic
       elements.links.push_back(element_between(index, stretches[k].block, chain.node_of(stretches[k]),
                                                next.block, chain.node_of(next)));
     }
+  }
+  for (std::size_t k = 0; k < elements.links.size(); ++k) {
+    note_turn(elements.links[k], elements.links[k + 1 == elements.links.size() ? 0 : k + 1]);
   }
   return elements;
 }

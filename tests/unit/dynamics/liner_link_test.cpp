@@ -311,6 +311,57 @@ TEST(LinerLink, PeelsOffForGood) {
   EXPECT_DOUBLE_EQ(bonded.section.shear_limit, 3e6 * thickness);
 }
 
+// Where the liner turns away from the rock, thrust presses it on: half of -2 a N beside either joint, at the
+// end that is pulled by Q.
+TEST(LinerLink, ThrustHoldsALinerThatTurnsAgainstTheRock) {
+  constexpr double bond = 0.5e6 * 0.04;
+  constexpr double away = 0.1;
+  SupportType support = concrete();
+  support.adhesion = 0.5e6;
+  support.bond_width = 0.04;
+  for (const bool head_first : {true, false}) {
+    BoltLink link = element();
+    link.head_first = head_first;
+    link.end[head_first ? 0 : 1].away = away; // the first end on the face, which Q > 0 draws off
+    const LinkLaw law = law_of(support, link);
+    for (const double thrust : {0.0, 1e5}) {
+      const double extension = -thrust / law.axial_stiffness;
+      const auto breaks = [&](double shear) {
+        return respond(law, {}, extension, shear / law.shear_stiffness).broken;
+      };
+      EXPECT_FALSE(breaks(0.999 * (bond + away * thrust)));
+      EXPECT_TRUE(breaks(1.001 * (bond + away * thrust)));
+      EXPECT_FALSE(breaks(-0.999 * bond));
+      EXPECT_TRUE(breaks(-1.001 * bond)) << "the other end goes straight on";
+    }
+    EXPECT_TRUE(respond(law, {}, 1.001 * bond / (away * law.axial_stiffness), 0.0).broken)
+        << "tension peels it";
+  }
+}
+
+// Plain shotcrete that has opened bears no thrust before its crack has closed, and all of it then.
+TEST(LinerLink, ACrackClosesWithoutThrust) {
+  for (const double residual : {0.0, 0.5e6}) {
+    SupportType support = concrete();
+    support.tensile_strength = 1e6;
+    support.residual_tensile_strength = residual;
+    const LinkLaw law = law_of(support, element());
+    constexpr double width = 1e-3;
+    LinkMemory memory = respond(law, {}, width, 0.0);
+    ASSERT_TRUE(memory.cracked);
+    EXPECT_DOUBLE_EQ(memory.axial, residual * thickness);
+    for (const double share : {0.8, 0.5, 0.0}) {
+      memory = respond(law, memory, share * width, 0.0);
+      EXPECT_NEAR(memory.axial, 0.0, 1e-6) << share;
+    }
+    memory = respond(law, memory, -1e-5, 0.0);
+    EXPECT_DOUBLE_EQ(memory.axial, -1e-5 * law.axial_stiffness);
+    EXPECT_NEAR(respond(law, respond(law, {}, width, 0.0), -1e-5, 0.0).axial, -1e-5 * law.axial_stiffness,
+                1e-6)
+        << "in one step";
+  }
+}
+
 // Work along a random path is what is stored and what is gone. The trapezoid of the work is wrong by
 // k step^2/2 for each of the three forces in a step in which one of them begins or ends yielding, or in which
 // the capacity of one changes with another; where a crack takes a force at once the work is that of the step.
