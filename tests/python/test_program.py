@@ -12,6 +12,7 @@ from conftest import SCENES, SOURCE
 
 import gcpdda
 from gcpdda.errors import error_of
+from gcpdda.program import _outcome_of_search
 from gcpdda.result import path_parts
 
 
@@ -125,6 +126,20 @@ def test_shipped_scenes_survive_reading_and_writing(path, tmp_path):
     assert before == after
 
 
+def test_scenes_with_a_byte_order_mark_are_read(tmp_path):
+    """As some editors write it, and as the program reads it."""
+    path = tmp_path / "marked.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + ("# höchste\r\n" + sliding_block().toml()).encode())
+    scene = gcpdda.Scene.read(path)
+    assert scene.tables == tomllib.loads(sliding_block().toml())
+    assert gcpdda.run(scene, ranks=1, out=tmp_path / "marked").verdict == "completed"
+    assert gcpdda.run(path, ranks=1, out=tmp_path / "path").verdict == "completed"
+    for text in (b"[run]\nduration = \n", b"# \xff\n"):
+        path.write_bytes(text)
+        with pytest.raises(tomllib.TOMLDecodeError, match="marked.toml: "):
+            gcpdda.Scene.read(path)
+
+
 def test_files_of_a_scene_are_found_from_its_new_place(tmp_path):
     scene = gcpdda.Scene.read(SCENES / "seismic_slope.toml")
     gcpdda.inspect(scene)
@@ -195,6 +210,32 @@ def test_exit_codes_are_exceptions(tmp_path):
         gcpdda.run(tmp_path / "missing.toml", ranks=1, out=tmp_path / "missing")
     with pytest.raises(FileNotFoundError, match="nowhere"):
         gcpdda.run(scene, ranks=1, program=tmp_path / "nowhere")
+
+
+def test_a_search_without_a_bracket_says_what_came_out(tmp_path):
+    """A block on a plane of 30 degrees with a friction angle of 10 degrees slides with its strength; it holds with
+    strengths divided by 0.2 and by 0.3."""
+    scene = sliding_block(fidelity="rigid")
+    scene.joint("default", friction_angle_deg=10.0)
+    del scene.tables["run"]["duration"]
+    scene.stage("weight", "settle", limit=2.0)
+    for ranks in (1, 2):
+        with pytest.raises(gcpdda.Undecided) as caught:
+            gcpdda.fos(scene, ranks=ranks, out=tmp_path / str(ranks), from_=0.2, to=0.3)
+        assert "\nfailed: stage 'weight' has failed" in caught.value.output  # the run with the full strength
+        assert str(caught.value) == "the blocks still hold at 0.3, no factor tried made them fail"
+    with pytest.raises(gcpdda.FileError, match="/1 holds a search for the factor of safety already"):
+        gcpdda.fos(scene, ranks=1, out=tmp_path / "1", from_=0.2, to=0.3)
+    with pytest.raises(gcpdda.Undecided, match="^the blocks fail already at 1, the smallest factor tried$"):
+        gcpdda.fos(scene, ranks=1, out=tmp_path / "1", from_=1, to=2, overwrite=True)
+
+
+def test_the_outcome_of_a_search_is_not_that_of_an_earlier_one(tmp_path):
+    earlier = "the blocks fail already at 1, the smallest factor tried\nstrengths divided: friction of all\n"
+    (tmp_path / "fos.txt").write_text(earlier)
+    output = "failed: stage 'a' has failed\nthe blocks do not settle\n" + 70 * "-" + "\nPrimary job  terminated\n" \
+        + 70 * "-"
+    assert _outcome_of_search(tmp_path, output) == "the blocks do not settle"
 
 
 def test_exit_codes_are_those_of_the_program():

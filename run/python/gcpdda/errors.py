@@ -63,10 +63,15 @@ _CLASSES = {1: InternalError, 2: UsageError, 3: SceneError, 4: FileError, 5: Num
             7: Undecided}
 
 
-def error_of(exit_code, output, path):
-    """The exception for an exit code, with the lines of the program that tell why as its message."""
-    lines = [line for line in output.splitlines() if line.strip()]
-    telling = [line for line in lines if re.search(r"\berror\b|^failed|^undecided|^stopped", line)
-               and not line.startswith(("mpirun", "Primary job", "----"))]
-    message = "\n".join(telling or lines[-5:]) or f"the program ended with exit code {exit_code}"
+def program_lines(output):
+    """The lines of an output that are not empty, without what mpirun says about the exit code behind them."""
+    own = re.split(r"^-{20,}\n(?:Primary job|mpirun)", output, maxsplit=1, flags=re.M)[0]
+    return [line for line in own.splitlines() if line.strip()]
+
+
+def error_of(exit_code, output, path, outcome=None):
+    """The exception for an exit code. Its message is `outcome`, or the lines of the program that tell why."""
+    lines = program_lines(output)
+    telling = [line for line in lines if re.search(r"\berror\b|^failed|^undecided|^stopped", line)]
+    message = outcome or "\n".join(telling or lines[-5:]) or f"the program ended with exit code {exit_code}"
     return _CLASSES.get(exit_code, InternalError)(message, exit_code, output, path)

@@ -11,11 +11,12 @@ import sys
 import threading
 import tomllib
 
-from .errors import GcpddaError, NumericalError, Stopped, Undecided, error_of
+from .errors import GcpddaError, NumericalError, Stopped, Undecided, error_of, program_lines
 from .result import Ensemble, Result, Safety
-from .scene import Scene, toml_value
+from .scene import Scene, read_toml, toml_value
 
 FILES_EXIT_CODE = 4  # a file cannot be read or written, or the result folder holds another run
+NUMERICAL_EXIT_CODE = 5  # this code and those above it are outcomes of a computation
 _HERE = pathlib.Path(__file__).resolve().parent
 
 
@@ -166,8 +167,21 @@ def _execute(task, scene, ranks, values, out, overwrite, progress, executable, w
     if process.returncode == FILES_EXIT_CODE and written is not None:
         _put_back(written, before)
     if process.returncode != 0:
-        raise error_of(process.returncode, output, out if out.exists() else None)
+        of_search = task == "fos" and process.returncode >= NUMERICAL_EXIT_CODE
+        outcome = _outcome_of_search(out, output) if of_search else None
+        raise error_of(process.returncode, output, out if out.exists() else None, outcome)
     return output
+
+
+def _outcome_of_search(out, output):
+    """What a search came to: the sentences with which its report begins, or its last line where no report is written.
+    The lines of single runs, of which the output has more, say something else."""
+    lines, report = program_lines(output), out / "fos.txt"
+    written = report.read_text(errors="replace").splitlines() if report.exists() else []
+    sentences = list(itertools.takewhile(lambda line: not line.startswith("strengths divided: "), written))
+    if sentences and set(sentences) <= set(lines):  # else the report is that of an earlier search
+        return "\n".join(sentences)
+    return lines[-1] if lines else None
 
 
 def _written(scene, path):
@@ -175,7 +189,7 @@ def _written(scene, path):
     if not scene.is_read_from(path):
         before = path.read_bytes() if path.exists() else None
         return scene.write(path), path, before
-    if tomllib.loads(path.read_text()) != tomllib.loads(scene.toml()):
+    if read_toml(path) != tomllib.loads(scene.toml()):
         raise FileExistsError(f"the scene was read from {path} and has changed: its file would be replaced; choose "
                               "another result folder with out")
     return path, None, None

@@ -13,6 +13,14 @@ from .result import path_parts
 _PATHS = {("blocks", "file"), ("joint_map", "file"), ("earthquake", "record")}
 
 
+def read_toml(path):
+    """The tables of a scene file, which is UTF-8 with or without a byte order mark."""
+    try:
+        return tomllib.loads(pathlib.Path(path).read_text(encoding="utf-8-sig"))
+    except ValueError as error:  # those of tomllib and of text that is no UTF-8 are such errors
+        raise tomllib.TOMLDecodeError(f"{path}: {error}") from error
+
+
 def toml_value(value):
     """A value as TOML; tables become inline tables."""
     if hasattr(value, "tolist"):  # numpy
@@ -70,7 +78,7 @@ class Scene:
         path = pathlib.Path(path)
         scene = cls(path.stem, path.parent)
         scene.file = path
-        scene.tables = tomllib.loads(path.read_text())
+        scene.tables = read_toml(path)
         return scene
 
     def copy(self):
@@ -156,5 +164,5 @@ class Scene:
         moved = self.copy()
         self._complete_paths(moved.tables)
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(moved.toml())
+        path.write_text(moved.toml(), encoding="utf-8")
         return path
