@@ -106,6 +106,17 @@ def test_of_stages_that_end_at_the_same_time(tmp_path):
     assert "excavates the blocks in region (-9, 0) (9, 0) (9, 9) (-9, 9)" in text
 
 
+def test_of_searches_and_ensembles_that_have_not_ended(tmp_path):
+    """run/report.py and `gcpdda report` say what the folder is and what to do."""
+    for name, there, words in (("search", "trials", "has not ended.*--overwrite"),
+                               ("ensemble", "ensemble.toml", "has not ended.*repeat its call")):
+        folder = tmp_path / name
+        (folder / there).mkdir(parents=True)
+        said = subprocess.run([SOURCE / "run" / "report.py", folder], capture_output=True, text=True)
+        assert said.returncode == 4 and re.search(words, said.stderr), said.stderr
+        assert not (folder / "report.html").exists()
+
+
 def test_of_a_run_with_bolts_and_water(leaning, tmp_path):
     headings, _, text = check(gcpdda.report(leaning.path, tmp_path / "leaning.html", frames=4))
     assert "Bolts" in headings and "cable" in text and "Water pressure" in text

@@ -410,6 +410,101 @@ def test_pictures_use_the_gravity_and_damping_that_stages_set(tmp_path):
     assert result.plot.rayleigh().axes[0].texts[0].get_text() == "0.05 at 5 Hz"
 
 
+def test_frames_of_a_run_that_goes_on_are_complete(leaning, lined, tmp_path):
+    """The program writes the files of a frame one after the other: blocks, contacts, bolts, liners."""
+    for one, kinds in ((leaning, ("contacts", "bolts")), (lined, ("contacts", "liners"))):
+        folder = tmp_path / one.path.name
+        shutil.copytree(one.path, folder)
+        (folder / "summary.json").unlink()
+        last = one.frame("last").number
+        for kind in kinds:
+            (folder / "frames" / f"{kind}_{last:06}.hdf").rename(folder / kind)
+            result = gcpdda.Result(folder)
+            assert result.frame("last").number == last - 1 and len(result.frames) == last
+            (folder / kind).rename(folder / "frames" / f"{kind}_{last:06}.hdf")
+            assert result.frame("last").number == last
+    # Where the frame before has no contacts either, they are not waited for.
+    for k in (last - 1, last):
+        (folder / "frames" / f"contacts_{k:06}.hdf").rename(folder / f"{k}")
+    assert len(gcpdda.Result(folder).frames) == last + 1
+    for k in (last - 1, last):
+        (folder / f"{k}").rename(folder / "frames" / f"contacts_{k:06}.hdf")
+    # Files that are gone from the middle, or from the end of a run that has ended, hide no frame.
+    (folder / "frames" / f"contacts_{last - 1:06}.hdf").unlink()
+    assert len(gcpdda.Result(folder).frames) == last + 1
+    shutil.copy(lined.path / "summary.json", folder)
+    (folder / "frames" / f"contacts_{last:06}.hdf").unlink()
+    with pytest.raises(FileNotFoundError, match="has been removed"):
+        gcpdda.Result(folder).frame("last").contacts
+
+
+def test_without_contacts_the_last_frame_is_complete(opening, tmp_path):
+    folder = tmp_path / "copy"
+    shutil.copytree(opening.path, folder)
+    (folder / "summary.json").unlink()
+    for path in (folder / "frames").glob("contacts_*"):
+        path.unlink()
+    scene = folder / "scene.toml"
+    scene.write_text(scene.read_text().replace("[output]\n", "[output]\ncontacts = false\n"))
+    assert "contacts = false" in scene.read_text()
+    last = gcpdda.Result(folder).frame("last")
+    assert last.number == opening.frame("last").number
+    with pytest.raises(FileNotFoundError, match="unless the scene has output.contacts = false"):
+        last.contacts
+
+
+def test_monitors_by_the_names_of_supports(opening, leaning, lined, tmp_path):
+    """Only the tables of the program are no histories: a scene without bolts may have a point of this name."""
+    scene = gcpdda.Scene(name="named", fidelity="rigid", duration=0.05)
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=30)
+    scene.block("floor", [[-5, -1], [5, -1], [5, 0], [-5, 0]], "rock", fixed=True)
+    scene.block("block", [[-1, 0], [1, 0], [1, 2], [-1, 2]], "rock")
+    for name in ("bolts", "liners"):
+        scene.monitor(name=name, point=[0.5, 0.5])
+    result = gcpdda.run(scene, ranks=1, out=tmp_path / "named")
+    assert result.histories == ["bolts", "liners"]
+    assert "x[m]" in result.history("bolts")
+    assert result.bolts.empty and result.liners.empty
+    with pytest.raises(ValueError, match="no history of bolts"):
+        result.plot.bolts()
+    for one, there in ((opening, []), (leaning, ["bolts"]), (lined, ["liners"])):
+        assert one.supports == there and not {"energy", "bolts", "liners"} & set(one.histories)
+        assert [len(one.bolts) > 0, len(one.liners) > 0] == ["bolts" in there, "liners" in there]
+
+
+def test_searches_and_ensembles_that_have_not_ended(search, members, tmp_path):
+    """What is there when the program was killed: trials and the settled state, members, but no result."""
+    folder = tmp_path / "search"
+    (folder / "trials").mkdir(parents=True)
+    shutil.copytree(search.path / "settled", folder / "settled")
+    found = gcpdda.open_folder(folder)
+    assert isinstance(found, gcpdda.Safety) and found.summary is None
+    assert found.settled.verdict == "settled" and len(found.settled.frame("last").blocks)
+    parts = ("factor", "holds", "fails", "bound", "trials", "blocks", "mechanism")
+    advice = f"has not ended.*--out {folder} --overwrite.*--settled {folder}/settled"
+    for name in parts:
+        with pytest.raises(FileNotFoundError, match=advice):
+            getattr(found, name)
+    (folder / "settled" / "summary.json").unlink()
+    with pytest.raises(FileNotFoundError, match="--overwrite$"):
+        found.factor
+    for name in parts:
+        with pytest.raises(FileNotFoundError, match="not the folder of a search"):
+            getattr(gcpdda.Safety(tmp_path / "nothing"), name)
+
+    folder = tmp_path / "ensemble"
+    folder.mkdir()
+    shutil.copy(members.path / "ensemble.toml", folder)
+    found = gcpdda.open_folder(folder)
+    assert isinstance(found, gcpdda.Ensemble) and found.summary is None
+    for name in ("members", "probability_of_failure"):
+        with pytest.raises(FileNotFoundError, match="has not ended.*repeat its call"):
+            getattr(found, name)
+        with pytest.raises(FileNotFoundError, match="not the folder of an ensemble"):
+            getattr(gcpdda.Ensemble(tmp_path / "nothing"), name)
+
+
 def test_fos_and_ensemble(search, members):
     assert search.holds < search.factor < search.fails
     assert search.mechanism.verdict == "failed"

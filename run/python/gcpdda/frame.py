@@ -115,7 +115,7 @@ class Frame:
 
     @property
     def _contact_path(self):
-        return self.path.with_name(self.path.name.replace("frame_", "contacts_"))
+        return self._path_of("contacts")
 
     @property
     def has_contacts(self):
@@ -123,9 +123,31 @@ class Frame:
 
     def expect_contacts(self):
         """Raises FileNotFoundError where there are none."""
-        if not self.has_contacts:
-            raise FileNotFoundError(f"{self._contact_path} does not exist: contacts, and states of joints, are written "
-                                    "unless the scene has output.contacts = false")
+        if self.has_contacts:
+            return
+        reason = ("the file has been removed, or the run was ended before the frame was complete; compute the folder "
+                  "again, or take another frame" if self._writes_contacts
+                  else "contacts, and states of joints, are written unless the scene has output.contacts = false")
+        raise FileNotFoundError(f"{self._contact_path} does not exist: {reason}")
+
+    @property
+    def _writes_contacts(self):
+        return self.result.scene.get("output", {}).get("contacts", True)
+
+    @property
+    def has_all_files(self):
+        """True where the files of contacts, bolts and liners are there that the scene asks for. Kinds that the frame
+        before has none of do not count."""
+        if not (self.result.path / "scene.toml").exists():
+            return True
+        kinds = [*self.result.supports, *(["contacts"] if self._writes_contacts else [])]
+        before = Frame(self.result, self.number - 1, self.path.with_name(f"frame_{self.number - 1:06}.hdf"))
+        if before.path.exists():
+            kinds = [kind for kind in kinds if before._path_of(kind).exists()]
+        return all(self._path_of(kind).exists() for kind in kinds)
+
+    def _path_of(self, kind):
+        return self.path.with_name(self.path.name.replace("frame_", f"{kind}_"))
 
     @property
     def contact_lines(self):
@@ -220,7 +242,7 @@ class Frame:
     @functools.cached_property
     def _bolt_data(self):
         import h5py
-        path = self.path.with_name(self.path.name.replace("frame_", "bolts_"))
+        path = self._path_of("bolts")
         if not path.exists():
             return [], {name: np.empty(0) for name in ("axial_force", "shear_force", "extension", "slide")} | {
                 name: np.empty(0, dtype=int) for name in ("bolt", "support", "state")}
@@ -247,7 +269,7 @@ class Frame:
     @functools.cached_property
     def _liner_data(self):
         import h5py
-        path = self.path.with_name(self.path.name.replace("frame_", "liners_"))
+        path = self._path_of("liners")
         if not path.exists():
             return np.empty((0, 2, 2)), {name: np.empty(0) for name in LINER_NUMBERS} | {
                 name: np.empty(0, dtype=int) for name in ("liner", "support", "state", "cracked")}

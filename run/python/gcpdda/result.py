@@ -244,10 +244,12 @@ class Result(Folder):
     def frames(self):
         """All frames that are complete. While a run goes on there are more of them each time."""
         known = self.__dict__.setdefault("_frames", {})
-        for path in (self.path / "frames").glob("frame_*.hdf"):
-            number = int(path.stem.split("_")[1])
-            if number not in known:
-                known[number] = Frame(self, number, path)
+        has_ended = (self.path / "summary.json").exists()  # before the files are looked for: then all of them are there
+        found = {int(path.stem.split("_")[1]): path for path in (self.path / "frames").glob("frame_*.hdf")}
+        for number in found.keys() - known.keys():
+            frame = Frame(self, number, found[number])
+            if has_ended or number < max(found) or frame.has_all_files:  # files are written frame by frame
+                known[number] = frame
         return [known[number] for number in sorted(known)]
 
     def frame(self, which="last"):
@@ -341,7 +343,15 @@ class Result(Folder):
     @property
     def _monitors(self):
         names = sorted(path.stem for path in (self.path / "history").glob("*.csv"))
-        return [name for name in names if name not in ("energy", "bolts", "liners")]
+        return [name for name in names if name not in ("energy", *(self.supports if names else ()))]
+
+    @functools.cached_property
+    def supports(self):
+        """Which of "bolts" and "liners" the scene has. Where it has none, a monitor may have that name."""
+        tables = {"bolts": ("bolt", "bolt_pattern"), "liners": ("liner",)}
+        if not (self.path / "scene.toml").exists():
+            return list(tables)
+        return [name for name, keys in tables.items() if any(self.scene.get(key) for key in keys)]
 
     def _is_profile(self, name):
         with open(self.path / "history" / f"{name}.csv") as file:
@@ -363,16 +373,17 @@ class Result(Folder):
     @property
     def bolts(self):
         """Forces of bolts over time; empty without bolts."""
-        import pandas
-        path = self.path / "history" / "bolts.csv"
-        return read_csv(path) if path.exists() else pandas.DataFrame()
+        return self._support_table("bolts")
 
     @property
     def liners(self):
         """Largest forces of liners over time; empty without liners."""
+        return self._support_table("liners")
+
+    def _support_table(self, name):
         import pandas
-        path = self.path / "history" / "liners.csv"
-        return read_csv(path) if path.exists() else pandas.DataFrame()
+        path = self.path / "history" / f"{name}.csv"
+        return read_csv(path) if path.exists() and name in self.supports else pandas.DataFrame()
 
     @functools.cached_property
     def joint_traces(self):
@@ -416,38 +427,59 @@ class Result(Folder):
 
 
 class Safety(Folder):
-    """The result folder of `gcpdda fos`: factor, holds, fails, bound; trials and blocks as tables."""
+    """The result folder of `gcpdda fos`: factor, holds, fails, bound; trials and blocks as tables. Until the search has
+    ended there is only `settled` and what trials have written: `summary` is None, and the others say what to do."""
 
     @property
     def summary(self):
         return self._json("fos.json")
 
     @property
+    def outcome(self):
+        """`summary`, or FileNotFoundError where the search has not ended."""
+        self._expect_end()
+        return self.summary
+
+    def _expect_end(self):
+        if (self.path / "fos.json").exists():
+            return
+        if not is_search(self.path):
+            raise FileNotFoundError(f"{self.path} is not the folder of a search: it holds no fos.json")
+        words = (f"{self.path} holds a search for the factor of safety that has not ended: fos.json is missing; wait "
+                 f"for its end, or where it was stopped repeat gcpdda fos SCENE.toml --out {self.path} --overwrite")
+        settled = self.path / "settled"
+        if Result(settled).verdict in ("settled", "completed"):
+            words += f", or begin with its settled state: another folder with --out, and --settled {settled}"
+        raise FileNotFoundError(words)
+
+    @property
     def factor(self):
-        return self.summary["factor"]
+        return self.outcome["factor"]
 
     @property
     def holds(self):
         """The largest factor with which the blocks hold."""
-        return self.summary["holds"]
+        return self.outcome["holds"]
 
     @property
     def fails(self):
         """The smallest factor with which they fail."""
-        return self.summary["fails"]
+        return self.outcome["fails"]
 
     @property
     def bound(self):
         """The upper bound of `gcpdda fos --bound`, None where that was not asked for or limit analysis finds none."""
-        return self.summary["bound"]
+        return self.outcome["bound"]
 
     @property
     def trials(self):
+        self._expect_end()
         return read_csv(self.path / "fos_trials.csv")
 
     @property
     def blocks(self):
         """Motion of every block in the trial with the smallest factor that fails."""
+        self._expect_end()
         return read_csv(self.path / "fos_blocks.csv")
 
     @property
@@ -462,24 +494,45 @@ class Safety(Folder):
     @property
     def mechanism(self):
         """The run of the trial with the smallest factor that fails, None where no trial fails."""
-        failed = [trial["factor"] for trial in self.summary["trials"] if trial["verdict"] == "failed"]
+        failed = [trial["factor"] for trial in self.outcome["trials"] if trial["verdict"] == "failed"]
         return self.trial(min(failed)) if failed else None
 
 
 class Ensemble(Folder):
-    """The result folder of `gcpdda ensemble`: summary, and a table with a row for each member."""
+    """The result folder of `gcpdda ensemble`: summary, None until the members are computed, and a table with a row for
+    each member."""
 
     @property
     def summary(self):
         return self._json("ensemble.json")
 
     @property
+    def outcome(self):
+        """`summary`, or FileNotFoundError where members are still to be computed."""
+        self._expect_end()
+        return self.summary
+
+    def _expect_end(self):
+        if (self.path / "ensemble.json").exists():
+            return
+        if not (self.path / "ensemble.toml").exists():
+            raise FileNotFoundError(f"{self.path} is not the folder of an ensemble: it holds no ensemble.json")
+        raise FileNotFoundError(f"{self.path} holds an ensemble that has not ended: ensemble.json is missing; wait for "
+                                "its end, or repeat its call of gcpdda ensemble, which computes the missing members")
+
+    @property
     def members(self):
+        self._expect_end()
         return read_csv(self.path / "ensemble_members.csv", words=["outcome", "message"])
 
     @property
     def probability_of_failure(self):
-        return self.summary["probability_of_failure"]
+        return self.outcome["probability_of_failure"]
+
+
+def is_search(path):
+    """True for the folder of a search for the factor of safety, also of one that has not ended."""
+    return any((path / name).exists() for name in ("fos.json", "settled", "trials"))
 
 
 def open_folder(path):
@@ -491,4 +544,8 @@ def open_folder(path):
         return Ensemble(path)
     if (path / "scene.toml").exists() or (path / "frames").is_dir():
         return Result(path)
+    if is_search(path):
+        return Safety(path)
+    if (path / "ensemble.toml").exists():
+        return Ensemble(path)
     raise FileNotFoundError(f"{path} is not a result folder: it holds no scene.toml, fos.json or ensemble.json")

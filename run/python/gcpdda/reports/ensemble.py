@@ -15,7 +15,7 @@ MOST_ROWS = 300
 
 def ensemble_page(ensemble, title):
     page = Page(title)
-    summary, members = ensemble.summary, ensemble.members
+    summary, members = ensemble.outcome, ensemble.members
     probability = summary["probability_of_failure"]
     if probability is None:
         page.verdict("No member has a verdict yet.", "open")

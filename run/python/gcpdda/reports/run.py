@@ -159,7 +159,7 @@ def words_on_changes(stage):
     """What a table [[stage]] excavates and sets, and over how long."""
     words = [f"excavates {key} {', '.join(stage[key])}" for key in ("openings", "blocks") if stage.get(key)]
     if stage.get("region"):
-        words.append("excavates the blocks in region " + " ".join(f"({x:g}, {y:g})" for x, y in stage["region"]))
+        words.append("excavates the blocks in region " + " ".join(f"({x:.10g}, {y:.10g})" for x, y in stage["region"]))
     words += [f"{key} = {stage[key]:g} s" for key in ("relax", "ramp") if stage.get(key)]
     words += [f"{path} = {text_of(value)}" for path, value in stage.get("set", {}).items()]
     return "; ".join(words)

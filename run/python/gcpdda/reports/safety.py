@@ -13,7 +13,7 @@ COLOURS = {"settled": "#2e7d4f", "failed": "#b0332a"}
 
 def safety_page(search, title, frames):
     page = Page(title)
-    summary, settled = search.summary, search.settled
+    summary, settled = search.outcome, search.settled
     # A search without trials has failed before the first one, or has been asked for the bound alone.
     has_failed = not summary["trials"] and summary["fails"] is not None
     page.verdict(*(factor_words(summary) if summary["trials"] or has_failed else bound_words(summary)))

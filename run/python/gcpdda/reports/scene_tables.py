@@ -89,7 +89,9 @@ def sizes(result):
     low, high = frame.points.min(axis=0), frame.points.max(axis=0)
     size = np.sqrt(frame.areas[mobile]) if mobile.any() else np.zeros(1)
     kinds = frame.values("kind")
-    return {"extent": f"x {low[0]:.4g} to {high[0]:.4g} m, y {low[1]:.4g} to {high[1]:.4g} m",
+    x, y = ([f"{end[axis]:.4g}" if abs(end[axis]) < 1e4 else f"{end[axis]:.10g}" for end in (low, high)]
+            for axis in (0, 1))
+    return {"extent": f"x {x[0]} to {x[1]} m, y {y[0]} to {y[1]} m",
             "blocks": f"{int((kinds == 1).sum())} rigid, {int((kinds == 2).sum())} deformable, "
                       f"{int(frame.fixed.sum())} fixed",
             "joints": f"{len(result.joint_traces.lines)}, where edges of two blocks lie on each other at the start",
