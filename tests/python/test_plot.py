@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from conftest import SOURCE
+from matplotlib.quiver import QuiverKey
 
 import gcpdda
 from gcpdda.plot import ARROWS, FIELDS, HISTORIES, JOINTS, style
@@ -57,6 +58,47 @@ def test_other_maps(leaning, opening):
         opening.plot.field("permanent")
     check_map(opening.plot.before_after("stress"))
     assert any("tension of a bolt" in text for text in check_map(leaning.plot.field()))
+
+
+def extents(figure, artists):
+    figure.canvas.draw()
+    return [artist.get_window_extent(figure.canvas.get_renderer()) for artist in artists]
+
+
+def test_keys_do_not_lie_on_each_other(opening):
+    """Those of arrows and crosses above panels that are beside each other, and the titles of the panels."""
+    figure = opening.plot.map("stress", arrows="displacement", crosses=True, frame=["first", 8, "last"])
+    panels = [axes for axes in figure.axes if axes.get_title()]
+    keys = []
+    for axes in panels:
+        arrows = [child for child in axes.get_children() if isinstance(child, QuiverKey)]
+        keys += [axes.title, *axes.texts, *(arrow.text for arrow in arrows)]
+        assert len(axes.texts) + len(arrows) == 2
+    boxes = extents(figure, keys)
+    for k, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[:k])
+    plt.close(figure)
+
+
+def test_axes_in_map_coordinates(tmp_path):
+    """Labels have all their digits, no factor above the axes, and room beside each other."""
+    scene = gcpdda.Scene(name="far", fidelity="rigid", duration=0.01)
+    scene.material("rock", density=2600)
+    scene.joint("default", normal_stiffness=1e9, friction_angle_deg=30)
+    corner = np.array([5450000.0, 4999990.0])
+    scene.block("floor", corner + [[0, 0], [30, 0], [30, 10], [0, 10]], "rock", fixed=True)
+    scene.block("block", corner + [[0, 10], [30, 10], [30, 20], [0, 20]], "rock")
+    figure = gcpdda.run(scene, ranks=1, out=tmp_path / "far").plot.crosses(frame=["first", "last", "last"])
+    figure.canvas.draw()
+    for axes in (axes for axes in figure.axes if axes.get_title()):
+        for axis in (axes.xaxis, axes.yaxis):
+            assert axis.get_offset_text().get_text() == ""
+        shown = [label for label in axes.get_xticklabels() if label.get_text() and label.get_visible()]
+        boxes = extents(figure, shown)
+        assert all(left.x1 < right.x0 for left, right in zip(boxes, boxes[1:]))
+    labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    assert "5000000" in labels
+    plt.close(figure)
 
 
 def test_liners(lined, opening):

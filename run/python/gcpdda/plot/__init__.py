@@ -113,7 +113,7 @@ class Plots:
         if joints:
             layers.append(JointStates() if joints == "state" else JointLines(_known(joints, JOINTS, "joints")))
         layers += [Chains()] if chains else []
-        layers += [Crosses()] if crosses else []
+        layers += [Crosses(key_on_right=bool(arrows))] if crosses else []  # the key of the arrows is on the left
         layers += [Arrows(_known(arrows, ARROWS, "arrows"), start)] if arrows else []
         layers += [Liners(frames, _known(liners, LINERS, "liners by"), moments), Bolts(frames)]
         shown, layers, limits = self._prepared(frames, layers, scale, window)

@@ -369,7 +369,8 @@ class Arrows(Layer):
                              color=self.COLOUR, width=0.0026, headwidth=4.0, headlength=5.0, headaxislength=4.5,
                              minlength=0.4, zorder=6)
         size = nice(0.7 * self.largest * self.factor)
-        axes.quiverkey(arrows, 0.0, 1.03, size / self.factor, f"{size:g} {self.shown_unit}", labelpos="E",
+        share = size / self.factor / per_metre / (window[1] - window[0])[0]  # the tip; the arrow begins at 0
+        axes.quiverkey(arrows, share, 1.03, size / self.factor, f"{size:g} {self.shown_unit}", labelpos="E",
                        coordinates="axes", fontproperties={"size": 8})
 
     def handles(self):
@@ -402,8 +403,8 @@ class Crosses(Layer):
     has_legend = True
     COMPRESSION, TENSION = "#173f70", "#d01c1c"
 
-    def __init__(self, most=400):
-        self.most = most
+    def __init__(self, most=400, key_on_right=False):
+        self.most, self.key_on_right = most, key_on_right
 
     def principal(self, shown, window):
         """Places, principal stresses (n, 2) and unit directions (n, 2, 2: stress, component)."""
@@ -441,8 +442,12 @@ class Crosses(Layer):
         # The scale, above the axes.
         size = nice(self.largest * self.factor)
         share = self.length * size / self.factor / self.largest / (window[1] - window[0])[0]
-        axes.plot([0.0, share], [1.035, 1.035], color=self.COMPRESSION, lw=1.2, transform=axes.transAxes, clip_on=False)
-        axes.text(share + 0.01, 1.035, f"{size:g} {self.unit}", fontsize=8, va="center", transform=axes.transAxes)
+        begin = 1.0 - share if self.key_on_right else 0.0
+        beside = begin - 0.01 if self.key_on_right else share + 0.01
+        axes.plot([begin, begin + share], [1.035, 1.035], color=self.COMPRESSION, lw=1.2, transform=axes.transAxes,
+                  clip_on=False)
+        axes.text(beside, 1.035, f"{size:g} {self.unit}", fontsize=8, va="center", transform=axes.transAxes,
+                  ha="right" if self.key_on_right else "left")
 
     def handles(self):
         entries = [Line2D([], [], color=self.COMPRESSION, lw=1.2, label="compression")]

@@ -77,6 +77,16 @@ def grid_shape(number, size):
     return -(-number // columns), columns
 
 
+def most_ticks(low, high, width):
+    """As many intervals of an axis as leave room for the labels, which are long in map coordinates; at most 9.
+
+    width   of the axis in inches
+    """
+    decimals = 2 if high - low < 8.0 else 0
+    characters = max(len(f"{end:.0f}") for end in (low, high)) + decimals
+    return int(np.clip(72.0 * width / (6.0 * characters + 10.0), 2, 9))
+
+
 def map_figure(number, window, layers, title=None):
     """A figure with `number` panels that show the window, room for the colour bars of the layers, and its panels."""
     low, high = window
@@ -96,6 +106,8 @@ def map_figure(number, window, layers, title=None):
             panel_axes.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]), visible=i < number)
             below = i + columns >= number
             panel_axes.tick_params(labelbottom=below)
+            panel_axes.ticklabel_format(style="plain", useOffset=False)  # a factor would lie on the keys above the axes
+            panel_axes.locator_params(axis="x", nbins=most_ticks(low[0], high[0], panel))
             panel_axes.set_xlabel("x (m)" if below else "")
             panel_axes.set_ylabel("y (m)" if i % columns == 0 else "")
         handles = []
