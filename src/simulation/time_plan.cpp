@@ -37,6 +37,32 @@ void plan_checkpoints(double interval, TimePlan &plan, Diagnostics &notes) {
   }
 }
 
+/// Tells of an interval of the histories that shortens the automatic step.
+void doubt_history_interval(const RunSettings &run, OutputSettings output, double bound, const TimePlan &plan,
+                            Diagnostics &notes) {
+  constexpr double tells = 2.0; // times more steps
+  constexpr double warns = 10.0;
+  if (run.time_step > 0.0 || output.history_interval >= output.interval) {
+    return;
+  }
+  const double asked = output.history_interval;
+  output.history_interval = output.interval;
+  Diagnostics unsaid;
+  const double without = plan_time(run, output, bound, unsaid).time_step;
+  const double ratio = without / plan.time_step;
+  if (ratio >= tells) {
+    notes.push_back(
+        {ratio >= warns ? Severity::warning : Severity::info,
+         {},
+         fmt::format("output.history_interval = {:g} s shortens the time step to {:g} s", asked,
+                     plan.time_step),
+         fmt::format("every row of a history falls on a step, the run takes {:.0f} times more steps "
+                     "than with {:g} s",
+                     ratio, without),
+         fmt::format("try a longer history_interval, such as {:g}", output.interval)});
+  }
+}
+
 } // namespace
 
 TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double bound, Diagnostics &notes) {
@@ -90,6 +116,7 @@ TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double 
   plan.num_steps = steps(run.duration);
   plan.steps_per_output = steps(output.interval);
   plan.steps_per_history = steps(output.history_interval);
+  doubt_history_interval(run, output, bound, plan, notes);
   plan_checkpoints(output.checkpoint_interval, plan, notes);
   return plan;
 }

@@ -47,9 +47,9 @@ struct TimePlan {
 /// divides them and meets the bound.
 ///
 /// @param bound  largest recommended step (s), infinite where forces move no block
-/// @param notes  gets a warning when the scene's step lies above the bound, an info when it was lowered or
-///               when checkpoints fall on other times than asked for, an error when duration and intervals
-///               have no common step
+/// @param notes  gets a warning when the scene's step lies above the bound or the interval of the histories
+///               makes the automatic one far shorter, an info when it was lowered or when checkpoints fall on
+///               other times than asked for, an error when duration and intervals have no common step
 TimePlan plan_time(const RunSettings &run, const OutputSettings &output, double bound, Diagnostics &notes);
 
 /// A plan with the step of a run that goes on at a time (s), where the step of `planned` is smaller or none

@@ -137,6 +137,24 @@ TEST(TimePlan, HistoryMayBeFinerOrCoarserThanFrames) {
   EXPECT_EQ(coarser.plan.steps_per_history, 20);
 }
 
+TEST(TimePlan, TellsOfAHistoryThatShortensTheStep) {
+  const Planned shorter = plan(1.0, 0.1, 0.0, 0.03, 0.005);
+  ASSERT_EQ(shorter.notes.size(), 1U);
+  EXPECT_EQ(shorter.notes[0].severity, Severity::info);
+  const Planned tiny = plan(1.0, 0.1, 0.0, 5e-4, 1e-6);
+  EXPECT_EQ(tiny.plan.time_step, 1e-6);
+  ASSERT_EQ(tiny.notes.size(), 1U);
+  EXPECT_EQ(to_string(tiny.notes[0]),
+            "warning: output.history_interval = 1e-06 s shortens the time step to 1e-06 s, every row of a "
+            "history falls on a step, the run takes 500 times more steps than with 0.0005 s, try a longer "
+            "history_interval, such as 0.1");
+  // A step that is given, that is hardly shortened, or that frames ask for, too.
+  EXPECT_TRUE(plan(1.0, 0.1, 1e-6, 5e-4, 1e-6).notes.empty());
+  EXPECT_TRUE(plan(1.0, 0.1, 0.0, 5e-4, 4e-4).notes.empty());
+  EXPECT_TRUE(plan(1.0, 1e-6, 0.0, 5e-4, 1e-6).notes.empty());
+  EXPECT_TRUE(plan(1.0, 1e-6, 0.0, 5e-4, 0.1).notes.empty());
+}
+
 TEST(TimePlan, IncommensurableTimesAreAnError) {
   const Planned p = plan(1.0, 1.0 / std::sqrt(2.0), 0.0, 0.1);
   ASSERT_EQ(p.count(Severity::error), 1);
