@@ -21,6 +21,7 @@
 #include "gcpdda/io/scene_reader.hpp"
 #include "gcpdda/parallel/communicator.hpp"
 #include "io/hdf5/unclosed_files.hpp"
+#include "io/results/result_directory.hpp"
 #include "io/scene/record_file.hpp"
 #include "io/scene/scene_reference.hpp"
 #include "simulation/plausibility.hpp"
@@ -135,6 +136,7 @@ ExitCode run(const Communicator &world, const Arguments &arguments) {
 }
 
 ExitCode restart(const Communicator &world, Arguments arguments) {
+  on_root(world, [&] { expect_run_to_restart(arguments.directory); });
   const std::filesystem::path scene = std::filesystem::path(arguments.directory) / "scene.toml";
   arguments.scene = scene.string();
   const bool has_other_maps =

@@ -92,6 +92,8 @@ const std::vector<Failure> failures{
     {"FosOfARunAndASearch", {"fos", "s.toml", "--out", "both"}, 4, "both holds a run already, choose another folder with --out\n"},
     {"RestartOfNoFolder", {"restart", "none"}, 4, "none/scene.toml: error: cannot open the scene"},
     {"RestartOfAFile", {"restart", "s.toml"}, 4, "s.toml/scene.toml: error: cannot open the scene"},
+    {"RestartOfASearch", {"restart", "search"}, 4, "search holds a search for the factor of safety, and a restart goes on with a run: repeat gcpdda fos with --out search --overwrite\n"},
+    {"RestartOfAnEnsemble", {"restart", "members"}, 4, "members holds an ensemble, and a restart goes on with a run: repeat the call of gcpdda ensemble, which computes the members that are missing\n"},
 };
 // clang-format on
 

@@ -80,6 +80,9 @@ TEST(Fos, WritesWhatItFinds) {
   EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
   const Outcome inside = run_gcpdda(0, {"fos", "plane.toml", "--out", "results/plane_fos/settled"}, folder);
   EXPECT_EQ(inside.exit_code, 4) << "the folder of a run";
+  const Outcome restart = run_gcpdda(2, {"restart", "results/plane_fos"}, folder);
+  EXPECT_EQ(restart.exit_code, 4);
+  EXPECT_NE(restart.err.find("--settled results/plane_fos/settled\n"), std::string::npos) << restart.err;
   std::vector<std::string> replace = call;
   replace.back() = "1.1"; // the trial at 1, where nothing changes, needs no time
   replace.insert(replace.end(), {"--overwrite", "--set", "fos.limit=0.01", "--set", "fos.patience=0"});

@@ -114,6 +114,29 @@ bool holds_ensemble(const fs::path &directory) {
   return fs::exists(directory / "ensemble.toml");
 }
 
+void expect_run_to_restart(const fs::path &directory) {
+  std::error_code unseen; // what opens the scene says so
+  if (fs::exists(directory / "scene.toml", unseen) || unseen) {
+    return;
+  }
+  const std::string name = directory.string();
+  if (holds_search(directory)) {
+    throw FileError(fmt::format(
+        "{0} holds a search for the factor of safety, and a restart goes on with a run: repeat gcpdda fos "
+        "with "
+        "--out {0} --overwrite{1}",
+        name,
+        fs::exists(directory / "settled" / "summary.json")
+            ? fmt::format(", or begin with its settled state: another folder with --out, and --settled {}",
+                          (directory / "settled").string())
+            : std::string()));
+  }
+  if (holds_ensemble(directory)) {
+    throw FileError(name + " holds an ensemble, and a restart goes on with a run: repeat the call of gcpdda "
+                           "ensemble, which computes the members that are missing");
+  }
+}
+
 void prepare_result_directory(const fs::path &directory, bool overwrite, const std::string &resolved_scene) {
   try {
     clear(directory, overwrite);

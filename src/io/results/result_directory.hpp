@@ -16,6 +16,10 @@ bool holds_search(const std::filesystem::path &directory);
 /// Whether the folder holds an ensemble. Root only.
 bool holds_ensemble(const std::filesystem::path &directory);
 
+/// Throws FileError where the folder holds a search or an ensemble in place of a run, and says how these go
+/// on. Root only.
+void expect_run_to_restart(const std::filesystem::path &directory);
+
 /// Makes the folder of a run, root only. A folder that holds a run is refused with FileError unless
 /// `overwrite`, which removes only what a run writes. A folder that holds a search or an ensemble is always
 /// refused: with a run in it neither could go on. Writes scene.toml (the resolved text).
