@@ -12,6 +12,7 @@
 #include "blockgen/region_cutter.hpp"
 #include "blockgen/set_statistics.hpp"
 #include "gcpdda/blockgen/region_blocks.hpp"
+#include "geometry/point_text.hpp"
 #include "geometry/polygon.hpp"
 #include "io/blocks/block_file_writer.hpp"
 #include "io/results/id_slabs.hpp"
@@ -147,9 +148,8 @@ std::string worst_lines(const char *what, const std::vector<PoorBlock> &blocks, 
   std::string text;
   for (const PoorBlock &block : blocks) {
     if (block.value < limit) {
-      text +=
-          line(text.empty() ? what : "", fmt::format("b{} at [{:.6g}, {:.6g}]: {:.3g}{}", block.id,
-                                                     block.centroid.x, block.centroid.y, block.value, unit));
+      text += line(text.empty() ? what : "", fmt::format("b{} at {}: {:.3g}{}", block.id,
+                                                         point_text(block.centroid), block.value, unit));
     }
   }
   return text;

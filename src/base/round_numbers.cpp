@@ -42,8 +42,8 @@ std::vector<double> round_ticks(double low, double high, int about) {
 
 std::string tick_text(double value, double step) {
   std::array<char, 32> text{};
-  constexpr double largest_plain = 1e6;
-  if (std::max(std::abs(value), step) >= largest_plain || step < 1e-5) {
+  constexpr double largest_plain = 1e15;
+  if (std::abs(value) >= largest_plain || step >= 1e6 || step < 1e-5) {
     std::snprintf(text.data(), text.size(), "%.6g", value);
   } else {
     const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));

@@ -84,7 +84,7 @@ std::string RegionDrawing::end(std::span<const PoorBlock> sharpest,
     }
   }
   text += page_.axes();
-  double at = PlanDrawing::left;
+  double at = page_.left();
   for (std::size_t k = 0; k < scene_->joints.laws.size(); ++k) {
     const std::string &name = scene_->joints.laws[k].name;
     text += page_.text_below(0, at, name, colour_of_joint(static_cast<std::int32_t>(k)));

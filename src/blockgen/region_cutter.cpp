@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 #include "blockgen/tile.hpp"
+#include "geometry/point_text.hpp"
 #include "geometry/polygon.hpp"
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ FamilyInTile family_in_tile(const JointSet &set, Vec2 region, Vec2 seen) {
 }
 
 Diagnostic sliver_fault(const RockRegion &region, Vec2 at) {
-  return {Severity::error, region.where, fmt::format("the block at [{:.9g}, {:.9g}] is a sliver", at.x, at.y),
+  return {Severity::error, region.where, fmt::format("the block at {} is a sliver", point_text(at, 9)),
           fmt::format("its mean width is below {:g} m or its area below {:g} m2, and slivers = \"refuse\"",
                       region.min_width, region.min_area),
           "move a joint, lower min_width and min_area, or use slivers = \"merge\""};

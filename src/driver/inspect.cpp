@@ -5,6 +5,7 @@
 #include "driver/odd_blocks.hpp"
 #include "driver/run_words.hpp"
 #include "driver/svg.hpp"
+#include "geometry/point_text.hpp"
 #include "geometry/polygon.hpp"
 #include "model/stiffness.hpp"
 #include "partition/partition_cells.hpp"
@@ -269,8 +270,9 @@ private:
         wets += fmt::format("{}'{}'", wets.empty() ? "" : ", ",
                             simulation_.scene().joints.laws[static_cast<std::size_t>(joint)].name);
       }
-      text += line("water", fmt::format("'{}': level between {:g} and {:g} m, in {}{}", water.name, low->y,
-                                        high->y, wets.empty() ? "all joints" : "joint " + wets,
+      text += line("water", fmt::format("'{}': level between {} and {} m, in {}{}", water.name,
+                                        coordinate_text(low->y), coordinate_text(high->y),
+                                        wets.empty() ? "all joints" : "joint " + wets,
                                         water.active ? "" : ", put in by a stage"));
     }
     return text;

@@ -99,9 +99,9 @@ std::string joint_lines(const PlanDrawing &page, const std::vector<FailingJoints
 
 /// A sample of each kind of line with its meaning, in a line below the axes.
 std::string legend_of_joints(const PlanDrawing &page, int line, const FailingJoints &joints) {
-  std::string text = page.sample_below(line, PlanDrawing::left, slip_colour, joint_width) +
-                     page.text_below(line, PlanDrawing::left + 44.0, "joint that slips");
-  constexpr double second = PlanDrawing::left + 210.0;
+  std::string text = page.sample_below(line, page.left(), slip_colour, joint_width) +
+                     page.text_below(line, page.left() + 44.0, "joint that slips");
+  const double second = page.left() + 210.0;
   return text + (joints.knows_opened
                      ? page.sample_below(line, second, open_colour, joint_width) +
                            page.text_below(line, second + 44.0, "joint that has opened")
@@ -129,7 +129,7 @@ std::string draw_svg(const std::vector<DrawnBlock> &blocks, int num_subdomains) 
   const Vec2 extent = page.region().extent();
   text += page.axes();
   text += page.text_below(
-      0, PlanDrawing::left,
+      0, page.left(),
       fmt::format("{} blocks, {} subdomain{}, {:.4g} m x {:.4g} m; grey: fixed; thick outline: deformable",
                   blocks.size(), num_subdomains, num_subdomains == 1 ? "" : "s", extent.x, extent.y));
   return text + PlanDrawing::end();
@@ -163,8 +163,7 @@ std::string draw_mechanism(const std::vector<FailingBlock> &blocks, const Failin
   const std::string words =
       fmt::format("at factor {:.5g}: motion since the strengths were lowered; grey: fixed", factor);
   return text + page.axes() + page.colour_bar(0, farthest, "motion (m)", colour) +
-         legend_of_joints(page, 1, joints) + page.text_below(2, PlanDrawing::left, words) +
-         PlanDrawing::end();
+         legend_of_joints(page, 1, joints) + page.text_below(2, page.left(), words) + PlanDrawing::end();
 }
 
 } // namespace gcpdda

@@ -13,7 +13,9 @@ namespace {
 
 constexpr const char *ink = "#333333";
 constexpr double letters = 18.0; // height, pixels
+constexpr double digit = 11.5;   // width of the widest usual font, pixels
 constexpr double tick = 6.0;
+constexpr double gap_at_axis = 2.0 * tick + 6.0; // between a number and the plane, and before the number
 constexpr double ticks_of_longest_side = 8.0;
 
 } // namespace
@@ -32,12 +34,32 @@ std::string svg_text(double x, double y, const std::string &anchor, double size,
 
 PlanDrawing::PlanDrawing(const Aabb &region, double longest_side, int lines_below)
     : region_(region), scale_(longest_side / std::max(region.extent().x, region.extent().y)),
-      lines_below_(lines_below) {}
+      lines_below_(lines_below) {
+  for (const auto &[value, text] : ticks_of(region_.low.y, region_.high.y)) {
+    left_ = std::max(left_, gap_at_axis + digit * static_cast<double>(text.size()));
+  }
+  for (const auto &[value, text] : ticks_of(region_.low.x, region_.high.x)) {
+    right_ = std::max(right_, 0.5 * digit * static_cast<double>(text.size()));
+  }
+}
+
+std::vector<std::pair<double, std::string>> PlanDrawing::ticks_of(double low, double high) const {
+  const double longest = std::max(region_.extent().x, region_.extent().y);
+  const double about = ticks_of_longest_side * (high - low) / longest;
+  const std::vector<double> values =
+      round_ticks(low, high, std::max(2, static_cast<int>(std::lround(about))));
+  const double step = values.size() > 1 ? values[1] - values[0] : 1.0;
+  std::vector<std::pair<double, std::string>> ticks;
+  for (const double value : values) {
+    ticks.emplace_back(value, tick_text(value, step));
+  }
+  return ticks;
+}
 
 std::string PlanDrawing::head() const {
   return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\">\n"
                      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
-                     x(region_.high.x) + right, y(region_.low.y) + below + line_height * lines_below_);
+                     x(region_.high.x) + right_, y(region_.low.y) + below + line_height * lines_below_);
 }
 
 std::string PlanDrawing::polygon(std::span<const Vec2> vertices, const std::string &fill,
@@ -51,28 +73,17 @@ std::string PlanDrawing::polygon(std::span<const Vec2> vertices, const std::stri
 }
 
 std::string PlanDrawing::axes() const {
-  const double longest = std::max(region_.extent().x, region_.extent().y);
-  const auto ticks_of = [&](double low, double high) {
-    const double about = ticks_of_longest_side * (high - low) / longest;
-    return round_ticks(low, high, std::max(2, static_cast<int>(std::lround(about))));
-  };
-  const auto distance = [](const std::vector<double> &ticks) {
-    return ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
-  };
   const double base = y(region_.low.y) + tick;
   const double side = x(region_.low.x) - tick;
   std::string text = svg_line(side, base, x(region_.high.x), base, ink, 1.5);
   text += svg_line(side, y(region_.high.y), side, base, ink, 1.5);
-  const std::vector<double> along = ticks_of(region_.low.x, region_.high.x);
-  for (const double value : along) {
+  for (const auto &[value, words] : ticks_of(region_.low.x, region_.high.x)) {
     text += svg_line(x(value), base, x(value), base + tick, ink, 1.5);
-    text += svg_text(x(value), base + tick + letters, "middle", letters, tick_text(value, distance(along)));
+    text += svg_text(x(value), base + tick + letters, "middle", letters, words);
   }
-  const std::vector<double> up = ticks_of(region_.low.y, region_.high.y);
-  for (const double value : up) {
+  for (const auto &[value, words] : ticks_of(region_.low.y, region_.high.y)) {
     text += svg_line(side - tick, y(value), side, y(value), ink, 1.5);
-    text += svg_text(side - tick - 4.0, y(value) + 0.35 * letters, "end", letters,
-                     tick_text(value, distance(up)));
+    text += svg_text(side - tick - 4.0, y(value) + 0.35 * letters, "end", letters, words);
   }
   text += svg_text(0.5 * (x(region_.low.x) + x(region_.high.x)), base + tick + 2.2 * letters, "middle",
                    letters, "x (m)");

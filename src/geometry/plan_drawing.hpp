@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace gcpdda {
 
@@ -18,8 +19,9 @@ class PlanDrawing {
 public:
   PlanDrawing(const Aabb &region, double longest_side, int lines_below);
 
-  [[nodiscard]] double x(double world) const { return left + scale_ * (world - region_.low.x); }
+  [[nodiscard]] double x(double world) const { return left_ + scale_ * (world - region_.low.x); }
   [[nodiscard]] double y(double world) const { return top + scale_ * (region_.high.y - world); }
+  [[nodiscard]] double left() const { return left_; }   ///< where axes and lines of text begin, pixels
   [[nodiscard]] double scale() const { return scale_; } ///< pixels per metre
   [[nodiscard]] const Aabb &region() const { return region_; }
 
@@ -45,15 +47,14 @@ public:
   }
   [[nodiscard]] static std::string end() { return "</svg>\n"; }
 
-  static constexpr double left = 76.0; // pixels: room for the numbers of the axis
-
 private:
-  static constexpr double right = 32.0; // half of a number may stand out
   static constexpr double top = 34.0;
   static constexpr double below = 62.0; // numbers and name of the axis
   static constexpr double line_height = 34.0;
   static constexpr int bar_cells = 40;
 
+  /// Values and texts of the ticks from `low` to `high`.
+  [[nodiscard]] std::vector<std::pair<double, std::string>> ticks_of(double low, double high) const;
   [[nodiscard]] std::string bar_cell(int line, int k, const std::string &colour) const;
   [[nodiscard]] std::string bar_ticks(int line, double most, const std::string &unit) const;
   [[nodiscard]] std::pair<double, double> bar_ends() const; ///< pixels
@@ -62,6 +63,8 @@ private:
   Aabb region_;
   double scale_;
   int lines_below_;
+  double left_ = 76.0;  ///< pixels: room for the numbers of the axis
+  double right_ = 32.0; ///< half of a number may stand out
 };
 
 /// A line of a picture between two places in pixels.

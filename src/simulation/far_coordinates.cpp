@@ -1,6 +1,7 @@
 #include "simulation/far_coordinates.hpp"
 
 #include "contact/stiffness_bound.hpp"
+#include "geometry/point_text.hpp"
 
 #include <fmt/format.h>
 
@@ -32,11 +33,16 @@ double farthest_in(const Aabb &box) {
   return std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.high.x), std::abs(box.high.y)});
 }
 
-/// The multiple of a power of ten that moves coordinates around `middle` to within half of `limit`, as round
-/// as that allows.
-double round_offset(double middle, double limit) {
-  const double step = std::pow(10.0, std::floor(std::log10(limit)));
-  return step * std::round(middle / step) + 0.0; // no negative zero
+/// What to subtract from the coordinates `low` to `high` along an axis so that they lie at the origin: a
+/// multiple of the power of ten below the `size` of the model. Zero where they lie near the origin already.
+/// @param limit  largest coordinate that does not disturb, m
+double round_offset(double low, double high, double size, double limit) {
+  constexpr double near = 100.0; // sizes
+  if (std::max(std::abs(low), std::abs(high)) <= std::min(near * size, limit)) {
+    return 0.0;
+  }
+  const double step = std::pow(10.0, std::floor(std::log10(size)));
+  return step * std::round(0.5 * (low + high) / step) + 0.0; // no negative zero
 }
 
 /// One digit, downwards.
@@ -49,13 +55,14 @@ double rounded_down(double x) {
 /// @param stiffness  largest normal stiffness that works where the model lies, Pa/m
 std::string words_on_remedy(const Aabb &box, double limit, double stiffness) {
   const Vec2 extent = box.extent();
-  if (std::max(extent.x, extent.y) > limit) { // too large wherever its origin is
+  const double size = std::max(extent.x, extent.y);
+  if (size > limit) { // too large wherever its origin is
     return fmt::format("use normal_stiffness = {:.1g} or less", rounded_down(stiffness));
   }
   return fmt::format("subtract [{:.15g}, {:.15g}] from all coordinates, or use normal_stiffness = {:.1g} or "
                      "less",
-                     round_offset(0.5 * (box.low.x + box.high.x), limit),
-                     round_offset(0.5 * (box.low.y + box.high.y), limit), rounded_down(stiffness));
+                     round_offset(box.low.x, box.high.x, size, limit),
+                     round_offset(box.low.y, box.high.y, size, limit), rounded_down(stiffness));
 }
 
 /// The stage that waits for the smallest unbalanced forces; null where no stage waits for rest.
@@ -88,9 +95,9 @@ void doubt_coordinates(RunState &run, const ModelExtent &extent) {
     if (rounding > most) {
       run.notes.push_back(
           {Severity::warning, stage->where,
-           fmt::format("coordinates of {:.6g} m are rounded by {:.2g} m, and joints close by no more than "
+           fmt::format("coordinates of {} m are rounded by {:.2g} m, and joints close by no more than "
                        "{:.2g} m at rest",
-                       farthest, rounding, overlap),
+                       coordinate_text(farthest), rounding, overlap),
            fmt::format("rounding disturbs their forces, and stage '{}' may never reach its tolerance of {:g}",
                        stage->name, stage->tolerance),
            words_on_remedy(extent.box, coordinate_with(most), stiffness * most / rounding)});
@@ -106,9 +113,9 @@ void doubt_coordinates(RunState &run, const ModelExtent &extent) {
     run.notes.push_back(
         {Severity::warning,
          {},
-         fmt::format("the smallest block rests by an overlap of {:.2g} m, and coordinates of {:.6g} m are "
+         fmt::format("the smallest block rests by an overlap of {:.2g} m, and coordinates of {} m are "
                      "rounded by {:.2g} m",
-                     depth, farthest, rounding),
+                     depth, coordinate_text(farthest), rounding),
          "forces at rest will be rounding errors",
          words_on_remedy(extent.box, coordinate_with(most), stiffness * most / rounding)});
   }

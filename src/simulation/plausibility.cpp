@@ -3,6 +3,7 @@
 #include "io/scene/joint_parameters.hpp"
 
 #include "geometry/aabb.hpp"
+#include "geometry/point_text.hpp"
 #include "geometry/polygon.hpp"
 #include "simulation/plausible_ranges.hpp"
 #include "simulation/shaking_doubts.hpp"
@@ -209,12 +210,12 @@ void expect_inside(Doubts &doubts, const std::string &path, std::span<const Vec2
   if (points.empty() || box.meets(region)) {
     return;
   }
-  doubts.warn(where,
-              fmt::format("{} lies from [{:g}, {:g}] to [{:g}, {:g}], outside of the region", path, box.low.x,
-                          box.low.y, box.high.x, box.high.y),
-              fmt::format("the region reaches from [{:g}, {:g}] to [{:g}, {:g}]", region.low.x, region.low.y,
-                          region.high.x, region.high.y),
-              "check its coordinates and their unit, m");
+  doubts.warn(
+      where,
+      fmt::format("{} lies from {} to {}, outside of the region", path, point_text(box.low),
+                  point_text(box.high)),
+      fmt::format("the region reaches from {} to {}", point_text(region.low), point_text(region.high)),
+      "check its coordinates and their unit, m");
 }
 
 void judge_cutters(Doubts &doubts) {
@@ -261,8 +262,8 @@ void warn_of_short_traces(Doubts &doubts) {
   const auto widest = std::max_element(
       found.begin(), found.end(), [](const ShortTrace &a, const ShortTrace &b) { return a.gap < b.gap; });
   doubts.warn(widest->where,
-              fmt::format("{} ends at [{:g}, {:g}], {:.2g} m short of another line{}", widest->path,
-                          widest->end.x, widest->end.y, widest->gap,
+              fmt::format("{} ends at {}, {:.2g} m short of another line{}", widest->path,
+                          point_text(widest->end), widest->gap,
                           found.size() == 1
                               ? ""
                               : fmt::format(" ({} more {} by less)", found.size() - 1,

@@ -167,8 +167,11 @@ dip_deg = 101
 spacing = 0.1
 origin = [500123, 5200456]
 )");
-  const Outcome outcome = run_gcpdda(2, {"blocks", "sample.toml"}, folder_);
+  const Outcome outcome = run_gcpdda(2, {"blocks", "sample.toml", "--svg", "sample.svg"}, folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_GT(count_of(outcome.out, " at [500123."), 0) << "metres and millimetres of places\n" << outcome.out;
+  EXPECT_GT(count_of(outcome.out, ", 5200456."), 0) << outcome.out;
+  EXPECT_GT(count_of(file_text(folder_ / "sample.svg"), ">5200456.2<"), 0) << "a number of the axis";
 }
 
 TEST_F(Blocks, AMissingMapIsFileTrouble) {

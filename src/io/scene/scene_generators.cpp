@@ -1,5 +1,6 @@
 #include "io/scene/scene_generators.hpp"
 
+#include "geometry/point_text.hpp"
 #include "io/scene/scene_blocks.hpp"
 #include "io/scene/scene_materials.hpp"
 #include "io/scene/scene_outline.hpp"
@@ -115,9 +116,9 @@ private:
                     low.y + static_cast<double>(generator.rows) * generator.block_size.y};
     const double largest = std::max({std::abs(low.x), std::abs(low.y), std::abs(high.x), std::abs(high.y)});
     if (largest > largest_coordinate) {
-      return fault(
-          section.source(), fmt::format("{} reaches to [{:.12g}, {:.12g}]", section.label(), high.x, high.y),
-          fmt::format("coordinates are at most {:.12g}", largest_coordinate), "use fewer or smaller bricks");
+      return fault(section.source(), fmt::format("{} reaches to {}", section.label(), point_text(high, 12)),
+                   fmt::format("coordinates are at most {:.12g}", largest_coordinate),
+                   "use fewer or smaller bricks");
     }
     const double smallest = std::min(least_share * generator.block_size.x, generator.block_size.y);
     if (smallest <= coordinate_rounding(largest)) {

@@ -74,6 +74,8 @@ TEST(RoundNumbers, TextHasTheDecimalsOfTheStep) {
   EXPECT_EQ(tick_text(0.25, 0.05), "0.25");
   EXPECT_EQ(tick_text(2e7, 1e7), "2e+07");
   EXPECT_EQ(tick_text(3e-7, 1e-7), "3e-07");
+  EXPECT_EQ(tick_text(4999990.0, 10.0), "4999990") << "ticks beside each other differ in map coordinates";
+  EXPECT_EQ(tick_text(5000000.5, 0.5), "5000000.5");
 }
 
 } // namespace

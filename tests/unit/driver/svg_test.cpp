@@ -116,6 +116,28 @@ TEST(Pictures, AxesTellWhereBlocksAre) {
   expect_axes_tell_where(draw_svg({{shapes[0], -1, false}, {shapes[1], 0, true}}, 1), shapes);
 }
 
+// Numbers of seven digits, all of which are on the page.
+TEST(Pictures, AxesTellWhereBlocksAreInMapCoordinates) {
+  std::vector<std::vector<Vec2>> far = shapes;
+  for (std::vector<Vec2> &shape : far) {
+    for (Vec2 &p : shape) {
+      p += Vec2{5450000.0, 4999900.0};
+    }
+  }
+  const std::string svg = draw_svg({{far[0], -1, false}, {far[1], 0, true}}, 1);
+  expect_axes_tell_where(svg, far);
+  std::smatch size;
+  ASSERT_TRUE(std::regex_search(svg, size, std::regex("width=\"([0-9]+)\"")));
+  constexpr double digit = 11.4; // pixels, of a wide font
+  for (const Text &text : texts_of(svg)) {
+    if (is_number(text.words)) {
+      const double width = digit * static_cast<double>(text.words.size());
+      EXPECT_GE(text.x - (text.anchor == "end" ? width : 0.5 * width), 0.0) << text.words;
+      EXPECT_LE(text.x + (text.anchor == "end" ? 0.0 : 0.5 * width), std::stod(size[1])) << text.words;
+    }
+  }
+}
+
 constexpr double failing_factor = 1.25;
 
 std::vector<FailingBlock> sliding(double motion) {

@@ -163,17 +163,16 @@ TEST(PlausibleBlocks, FeelTheirLoads) {
   EXPECT_EQ(warnings_of(scene), std::vector<std::string>{});
 }
 
-/// A wall of 36 bricks on a floor, its lower left corner at `x`, which a stage settles.
-Scene wall_at(double x, const std::vector<std::string> &sets = {}) {
-  return scene_of(
-      "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2500\n[joint.default]\n"
-      "normal_stiffness = 1e11\nfriction_angle_deg = 35\n[output]\ninterval = 1.0\n"
-      "[[stage]]\nname = \"rest\"\nkind = \"settle\"\nlimit = 1.0\n" +
-          block_toml("floor", rectangle({x - 1.0, 499.0}, {x + 9.0, 500.0}), "fixed = true") +
-          fmt::format("[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [{}, 500]\nrows = 8\n"
-                      "columns = 4\nblock_size = [2, 1]\n",
-                      x),
-      sets);
+/// A wall of 36 bricks on a floor, its lower left corner at [x, y], which a stage settles.
+Scene wall_at(double x, const std::vector<std::string> &sets = {}, double y = 500.0) {
+  return scene_of("[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2500\n[joint.default]\n"
+                  "normal_stiffness = 1e11\nfriction_angle_deg = 35\n[output]\ninterval = 1.0\n"
+                  "[[stage]]\nname = \"rest\"\nkind = \"settle\"\nlimit = 1.0\n" +
+                      block_toml("floor", rectangle({x - 1.0, y - 1.0}, {x + 9.0, y}), "fixed = true") +
+                      fmt::format("[[wall]]\nname = \"w\"\nmaterial = \"rock\"\norigin = [{}, {}]\nrows = 8\n"
+                                  "columns = 4\nblock_size = [2, 1]\n",
+                                  x, y),
+                  sets);
 }
 
 // Measured: with these bricks and joints the wall settles up to coordinates of 6.5e4 m, and not beyond.
@@ -187,10 +186,19 @@ TEST(PlausibleBlocks, LieWhereCoordinatesAreExactEnough) {
                      "coordinates, or use normal_stiffness = 1e+10 or less"),
       std::string::npos)
       << far.at(0);
-  expect_one(warnings_of(wall_at(-123456789.0)), "subtract [-123460000, 0] from all coordinates");
-  EXPECT_EQ(warnings_of(wall_at(-123456789.0 + 123460000.0)), std::vector<std::string>{});
+  expect_one(warnings_of(wall_at(-123456789.0)), "subtract [-123456790, 0] from all coordinates");
+  EXPECT_EQ(warnings_of(wall_at(-123456789.0 + 123456790.0)), std::vector<std::string>{});
   EXPECT_EQ(warnings_of(wall_at(450000.0, {"joint.default.normal_stiffness=1e10"})),
             std::vector<std::string>{});
+}
+
+// The offset brings the model to the origin, and not only below the coordinate that disturbs.
+TEST(PlausibleBlocks, NameAnOffsetThatBringsThemToTheOrigin) {
+  const std::vector<std::string> softer{"joint.default.normal_stiffness=1e10"};
+  const std::vector<std::string> far = warnings_of(wall_at(500000.0, softer, 4600000.0));
+  expect_one(far, "coordinates of 4600008 m are rounded by 9.3e-10 m");
+  EXPECT_NE(far.at(0).find("subtract [500000, 4600000] from all coordinates"), std::string::npos)
+      << far.at(0);
 }
 
 // Without a stage nothing waits for rest, and the smallest block must still rest by more than rounding.
