@@ -18,16 +18,19 @@
 #include "io/results/id_slabs.hpp"
 #include "io/results/result_directory.hpp"
 #include "model/generators.hpp"
+#include "simulation/dust.hpp"
+#include "simulation/rank_facts.hpp"
 #include "simulation/region_slabs.hpp"
 #include "simulation/simulation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <numeric>
+#include <optional>
 
 namespace gcpdda {
 
@@ -63,25 +66,6 @@ struct Report {
   [[nodiscard]] double difference() const { return (area + excavated_area - region_area) / region_area; }
 };
 
-/// The (n/2)-th of all ranks' positive numbers in ascending order; they sort like their bits.
-double agreed_median(const Communicator &world, const std::vector<double> &sizes) {
-  const std::int64_t wanted = agreed_sum(world, static_cast<std::int64_t>(sizes.size())) / 2;
-  std::uint64_t low = 0;
-  std::uint64_t high = std::bit_cast<std::uint64_t>(std::numeric_limits<double>::infinity());
-  while (low < high) {
-    const std::uint64_t middle = low + (high - low) / 2;
-    const auto below = std::count_if(sizes.begin(), sizes.end(), [&](double size) {
-      return std::bit_cast<std::uint64_t>(size) <= middle;
-    });
-    if (agreed_sum(world, below) > wanted) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  return std::bit_cast<double>(low);
-}
-
 std::vector<PoorBlock> worst_of_all(const Communicator &world, const std::vector<PoorBlock> &mine) {
   std::vector<PoorBlock> all;
   for (const std::vector<PoorBlock> &theirs : world.all_gather(mine)) {
@@ -102,17 +86,18 @@ void agree(const Communicator &world, BlockQuality &quality) {
   quality.narrowest = worst_of_all(world, quality.narrowest);
 }
 
+/// How many blocks the ranks before this one have cut.
+std::int64_t blocks_before(const Communicator &world, const std::vector<SceneBlock> &blocks) {
+  const auto counts = counts_by_rank(world, static_cast<std::int64_t>(blocks.size()));
+  return std::accumulate(counts.begin(), counts.begin() + world.rank(), std::int64_t{0});
+}
+
 Report survey(const Communicator &world, const Scene &scene, const RegionCutter &cutter,
               const std::vector<SceneBlock> &blocks, const CutReport &cut) {
   Report report;
   report.num_tiles = cutter.num_columns() * cutter.num_rows();
   report.first_id = num_blocks(scene);
-  std::int64_t id = report.first_id;
-  const std::vector<std::int64_t> count{static_cast<std::int64_t>(blocks.size())};
-  const auto counts = world.all_gather(count);
-  for (int rank = 0; rank < world.rank(); ++rank) {
-    id += counts[static_cast<std::size_t>(rank)][0];
-  }
+  std::int64_t id = report.first_id + blocks_before(world, blocks);
   report.in_opening.assign(scene.region.openings.size(), 0);
   for (const SceneBlock &block : blocks) {
     report.quality.add(id++, block);
@@ -381,8 +366,10 @@ void cut_blocks(const Communicator &world, const Scene &scene, const BlocksOptio
     throw SceneError(faults);
   }
   const Report report = survey(world, scene, cutter, made.blocks, cut);
+  const std::int64_t first = report.first_id + blocks_before(world, made.blocks);
+  const std::optional<Diagnostic> dust = doubt_dust(world, scene.region, made.blocks, first, report.first_id);
   if (world.is_root()) {
-    std::cout << text_of(report, scene) << std::flush;
+    std::cout << text_of(report, scene) << (dust ? to_string(*dust) + "\n" : "") << std::flush;
   }
   if (!options.json.empty()) {
     write_on_root(world, options.json, json_of(report, scene), "the report");

@@ -25,6 +25,11 @@ double two_digits_below(double x) {
   return std::floor(x / unit * (1.0 + rounding)) * unit;
 }
 
+double two_digits_above(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
+  return std::ceil(x / unit) * unit;
+}
+
 std::vector<double> round_ticks(double low, double high, int about) {
   if (!(high > low)) {
     return {low};

@@ -1,6 +1,7 @@
 #include "driver/run_words.hpp"
 
 #include "base/round_numbers.hpp"
+#include "simulation/dust.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/strain_watch.hpp"
 
@@ -31,6 +32,16 @@ std::string words_on_shorter_step(const Simulation &simulation,
              : fmt::format("kinetic_damping = true{}, or {}", name, step);
 }
 
+/// The first thing to try where one of two blocks is a sliver cut from a region.
+std::string words_on_dust(const Simulation &simulation, const Fault &fault) {
+  const double width =
+      width_against_dust(simulation.scene(), fault.block.value, fault.other.value, 2.0 * fault.limit);
+  return width > 0.0 ? fmt::format("region.min_width = {:.2g}, because one of them is a sliver that becomes "
+                                   "part of a neighbour by that, or ",
+                                   width)
+                     : "";
+}
+
 } // namespace
 
 std::string fault_message(const Simulation &simulation) {
@@ -41,8 +52,9 @@ std::string fault_message(const Simulation &simulation) {
   case Fault::Cause::too_deep:
     return fmt::format(
         "{}: overlaps block '{}' by {:.4g} m, deeper than half the narrowest width {:.4g} m, where the "
-        "contact force reverses; try a larger joint.normal_stiffness, or {}",
-        where, name(fault.other), fault.value, fault.limit, words_on_shorter_step(simulation));
+        "contact force reverses; try {}a larger joint.normal_stiffness, or {}",
+        where, name(fault.other), fault.value, fault.limit, words_on_dust(simulation, fault),
+        words_on_shorter_step(simulation));
   case Fault::Cause::too_fast:
     return fmt::format(
         "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "

@@ -1,11 +1,13 @@
 #include "simulation/doubts.hpp"
 
 #include "base/edit_distance.hpp"
+#include "base/round_numbers.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "geometry/holds_point.hpp"
 #include "geometry/mean_width.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/id_slabs.hpp"
+#include "simulation/dust.hpp"
 #include "simulation/far_coordinates.hpp"
 #include "simulation/plausibility.hpp"
 #include "simulation/rank_facts.hpp"
@@ -28,12 +30,6 @@ SourcePosition place_in(const Scene &scene, const std::string &path) {
 
 std::string and_more(std::int64_t others, const char *what) {
   return others > 0 ? fmt::format(" ({} more {})", others, what) : "";
-}
-
-/// Two digits, upwards.
-double rounded_up(double x) {
-  const double digit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
-  return std::ceil(x / digit) * digit;
 }
 
 /// Laws that something of the region asks for, wherever it lies.
@@ -255,7 +251,7 @@ void doubt_stiffness(RunState &run, double pressure, double size) {
           fmt::format("they bear up to {:.2g} Pa, and more than 1 % of a block is no small overlap",
                       pressure),
           fmt::format("use {:.2g} or more, or allowed_overlap = {:g}",
-                      rounded_up(pressure / (good_share * size)), good_share)};
+                      two_digits_above(pressure / (good_share * size)), good_share)};
     }
   }
   if (others >= 0) {
@@ -350,7 +346,21 @@ void doubt_slivers(RunState &run, std::span<const SceneBlock> slab) {
                      count == 1 ? "1 block" : fmt::format("{} blocks", count), count == 1 ? "has" : "have",
                      limit),
          "the stress presses slivers together by more than their width bears, and they limit the step",
-         fmt::format("region.min_width = {:.2g} merges them with their neighbours", rounded_up(limit))});
+         fmt::format("region.min_width = {:.2g} merges them with their neighbours",
+                     two_digits_above(limit))});
+  }
+}
+
+// Under in-situ stress a larger width is named.
+void doubt_cuts(RunState &run, std::span<const SceneBlock> slab) {
+  if (run.scene.in_situ.present) {
+    return;
+  }
+  const std::int64_t all = num_blocks(run.scene);
+  const std::int64_t first = slab_begin(all, run.communicator.size(), run.communicator.rank());
+  if (auto dust =
+          doubt_dust(run.communicator, run.scene.region, slab, first, all - run.scene.num_region_blocks)) {
+    run.notes.push_back(std::move(*dust));
   }
 }
 
@@ -361,6 +371,7 @@ void doubt_blocks(RunState &run, std::span<const SceneBlock> slab) {
   doubt_holds(run, slab);
   doubt_sizes(run, slab);
   doubt_slivers(run, slab);
+  doubt_cuts(run, slab);
   warn_of_light_loads(run.scene, run.notes);
   if (has_errors(run.notes)) {
     throw SceneError(run.notes);
@@ -408,7 +419,7 @@ void explain_slivers(RunState &run) {
          fmt::format(
              "try region.min_width = {:.2g}, which merges such blocks with their neighbours, or a higher "
              "normal_stiffness",
-             rounded_up(above * width))});
+             two_digits_above(above * width))});
   }
 }
 

@@ -114,6 +114,7 @@ Besides these values the following is warned of, each kind in one line with the 
 | coordinates so large that their rounding disturbs what a stage waits for, or the overlap by which the smallest block rests | the stage never settles; names a round offset to subtract from all coordinates |
 | parallel edges face each other across less than 5 % of a block, and more than rounding | drawn as touching, they do not touch |
 | a monitor follows a block that a stage excavates | its history ends there |
+| blocks cut from a region with a mean width below 1/1000 of the median side (the root of the area) of the blocks: traces that nearly coincide, or nearly cross in one point | joints that close by an ordinary amount close through them; names the `min_width` that makes them parts of their neighbours |
 | blocks thinner than 1/20 of the median width under in-situ stress, and those that it presses together by more than 5 % of their width, which is refused | names the `min_width` that merges them; by default it is 1/20 of the smallest mean spacing with [in_situ] |
 | a load below 1/1000 of the weight of its block | N/m are meant, not kN/m |
 | a record of velocities, without `quantity` in the scene, whose acceleration exceeds its range while its values are those of accelerations | accelerations are read as velocities |

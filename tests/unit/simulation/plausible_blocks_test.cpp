@@ -342,5 +342,21 @@ TEST(PlausibleBlocks, UnderInSituStressNeedAStiffness) {
       << texts[1];
 }
 
+// Two traces 0.1 mm apart, which a region of 4 m cuts into a strip of dust. What the warning proposes removes
+// it.
+TEST(PlausibleBlocks, AreNoDust) {
+  const std::string twice =
+      "[run]\nduration = 0.1\n[material.rock]\ndensity = 2600\n[joint.default]\nnormal_stiffness = 1e9\n"
+      "friction_angle_deg = 30\n[region]\npolygon = [[0, 0], [4, 0], [4, 4], [0, 4]]\nmaterial = \"rock\"\n"
+      "fixed = [\"bottom\"]\n[[fault]]\nname = \"one\"\nfrom = [-1, 2]\nto = [5, 2]\n"
+      "[[fault]]\nname = \"again\"\nfrom = [-1, 2.0001]\nto = [5, 2.0001]\n"
+      "[[fault]]\nname = \"upright\"\nfrom = [2, -1]\nto = [2, 5]\n";
+  const std::vector<std::string> texts = warnings_of(scene_of(twice));
+  expect_one(texts,
+             "2 blocks cut from the region have a mean width below 0.002 m, 1/1000 of the median side of "
+             "the blocks: the narrowest is b1 at [1, 2.00005] with 0.0001 m");
+  EXPECT_EQ(warnings_of(scene_of(twice, with_proposed_width({}, texts.at(0)))), std::vector<std::string>{});
+}
+
 } // namespace
 } // namespace gcpdda::testing::plausible_blocks_test
