@@ -215,7 +215,7 @@ constexpr Key keys_after_joints[] = {
   {"support.*.axial_yield", Kind::number, optional, above_to(0, 1e20), "", "<none>", "2.5e5", "[N] Axial force at which the bolt yields, and stays."},
   {"support.*.shear_stiffness", Kind::number, optional, above_to(0, 1e20), "", "<no shear>", "2e7", "[N/m] Stiffness across a grouted bolt at one joint."},
   {"support.*.shear_yield", Kind::number, optional, above_to(0, 1e20), "", "<none>", "1e5", "[N] Shear force at which it yields, and stays."},
-  {"support.*.rupture_strain", Kind::number, optional, above_to(0, 1), "", "<none>", "0.1", "Elongation over the free or active length, that of the pre-tension included, at which the bolt breaks."},
+  {"support.*.rupture_strain", Kind::number, optional, above_to(0, 1), "", "<none>", "0.1", "Elongation of the steel over the free or active length, that of the pre-tension included, at which the bolt breaks."},
   {"support.*.pretension", Kind::number, optional, from_to(0, 1e20), "", "0.0", "1e5", "[N] Tension with which it is put in; joints that close under it take some of it."},
   {"support.*.active_length", Kind::number, optional, above_to(0, 1e6), "", "<required for grouted>", "0.3", "[m] Length of a grouted bolt that stretches where it crosses a joint; about 20 diameters."},
   {"support.*.bond_strength", Kind::number, optional, above_to(0, 1e20), "", "<no slip>", "3e5", "[N/m] Force that a metre of grout bears: the bolt slips where the grout on the shorter side of a joint bears less than axial_yield."},
@@ -229,7 +229,7 @@ constexpr Key keys_after_joints[] = {
   {"support.*.tensile_strength", Kind::number, optional, above_to(0, 1e20), "", "<unlimited>", "2e6", "[Pa] Tension of an extreme fibre, of thrust and bending, at which a liner cracks."},
   {"support.*.residual_tensile_strength", Kind::number, optional, from_to(0, 1e20), "", "0.0", "1e6", "[Pa] Tension that a cracked liner bears, by its fibres or mesh; at most tensile_strength."},
   {"support.*.shear_strength", Kind::number, optional, above_to(0, 1e20), "", "<unlimited>", "2e6", "[Pa] Shear stress over the thickness at which a block punches through a liner."},
-  {"support.*.adhesion", Kind::number, optional, above_to(0, 1e20), "", "<unlimited>", "0.5e6", "[Pa] Tensile strength of the bond between a liner and the rock. Where the shear force beside a joint exceeds adhesion times bond_width the liner peels off."},
+  {"support.*.adhesion", Kind::number, optional, above_to(0, 1e20), "", "<unlimited>", "0.5e6", "[Pa] Tensile strength of the bond between a liner and the rock. Where the shear force beside a joint, less what thrust presses the liner on, exceeds adhesion times bond_width the liner peels off."},
   {"support.*.bond_width", Kind::number, optional, above_to(0, 1e6), "", "0.03", "0.03", "[m] Width beside a joint over which the bond acts when a block pulls at the liner (Barrett and McCreath 1995)."},
 
   {"bolt[]", Kind::table_list, optional, any, "", "", "[[bolt]]", "Single bolts and cables."},
