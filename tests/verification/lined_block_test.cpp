@@ -303,5 +303,84 @@ TEST(LinedBeam, CracksUnderAMoment) {
   }
 }
 
+// Around a ring in rock under even stress there is neither shear nor moment, and the rock presses on it with
+// N/r. Bricks give single elements a shear of 3 % of the thrust, which is six times the bond and a fifth of
+// what the pressure beside a joint holds. An elastic plate gives way to the pressure N/r by r (1 + nu)/E of
+// it, the ring by r^2/(E' t), so that N is the stress times r over 1 + (r/(E' t))/((1 + nu)/E); joints and
+// the size of the plate let the rock move farther, by less than a fifth here.
+TEST(LinedBlock, ARingUnderEvenPressureKeepsItsElements) {
+  constexpr double stress = 2.6e6;
+  constexpr double radius = 3.0;
+  constexpr double depth = 0.3; // of the ring
+  Simulation simulation(Communicator::self(), scene_of(R"(
+[run]
+fidelity = "deformable"
+gravity = [0, 0]
+[material.rock]
+density = 2600.0
+youngs_modulus = 1e9
+poissons_ratio = 0.25
+[joint.default]
+normal_stiffness = 1e10
+friction_angle_deg = 45.0
+cohesion = 1e9
+[in_situ]
+vertical_stress = 2.6e6
+k0 = 1.0
+[region]
+material = "rock"
+polygon = [[-15, -15], [15, -15], [15, 15], [-15, 15]]
+stress = ["bottom", "left", "right", "top"]
+min_width = 0.1
+[[bricks]]
+block_size = [1.0, 1.0]
+bond = 0.0
+[[opening]]
+name = "tunnel"
+shape = "circle"
+centre = [0.0, 0.0]
+width = 6.0
+chords = 48
+[support.ring]
+kind = "liner"
+thickness = 0.3
+youngs_modulus = 20e9
+poissons_ratio = 0.2
+adhesion = 1e6
+[[liner]]
+name = "ring"
+support = "ring"
+opening = "tunnel"
+active = false
+[[stage]]
+kind = "settle"
+limit = 2.0
+[[stage]]
+kind = "excavate"
+openings = ["tunnel"]
+relax = 0.1
+[[stage]]
+kind = "change"
+set = { "liner.ring.active" = true }
+[[stage]]
+kind = "settle"
+limit = 5.0
+)"));
+  run_stages(simulation);
+  const std::vector<LinerLine> elements =
+      simulation.bolts().liner_lines(Communicator::self(), simulation.blocks());
+  ASSERT_GT(elements.size(), 16U);
+  double thrust = 0.0;
+  for (const LinerLine &element : elements) {
+    EXPECT_FALSE(element.memory.broken);
+    thrust -= element.memory.axial / static_cast<double>(elements.size());
+  }
+  const double rock = radius * 1.25 / 1e9;
+  const double ring = radius * radius / (20e9 / (1.0 - 0.04) * depth);
+  const double in_elastic_plate = stress * radius * rock / (rock + ring);
+  EXPECT_GT(thrust, in_elastic_plate);
+  EXPECT_LT(thrust, 1.2 * in_elastic_plate);
+}
+
 } // namespace
 } // namespace gcpdda::testing::lined_block_test
