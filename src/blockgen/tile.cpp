@@ -164,12 +164,12 @@ std::vector<SceneBlock> TileCutter::cut(const Tile &tile, CutReport &report) {
     }
     report.t_junctions += count_t_junctions(*face, edges, rounding_);
     if (face->shape.holes.empty()) {
-      blocks.push_back(block_of(*face, face->shape.outer, joints));
+      blocks.push_back(block_of(*face, face->shape.outer, joints, about.moved));
       continue;
     }
     ++report.cut_rings;
     for (const PlaneFace &part : graph_.without_holes(face->shape)) {
-      blocks.push_back(block_of(*face, part.outer, joints));
+      blocks.push_back(block_of(*face, part.outer, joints, about.moved));
     }
   }
   // A sliver that stays may be no wider than rounding.
@@ -198,6 +198,7 @@ TileCutter::Surroundings TileCutter::look_around(const Tile &tile, CutReport &re
       slivers += face.is_sliver && owns(tile.box, face.corner()) ? 1 : 0;
     }
     if (is_enough && region_->slivers == SliverRule::merge) {
+      shrink_dust(sizes_, about.faces, about.moved);
       merge_slivers(graph_, sizes_, about.faces);
       for (const RockFace &face : about.faces) {
         is_enough = is_enough && (face.is_certain || !owns(tile.box, face.corner()));
@@ -272,10 +273,12 @@ std::vector<RockFace> TileCutter::rock_in(const std::vector<Trace> &traces) cons
   return faces;
 }
 
-SceneBlock TileCutter::block_of(const RockFace &face, const Ring &ring, const EdgeJoints &joints) const {
+SceneBlock TileCutter::block_of(const RockFace &face, const Ring &ring, const EdgeJoints &joints,
+                                const MovedEdges &moved) const {
   std::vector<std::int32_t> of_edges(ring.size());
   for (std::size_t k = 0; k < ring.size(); ++k) {
-    of_edges[k] = joints.of(ring[k], ring[(k + 1) % ring.size()]);
+    const auto [from, to] = moved.before({ring[k], ring[(k + 1) % ring.size()]});
+    of_edges[k] = joints.of(from, to);
   }
   Outline outline = simplified(ring, of_edges, rounding_);
   SceneBlock block;

@@ -2,6 +2,7 @@
 
 // One tile of a region, cut into blocks.
 
+#include "blockgen/dust_faces.hpp"
 #include "blockgen/edge_joints.hpp"
 #include "blockgen/face_merger.hpp"
 #include "blockgen/region_cutter.hpp"
@@ -38,11 +39,13 @@ private:
     std::vector<Trace> traces;
     std::vector<RockFace> faces;
     Aabb seen; ///< everything in here is known
+    MovedEdges moved;
   };
   [[nodiscard]] Surroundings look_around(const Tile &tile, CutReport &report) const;
   [[nodiscard]] std::vector<Trace> traces_in(const Aabb &box) const;
   [[nodiscard]] std::vector<RockFace> rock_in(const std::vector<Trace> &traces) const;
-  [[nodiscard]] SceneBlock block_of(const RockFace &face, const Ring &ring, const EdgeJoints &joints) const;
+  [[nodiscard]] SceneBlock block_of(const RockFace &face, const Ring &ring, const EdgeJoints &joints,
+                                    const MovedEdges &moved) const;
 
   const RockRegion *region_;
   const JointLaws *laws_;
