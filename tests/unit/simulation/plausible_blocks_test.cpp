@@ -1,5 +1,6 @@
 // What is implausible of the blocks together, and no alarm for sound scenes.
 
+#include "simulation/dust.hpp"
 #include "simulation/simulation.hpp"
 
 #include "support/cut_region.hpp"
@@ -348,14 +349,20 @@ TEST(PlausibleBlocks, AreNoDust) {
   const std::string twice =
       "[run]\nduration = 0.1\n[material.rock]\ndensity = 2600\n[joint.default]\nnormal_stiffness = 1e9\n"
       "friction_angle_deg = 30\n[region]\npolygon = [[0, 0], [4, 0], [4, 4], [0, 4]]\nmaterial = \"rock\"\n"
-      "fixed = [\"bottom\"]\n[[fault]]\nname = \"one\"\nfrom = [-1, 2]\nto = [5, 2]\n"
-      "[[fault]]\nname = \"again\"\nfrom = [-1, 2.0001]\nto = [5, 2.0001]\n"
-      "[[fault]]\nname = \"upright\"\nfrom = [2, -1]\nto = [2, 5]\n";
+      "fixed = [\"bottom\"]\n[[fault]]\nname = \"one\"\npoints = [[-1, 2], [5, 2]]\n"
+      "[[fault]]\nname = \"again\"\npoints = [[-1, 2.0001], [5, 2.0001]]\n"
+      "[[fault]]\nname = \"upright\"\npoints = [[2, -1], [2, 5]]\n";
   const std::vector<std::string> texts = warnings_of(scene_of(twice));
   expect_one(texts,
-             "2 blocks cut from the region have a mean width below 0.002 m, 1/1000 of the median side of "
-             "the blocks: the narrowest is b1 at [1, 2.00005] with 0.0001 m");
+             "2 blocks cut from the region have a mean width below 0.002 m, 1/1000 of the median side");
   EXPECT_EQ(warnings_of(scene_of(twice, with_proposed_width({}, texts.at(0)))), std::vector<std::string>{});
+
+  // The error of an overlap names a width for a sliver of the region only.
+  Scene scene = scene_of(twice);
+  EXPECT_EQ(width_against_dust(scene, 0, 1, 1e-4), 0.0);
+  scene.num_region_blocks = 6;
+  EXPECT_NEAR(width_against_dust(scene, 0, 1, 1e-4), 0.033, 1e-12);
+  EXPECT_EQ(width_against_dust(scene, 0, 1, 0.5), 0.0);
 }
 
 } // namespace
