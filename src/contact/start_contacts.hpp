@@ -3,9 +3,9 @@
 // Which stretches of edges touch at the start, under which laws: by these water tables choose what they wet.
 //
 // A contact takes its law from whichever of its two edges names one, and by the materials where neither does
-// (contact/laws/region_law.hpp). Water stands in the joint and presses on both of its faces. A face is
+// (contact/laws/region_law.hpp). Water stands in the joint and pushes on both of its faces. A face is
 // therefore wet where the contact has a listed law, whichever block names it: were it wet by its own name
-// alone, the water would press on one block and not back on the other one.
+// alone, the water would push one block and not the other one back.
 //
 // An edge may face several contacts. The law of each holds on the stretch of the edge that the contact
 // covers, and the law of the edge itself on what faces nothing. Stretches are found from the shapes at the

@@ -80,8 +80,8 @@ struct StretchAtStart {
   }
 };
 
-/// Whether two tables press on the same stretch of a row's edge.
-bool press_together(const BlockSystem &blocks, std::size_t row, const Water &one, const Water &other) {
+/// Whether two tables push on the same stretch of a row's edge.
+bool act_together(const BlockSystem &blocks, std::size_t row, const Water &one, const Water &other) {
   bool found = false;
   for_wet_stretches(blocks, row, one, [&](std::size_t k, double from, double to) {
     for_wet_stretches(blocks, row, other, [&](std::size_t l, double other_from, double other_to) {
@@ -167,7 +167,7 @@ void warn_of_doubled_pressure(RunState &run, std::span<const WaterState> states,
           continue;
         }
         const auto row = std::find_if(rows.begin(), rows.end(), [&](std::size_t candidate) {
-          return press_together(run.blocks, candidate, one, other);
+          return act_together(run.blocks, candidate, one, other);
         });
         std::int64_t minus_id = row == rows.end() ? -no_block : -run.blocks.properties[*row].id.value;
         run.communicator.max(std::span(&minus_id, 1));
@@ -180,7 +180,7 @@ void warn_of_doubled_pressure(RunState &run, std::span<const WaterState> states,
             {Severity::warning,
              state.stage == nullptr ? place_of_key(run.scene, other, "phreatic") : state.stage->where,
              fmt::format(
-                 "[water.{}] and [water.{}] are both active {} and press on the same edge of block '{}'",
+                 "[water.{}] and [water.{}] are both active {} and act on the same edge of block '{}'",
                  one.name, other.name, when, block_name(run.scene, -minus_id)),
              "their pressures add up there",
              fmt::format("set water.{}.active = false where water.{} is active, or let them wet different "

@@ -1,5 +1,7 @@
 #pragma once
 
+// Where the water of a stage finds the blocks.
+
 #include "dynamics/water_pressure.hpp"
 #include "simulation/run_state.hpp"
 
@@ -8,7 +10,7 @@
 namespace gcpdda {
 
 /// What the water of the stage at hand does to a row. Settle stages and trials ask whether blocks rest where
-/// they are: there it presses as where the row was when the stage began.
+/// they are: there it pushes as where the row was when the stage began.
 ///
 /// @param gravity  downwards acceleration, m/s2
 /// @param outline  place for the row's outline

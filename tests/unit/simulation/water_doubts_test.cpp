@@ -75,7 +75,7 @@ TEST(WaterDoubts, TableThatLiesTooLow) {
 TEST(WaterDoubts, TwoTablesThatAddUp) {
   expect_one(
       warnings_of(slab(table("v", 3.0) + table("w", 3.0, "joints = [\"pair\"]\n"))),
-      "[water.v] and [water.w] are both active at the start and press on the same edge of block 'slab', "
+      "[water.v] and [water.w] are both active at the start and act on the same edge of block 'slab', "
       "their pressures add up there, set water.v.active = false where water.w is active, or let them wet "
       "different 'joints'");
   const auto raise = [](const std::string &set) {
@@ -83,7 +83,7 @@ TEST(WaterDoubts, TwoTablesThatAddUp) {
            set + " }\n";
   };
   const std::string tables = table("v", 1.0) + table("w", 3.0, "active = false\n");
-  expect_one(warnings_of(slab(tables, raise(""))), "both active in stage 'wet' and press on the same edge");
+  expect_one(warnings_of(slab(tables, raise(""))), "both active in stage 'wet' and act on the same edge");
   EXPECT_EQ(warnings_of(slab(tables, raise(", \"water.v.active\" = false"))), std::vector<std::string>{});
 }
 
