@@ -62,22 +62,22 @@ WaterLoad water_load(const BlockSystem &system, std::size_t row, std::span<const
   const RigidDof back = from != nullptr ? *from - system.trial[row] : RigidDof{};
   const Rotation turn = Rotation::of(back.r);
   outline.find(system, row);
-  const auto &[vertex, normal, length] = outline;
   for (const Water &of : water) {
     if (!of.active) {
       continue;
     }
     for_wet_stretches(system, row, of, [&](std::size_t k, double first, double last) {
-      const Vec2 tangent = perp(normal[k]);
-      const Vec2 arm = vertex[k] - centroid;
+      const Vec2 tangent = perp(outline.normal[k]);
+      const Vec2 arm = outline.vertex[k] - centroid;
+      const double length = outline.length[k];
       const PressureIntegral p =
           from != nullptr ? pressure_on_stretch(of, centroid + back.u + turn(arm), turn(tangent),
-                                                first * length[k], last * length[k], of.density * gravity)
-                          : pressure_on_stretch(of, vertex[k], tangent, first * length[k], last * length[k],
+                                                first * length, last * length, of.density * gravity)
+                          : pressure_on_stretch(of, outline.vertex[k], tangent, first * length, last * length,
                                                 of.density * gravity);
       const Vec2 moment = p.total * arm + p.along * tangent;
-      load.force += -p.total * normal[k];
-      load.dyad += outer(-1.0 * normal[k], moment);
+      load.force += -p.total * outline.normal[k];
+      load.dyad += outer(-1.0 * outline.normal[k], moment);
     });
   }
   return load;

@@ -304,11 +304,12 @@ TEST(Fos, SaysThatItLeavesTheEarthquakeOut) {
 
 TEST(Fos, NamesStagesThatItLeavesOut) {
   const WorkFolder folder;
-  folder.write("plane.toml", testing::plane_failure_toml(0.0) +
-                                 "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n"
-                                 "[[stage]]\nname = \"weaker\"\nkind = \"run\"\nlimit = 1.0\n"
-                                 "set = { \"joint.default.friction_angle_deg\" = 1.0 }\n"
-                                 "[[stage]]\nname = \"later\"\nkind = \"run\"\nduration = 1.0\n");
+  std::string toml = testing::plane_failure_toml(0.0);
+  toml.erase(toml.find("[ensemble]"));
+  folder.write("plane.toml", toml + "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n"
+                                    "[[stage]]\nname = \"weaker\"\nkind = \"run\"\nlimit = 1.0\n"
+                                    "set = { \"joint.default.friction_angle_deg\" = 1.0 }\n"
+                                    "[[stage]]\nname = \"later\"\nkind = \"run\"\nduration = 1.0\n");
   const Outcome found = run_gcpdda(0, {"fos", "plane.toml", "--tolerance", "0.3"}, folder);
   EXPECT_EQ(found.exit_code, 0) << found.err;
   EXPECT_NE(found.out.find("stage 'weaker' is left out with what it changes"), std::string::npos)

@@ -1,6 +1,7 @@
 // Liners against closed forms: a block that hangs in a lined roof, a ring under pressure, a beam that is
 // bent.
 
+#include "blockgen/region_cutter.hpp"
 #include "problem.hpp"
 
 #include "simulation/energy_ledger.hpp"
@@ -10,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 namespace gcpdda::testing::lined_block_test {
 namespace {
@@ -312,7 +315,7 @@ TEST(LinedBlock, ARingUnderEvenPressureKeepsItsElements) {
   constexpr double stress = 2.6e6;
   constexpr double radius = 3.0;
   constexpr double depth = 0.3; // of the ring
-  Simulation simulation(Communicator::self(), scene_of(R"(
+  Scene scene = scene_of(R"(
 [run]
 fidelity = "deformable"
 gravity = [0, 0]
@@ -365,7 +368,9 @@ set = { "liner.ring.active" = true }
 [[stage]]
 kind = "settle"
 limit = 5.0
-)"));
+)");
+  scene.region_blocks = std::make_shared<RegionCutter>(scene);
+  Simulation simulation(Communicator::self(), std::move(scene));
   run_stages(simulation);
   const std::vector<LinerLine> elements =
       simulation.bolts().liner_lines(Communicator::self(), simulation.blocks());

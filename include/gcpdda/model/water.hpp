@@ -22,6 +22,7 @@ struct Water {
   [[nodiscard]] double head(double x) const;
   /// Whether it wets a joint of this law, -1: an edge without a contact or a law.
   [[nodiscard]] bool wets(std::int32_t law) const;
+  /// Equal in all that a scene gives.
   friend bool operator==(const Water &, const Water &) = default;
 };
 

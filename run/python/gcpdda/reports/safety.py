@@ -29,7 +29,7 @@ def safety_page(search, title, frames):
              "CPU time": f"{sum(t['cpu_s'] for t in summary['trials']):.3g} s"}
     page.cards(cards)
     for stage in summary.get("left_out_stages", ()):
-        page.text(f"Stage '{stage}' is left out with what it changes, since it comes after the last settle stage.", "note")
+        page.text(f"Stage '{stage}' is left out with what it changes: it comes after the last settle stage.", "note")
     if settled.scene.get("earthquake", {}).get("record"):
         page.text("The earthquake of the scene is left out: the factor is that of blocks that were never shaken.")
     if summary["trials"]:
