@@ -1,7 +1,7 @@
 #include "contact/in_situ.hpp"
 
-#include "contact/laws/bonds.hpp"
 #include "contact/laws/region_law.hpp"
+#include "contact/touching_edges.hpp"
 #include "geometry/polygon.hpp"
 
 #include <algorithm>
@@ -44,31 +44,22 @@ std::vector<EdgeAsks> ask_contacts(const BlockSystem &system,
                                    std::span<const std::pair<BlockIndex, BlockIndex>> pairs,
                                    const JointLaws &joints) {
   std::vector<EdgeAsks> asks(system.reference_vertex.size());
-  constexpr double opposite = -0.9;
   for (const auto &[lower, higher] : pairs) {
     CandidatePair pair;
     pair.lower = lower;
     pair.higher = higher;
-    const auto lower_normals = system.of_row(system.reference_normal, lower.value);
-    const auto higher_normals = system.of_row(system.reference_normal, higher.value);
     const double share = system.is_fixed(lower.value) || system.is_fixed(higher.value) ? 1.0 : 0.5;
-    for (std::size_t a = 0; a < lower_normals.size(); ++a) {
-      for (std::size_t b = 0; b < higher_normals.size(); ++b) {
-        if (dot(lower_normals[a], higher_normals[b]) > opposite) {
-          continue;
-        }
-        const auto lower_edge = static_cast<std::int32_t>(a);
-        const auto higher_edge = static_cast<std::int32_t>(b);
-        const auto shared = shared_stretch(system, pair, lower_edge, higher_edge);
-        if (!shared || !lie_on_each_other(*shared, 0.0)) {
-          continue;
-        }
-        const std::int32_t law = law_of_edges(system, joints, pair, lower_edge, higher_edge);
-        const double asked = share / joints.laws[static_cast<std::size_t>(law)].normal_stiffness;
-        asks[system.vertex_begin[lower.value] + a].add(shared->length, asked);
-        asks[system.vertex_begin[higher.value] + b].add(shared->length, asked);
-      }
-    }
+    for_touching_edges(
+        system, pair, 0.0,
+        [&](std::int32_t lower_edge, std::int32_t higher_edge, const SharedStretch &shared) {
+          const std::int32_t law = law_of_edges(system, joints, pair, lower_edge, higher_edge);
+          const double asked = share / joints.laws[static_cast<std::size_t>(law)].normal_stiffness;
+          const auto add = [&](BlockIndex row, std::int32_t edge) {
+            asks[system.vertex_begin[row.value] + static_cast<std::size_t>(edge)].add(shared.length, asked);
+          };
+          add(pair.lower, lower_edge);
+          add(pair.higher, higher_edge);
+        });
   }
   return asks;
 }

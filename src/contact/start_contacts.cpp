@@ -1,10 +1,9 @@
 #include "contact/start_contacts.hpp"
 
-#include "contact/laws/bonds.hpp"
 #include "contact/laws/region_law.hpp"
+#include "contact/touching_edges.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <tuple>
 
 namespace gcpdda {
@@ -32,29 +31,16 @@ StartContact side_of(const BlockSystem &system, BlockIndex row, BlockIndex other
 
 void add_contacts(const BlockSystem &system, const JointLaws &joints, const CandidatePair &pair,
                   std::vector<StartContact> &contacts) {
-  constexpr double opposite = -0.9;
-  const auto lower_normals = system.of_row(system.reference_normal, pair.lower.value);
-  const auto higher_normals = system.of_row(system.reference_normal, pair.higher.value);
-  for (std::size_t a = 0; a < lower_normals.size(); ++a) {
-    for (std::size_t b = 0; b < higher_normals.size(); ++b) {
-      if (dot(lower_normals[a], higher_normals[b]) > opposite) {
-        continue;
-      }
-      const auto lower_edge = static_cast<std::int32_t>(a);
-      const auto higher_edge = static_cast<std::int32_t>(b);
-      const auto shared = shared_stretch(system, pair, lower_edge, higher_edge);
-      if (!shared || !lie_on_each_other(*shared, 0.0)) {
-        continue;
-      }
-      const std::int32_t law = law_of_edges(system, joints, pair, lower_edge, higher_edge);
-      const auto &[lower_first, lower_last] = shared->lower_ends;
-      const auto &[higher_last, higher_first] = shared->higher_ends; // that edge runs the other way
-      contacts.push_back(side_of(system, pair.lower, pair.higher, lower_edge, lower_first, lower_last));
-      contacts.back().law = law;
-      contacts.push_back(side_of(system, pair.higher, pair.lower, higher_edge, higher_first, higher_last));
-      contacts.back().law = law;
-    }
-  }
+  for_touching_edges(
+      system, pair, 0.0, [&](std::int32_t lower_edge, std::int32_t higher_edge, const SharedStretch &shared) {
+        const std::int32_t law = law_of_edges(system, joints, pair, lower_edge, higher_edge);
+        const auto &[lower_first, lower_last] = shared.lower_ends;
+        const auto &[higher_last, higher_first] = shared.higher_ends; // that edge runs the other way
+        contacts.push_back(side_of(system, pair.lower, pair.higher, lower_edge, lower_first, lower_last));
+        contacts.back().law = law;
+        contacts.push_back(side_of(system, pair.higher, pair.lower, higher_edge, higher_first, higher_last));
+        contacts.back().law = law;
+      });
 }
 
 /// The stretches of one edge, which has contacts.

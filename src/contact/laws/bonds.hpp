@@ -52,30 +52,8 @@
 #include "contact/candidates.hpp"
 
 #include <array>
-#include <cstdint>
-#include <optional>
 
 namespace gcpdda {
-
-/// Edges lie on each other where they are no farther apart than this share of the length they share.
-constexpr double coincidence = 1e-3;
-
-/// What two edges share at t = 0.
-struct SharedStretch {
-  std::array<Vec2, 2> lower_ends;  ///< X of the ends on the lower block's edge, in its order, m
-  std::array<Vec2, 2> higher_ends; ///< of the points opposite
-  std::array<double, 2> gap{};     ///< between them along the normal, m
-  Vec2 normal;                     ///< outward of the lower block, at t = 0
-  double length = 0.0;             ///< m
-};
-
-/// Of two edges that face each other over some length, near or far.
-std::optional<SharedStretch> shared_stretch(const BlockSystem &system, const CandidatePair &pair,
-                                            std::int32_t lower_edge, std::int32_t higher_edge);
-
-/// Whether they lie on each other.
-/// @param pressed  overlap that a stress in the rock has given them (in_situ.hpp), m
-bool lie_on_each_other(const SharedStretch &shared, double pressed);
 
 enum class Configuration { trial, trial_previous };
 
