@@ -426,31 +426,39 @@ class Result(Folder):
         return Plots(self)
 
 
-class Safety(Folder):
-    """The result folder of `gcpdda fos`: factor, holds, fails, bound; trials and blocks as tables. Until the search has
-    ended there is only `settled` and what trials have written: `summary` is None, and the others say what to do."""
+class _Outcome(Folder):
+    """A folder whose summary is written when the computation ends."""
 
     @property
     def summary(self):
-        return self._json("fos.json")
+        return self._json(self._summary_file)
 
     @property
     def outcome(self):
-        """`summary`, or FileNotFoundError where the search has not ended."""
+        """`summary`, or FileNotFoundError, which says what to do, where the computation has not ended."""
         self._expect_end()
         return self.summary
 
     def _expect_end(self):
-        if (self.path / "fos.json").exists():
-            return
+        if not (self.path / self._summary_file).exists():
+            raise FileNotFoundError(self._why_it_is_missing())
+
+
+class Safety(_Outcome):
+    """The result folder of `gcpdda fos`: factor, holds, fails, bound; trials and blocks as tables. Until the search has
+    ended there is only `settled` and what trials have written: `summary` is None, and the others say what to do."""
+
+    _summary_file = "fos.json"
+
+    def _why_it_is_missing(self):
         if not is_search(self.path):
-            raise FileNotFoundError(f"{self.path} is not the folder of a search: it holds no fos.json")
+            return f"{self.path} is not the folder of a search: it holds no fos.json"
         words = (f"{self.path} holds a search for the factor of safety that has not ended: fos.json is missing; wait "
                  f"for its end, or where it was stopped repeat gcpdda fos SCENE.toml --out {self.path} --overwrite")
         settled = self.path / "settled"
         if Result(settled).verdict in ("settled", "completed"):
             words += f", or begin with its settled state: another folder with --out, and --settled {settled}"
-        raise FileNotFoundError(words)
+        return words
 
     @property
     def factor(self):
@@ -498,27 +506,17 @@ class Safety(Folder):
         return self.trial(min(failed)) if failed else None
 
 
-class Ensemble(Folder):
+class Ensemble(_Outcome):
     """The result folder of `gcpdda ensemble`: summary, None until the members are computed, and a table with a row for
     each member."""
 
-    @property
-    def summary(self):
-        return self._json("ensemble.json")
+    _summary_file = "ensemble.json"
 
-    @property
-    def outcome(self):
-        """`summary`, or FileNotFoundError where members are still to be computed."""
-        self._expect_end()
-        return self.summary
-
-    def _expect_end(self):
-        if (self.path / "ensemble.json").exists():
-            return
+    def _why_it_is_missing(self):
         if not (self.path / "ensemble.toml").exists():
-            raise FileNotFoundError(f"{self.path} is not the folder of an ensemble: it holds no ensemble.json")
-        raise FileNotFoundError(f"{self.path} holds an ensemble that has not ended: ensemble.json is missing; wait for "
-                                "its end, or repeat its call of gcpdda ensemble, which computes the missing members")
+            return f"{self.path} is not the folder of an ensemble: it holds no ensemble.json"
+        return (f"{self.path} holds an ensemble that has not ended: ensemble.json is missing; wait for its end, or "
+                "repeat its call of gcpdda ensemble, which computes the missing members")
 
     @property
     def members(self):
