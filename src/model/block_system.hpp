@@ -215,10 +215,12 @@ struct alignas(64) BlockMotion {
   [[nodiscard]] Rotation rotation() const { return {turn[1].x, turn[1].y}; }
 };
 
-/// Where a block was (x - x_0) when a stage began and when its motion was last looked at.
+/// Where a block was (x - x_0) when a stage began, when its motion was last looked at, and where the water of
+/// a stage that asks for rest finds it.
 struct BlockMark {
   RigidDof stage;
   RigidDof look;
+  RigidDof water;
 };
 
 /// A block on its way to equilibrium in pseudo-time (statics/pseudo_time.hpp), by the freedoms of

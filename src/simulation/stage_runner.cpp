@@ -42,10 +42,12 @@ void mark_stage(RunState &run) {
     return; // nobody looks
   }
   keep_unshaken(run);
+  const Stage &stage = run.clock.stage();
+  const bool confirms = stage.begins_at_rest || stage.goes_on_failing; // a trial, under its water
   const std::span<BlockMark> marks = mark_rows(run.blocks);
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     const RigidDof &now = run.blocks.displacement[row];
-    marks[row] = {run.clock.stage().goes_on_failing ? marks[row].stage : now, now};
+    marks[row] = {stage.goes_on_failing ? marks[row].stage : now, now, confirms ? marks[row].water : now};
   }
 }
 

@@ -316,7 +316,7 @@ TEST_F(DamagedCheckpoint, IsFoundByItsSeal) {
     std::string bytes = good_;
     const std::size_t place = bytes.find('\n', bytes.find(word)) - 1;
     bytes[place] = static_cast<char>(bytes[place] == '1' ? '2' : '1');
-    expect_older(bytes, *word == 'v' ? "it has format version 11, this gcpdda reads version 19" : "it ");
+    expect_older(bytes, *word == 'v' ? "it has format version 21, this gcpdda reads version 20" : "it ");
   }
   std::string bytes = good_;
   bytes[500] = 'x';

@@ -143,9 +143,9 @@ TEST_F(Restart, WithoutAValidCheckpointIsRefused) {
                   last + ": it is an HDF5 file, but no checkpoint of gcpdda"});
   fs::remove(files_[0]);
   std::ofstream(files_[1], std::ios::binary) << good;
-  overwrite(files_[1], good.find("version 19") + 9, '8');
+  overwrite(files_[1], good.find("version 20") + 8, '1');
   expect_refusal(0, {"restart", "run"}, 4,
-                 {last + ": it has format version 18, this gcpdda reads version 19"});
+                 {last + ": it has format version 10, this gcpdda reads version 20"});
   fs::remove_all(folder_ / "run/checkpoints");
   fs::remove(folder_ / "run/summary.json");
   expect_refusal(0, {"restart", "run"}, 4, {"there is no checkpoint in run/checkpoints"});

@@ -3,6 +3,8 @@
 #include "problem.hpp"
 #include "safety_limits.hpp"
 
+#include "driver/safety_search.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -95,6 +97,26 @@ TEST(SafetySlides, ADamKeepsItsWater) {
       EXPECT_NEAR(middle_of(found.report), factor_of_dam(), 0.01 * factor_of_dam()) << fidelity << solver;
     }
   }
+}
+
+// A stage that confirms a trial has the water of the trial: the dam has slid to a stop in it, with the whole
+// lake behind it.
+TEST(SafetySlides, AConfirmationHasTheWaterOfItsTrial) {
+  std::string toml = dam("rigid", "static", "");
+  const std::string filled = "\"water.lake.active\" = true";
+  toml.replace(toml.find(filled), filled.size(),
+               filled + ", \"joint.default.friction_angle_deg\" = 5.0, \"joint.default.cohesion\" = 0.0");
+  toml.insert(toml.find("[[stage]]"),
+              block_toml("stop", rectangle({side + 0.5, 0.1}, {side + 2.0, 4.0}), "fixed = true"));
+  Simulation simulation(Communicator::self(), with_confirming_stage(scene_of(toml), Verdict::settled));
+  run_stages(simulation, step);
+  ASSERT_EQ(simulation.stage_results().size(), 3U);
+  EXPECT_GT(simulation.stage_results()[1].slide_distance, 0.49);
+  EXPECT_EQ(simulation.stage_results()[2].verdict, Verdict::settled);
+  const double push = 0.5 * 1000.0 * 9.81 * water_height * water_height;
+  const AppliedForces *on_dam = simulation.blocks().applied_to(0);
+  ASSERT_NE(on_dam, nullptr);
+  EXPECT_NEAR(on_dam->load.u.x, push, 1e-4 * push) << "it has settled by 5e-5 m";
 }
 
 constexpr double joint_friction_deg = 40.0;

@@ -17,7 +17,7 @@
 namespace gcpdda::checkpoint {
 
 /// Of the lists below and of the seal: it rises with every change of them.
-inline constexpr std::int64_t version = 19;
+inline constexpr std::int64_t version = 20;
 
 inline std::filesystem::path folder(const std::filesystem::path &directory) {
   return directory / "checkpoints";
@@ -223,7 +223,8 @@ inline constexpr std::array block_fields{
     detail::of_ledger<&BlockLedger::load>("/block/load_work"),
     detail::of_ledger<&BlockLedger::gravity>("/block/gravity_work"),
     detail::of_mark<&BlockMark::stage>("/block/at_stage_begin"),
-    detail::of_mark<&BlockMark::look>("/block/at_last_look")};
+    detail::of_mark<&BlockMark::look>("/block/at_last_look"),
+    detail::of_mark<&BlockMark::water>("/block/in_water")};
 /// Of blocks in a stage after the one with which the ground began to shake; not in other files. A file
 /// without them leaves open how far blocks have moved since then.
 inline constexpr std::array unshaken_fields{
@@ -255,7 +256,7 @@ inline constexpr const char *region_seen_at = "/region/seen_at"; ///< i32
 
 // A field that is added to the state must join one of the lists above, or the words over them.
 static_assert(std::tuple_size_v<decltype(BlockSystem::row_fields())> == 8);
-static_assert(sizeof(BlockMark) == 6 * sizeof(double));
+static_assert(sizeof(BlockMark) == 9 * sizeof(double));
 static_assert(sizeof(BlockContactSum) == 9 * sizeof(double));
 static_assert(sizeof(BlockLedger) == 4 * sizeof(double));
 static_assert(sizeof(AppliedForces) == 8 * sizeof(double));
