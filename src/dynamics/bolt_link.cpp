@@ -243,6 +243,25 @@ LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, doub
   return memory;
 }
 
+double strength_used(const LinkLaw &law, const LinkMemory &memory) {
+  return memory.broken ? 1.0
+                       : strength_used(law.section, memory.cracked, law.length,
+                                       {memory.axial, memory.shear, memory.moment});
+}
+
+LinkPeaks with_last(const LinkLaw &law, const LinkMemory &memory) {
+  LinkPeaks largest = memory.largest;
+  const auto take = [](double &peak, double value) { peak = std::max(peak, value); };
+  take(largest.tension, memory.axial);
+  take(largest.shear, std::abs(memory.shear));
+  if (law.section.thickness > 0.0) {
+    take(largest.compression, -memory.axial);
+    take(largest.moment, std::abs(memory.moment) + 0.5 * law.length * std::abs(memory.shear));
+    take(largest.strength_used, strength_used(law, memory));
+  }
+  return largest;
+}
+
 double stored_energy(const LinkLaw &law, const LinkMemory &memory) {
   double energy = 0.5 * memory.axial * memory.axial / law.axial_stiffness;
   if (law.shear_stiffness > 0.0) {

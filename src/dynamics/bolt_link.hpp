@@ -65,6 +65,17 @@ struct LinkLaw {
   LinerSection section;
 };
 
+/// Largest forces of a link since it was put in, in the steps of the dynamic solver, N/m.
+struct LinkPeaks {
+  double tension = -SupportType::unlimited;
+  double compression = 0.0;   ///< of a liner
+  double moment = 0.0;        ///< at the ends of a liner's element, N
+  double shear = 0.0;         ///< absolute value
+  double strength_used = 0.0; ///< of a liner
+
+  friend bool operator==(const LinkPeaks &, const LinkPeaks &) = default;
+};
+
 struct LinkMemory {
   double axial_slip = 0.0; ///< e_p, m
   double shear_slip = 0.0; ///< s_p, m
@@ -85,6 +96,7 @@ struct LinkMemory {
   // Parts of e_p of a grouted bolt, m.
   double steel_slip = 0.0; ///< e_y
   double grout_slip = 0.0; ///< g, from where `BoltLink::grout` is measured
+  LinkPeaks largest = {};
 
   friend bool operator==(const LinkMemory &, const LinkMemory &) = default;
 };
@@ -131,6 +143,12 @@ LinkPose pose_of(const BlockSystem &system, const BoltLink &link, const std::arr
 
 /// The memory at a new extension, slide and turn.
 LinkMemory respond(const LinkLaw &law, LinkMemory memory, double extension, double slide, double turn = 0.0);
+
+/// Of a liner: the largest share of its strength that its forces use, 1 where it is broken.
+double strength_used(const LinkLaw &law, const LinkMemory &memory);
+
+/// Its largest forces, those of the last evaluation among them.
+LinkPeaks with_last(const LinkLaw &law, const LinkMemory &memory);
 
 /// J/m.
 double stored_energy(const LinkLaw &law, const LinkMemory &memory);

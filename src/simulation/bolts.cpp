@@ -281,6 +281,13 @@ void Bolts::evaluate(const BlockSystem &system) {
   }
 }
 
+void Bolts::note_largest() {
+  for (const Here &here : here_) {
+    LinkMemory &memory = links_[here.link].memory;
+    memory.largest = with_last(laws_[here.link], memory);
+  }
+}
+
 void Bolts::add_forces(const BlockSystem &system, std::span<BlockContactSum> sums) const {
   for (std::size_t k = 0; k < here_.size(); ++k) {
     for (std::size_t side = 0; side < 2; ++side) {
@@ -365,6 +372,7 @@ std::vector<LinkLine> Bolts::lines(const Communicator &communicator, const Block
                     {position(head, -towards_head), position(head, 0.5 * link.length),
                      position(1 - head, -0.5 * link.length), position(1 - head, towards_tip)},
                     link.memory});
+    mine.back().memory.largest = with_last(laws_[here.link], link.memory);
   }
   std::vector<LinkLine> all;
   for (const auto &theirs : communicator.all_gather(mine)) {
@@ -412,12 +420,15 @@ std::vector<BoltReport> Bolts::report(const Communicator &communicator, const Sc
       fresh.bolt = bolt;
       fresh.head = points.front();
       fresh.axial = memory.axial;
+      fresh.largest_axial = memory.largest.tension;
       fresh.extension = memory.extension;
     }
     BoltReport &report = reports.back();
     report.tip = points.back();
     report.axial = std::max(report.axial, memory.axial);
     report.shear = std::max(report.shear, std::abs(memory.shear));
+    report.largest_axial = std::max(report.largest_axial, memory.largest.tension);
+    report.largest_shear = std::max(report.largest_shear, memory.largest.shear);
     report.extension = std::max(report.extension, memory.extension);
     report.slide = std::max(report.slide, std::abs(memory.slide));
     ++report.links;
@@ -426,8 +437,9 @@ std::vector<BoltReport> Bolts::report(const Communicator &communicator, const Sc
   }
   for (BoltReport &report : reports) {
     const auto support = static_cast<std::size_t>(scene.bolts[static_cast<std::size_t>(report.bolt)].support);
-    report.axial *= scene.supports[support].spacing;
-    report.shear *= scene.supports[support].spacing;
+    for (double *force : {&report.axial, &report.shear, &report.largest_axial, &report.largest_shear}) {
+      *force *= scene.supports[support].spacing;
+    }
   }
   return reports;
 }
@@ -439,13 +451,17 @@ void Bolts::to_numbers(const std::vector<BoltLink> &links, std::vector<std::int6
     const LinkMemory &m = link.memory;
     counts.insert(counts.end(), {link.bolt, a.block, b.block, link.head_first ? 1 : 0, m.yielded ? 1 : 0,
                                  m.broken ? 1 : 0, link.liner, m.cracked ? 1 : 0});
-    numbers.insert(numbers.end(),
-                   {a.point.x,        a.point.y,        a.along.x,     a.along.y,     b.point.x,
-                    b.point.y,        b.along.x,        b.along.y,     link.length,   link.bond_length,
-                    link.overhang[0], link.overhang[1], m.axial_slip,  m.shear_slip,  m.dissipated,
-                    m.axial,          m.shear,          m.extension,   m.slide,       m.turn_slip,
-                    m.moment,         m.turn,           link.grout[0], link.grout[1], m.steel_slip,
-                    m.grout_slip,     a.away,           b.away});
+    numbers.insert(numbers.end(), {a.point.x,        a.point.y,         a.along.x,
+                                   a.along.y,        b.point.x,         b.point.y,
+                                   b.along.x,        b.along.y,         link.length,
+                                   link.bond_length, link.overhang[0],  link.overhang[1],
+                                   m.axial_slip,     m.shear_slip,      m.dissipated,
+                                   m.axial,          m.shear,           m.extension,
+                                   m.slide,          m.turn_slip,       m.moment,
+                                   m.turn,           link.grout[0],     link.grout[1],
+                                   m.steel_slip,     m.grout_slip,      a.away,
+                                   b.away,           m.largest.tension, m.largest.compression,
+                                   m.largest.moment, m.largest.shear,   m.largest.strength_used});
   }
 }
 
@@ -470,6 +486,7 @@ Bolts Bolts::from_numbers(std::span<const std::int64_t> counts, std::span<const 
                    c[4] != 0, c[5] != 0, c[7] != 0, x[19], x[20], x[21]};
     link.memory.steel_slip = x[24];
     link.memory.grout_slip = x[25];
+    link.memory.largest = {x[28], x[29], x[30], x[31], x[32]};
     link.grout = {x[22], x[23]};
     link.liner = static_cast<std::int32_t>(c[6]);
   }

@@ -33,7 +33,7 @@ struct LinkLine {
   /// m; the second and third are the middle of the link as the block towards the head and the one towards the
   /// tip carry it, and part as the joint opens and slips.
   std::array<Vec2, 4> points;
-  LinkMemory memory;
+  LinkMemory memory; ///< its largest forces with those of the last evaluation
 };
 
 /// What is written of a bolt: largest values over its links, for one bolt.
@@ -48,6 +48,8 @@ struct BoltReport {
   std::int64_t links = 0;
   std::int64_t yielded = 0; ///< links that have yielded, broken ones included
   std::int64_t broken = 0;
+  double largest_axial = 0.0; ///< of the steps so far, N, as the next one
+  double largest_shear = 0.0;
 };
 
 /// What a link does to an owned row at the last evaluation.
@@ -97,6 +99,8 @@ public:
 
   /// Forces at the posed trial configuration; the memory moves on to it.
   void evaluate(const BlockSystem &system);
+  /// Forces of the last evaluation count among the largest ones.
+  void note_largest();
   /// Add them to owned rows.
   void add_forces(const BlockSystem &system, std::span<BlockContactSum> sums) const;
   /// What they do to F, by entry of BlockSystem::deformation of owned rows.
@@ -141,7 +145,7 @@ public:
 
   /// For a checkpoint, and back.
   static constexpr std::size_t counts_per_link = 8;
-  static constexpr std::size_t numbers_per_link = 28;
+  static constexpr std::size_t numbers_per_link = 33;
   static void to_numbers(const std::vector<BoltLink> &links, std::vector<std::int64_t> &counts,
                          std::vector<double> &numbers);
   static Bolts from_numbers(std::span<const std::int64_t> counts, std::span<const double> numbers);

@@ -40,6 +40,7 @@ void evaluate_border(RunState &run) {
   take_report(run,
               run.contacts.evaluate_border(run.blocks, run.neighbours.candidates, run.neighbours.history));
   evaluate_bolts(run);
+  run.bolts.note_largest();
 }
 
 void evaluate_all(RunState &run) {

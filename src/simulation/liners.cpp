@@ -144,9 +144,8 @@ LinerLine line_of(const BlockSystem &system, const BoltLink &link, const std::ar
   const double constant = link.head_first ? memory.moment : -memory.moment;
   const double linear = 0.5 * law.length * memory.shear;
   line.moments = {constant + linear, constant - linear};
-  line.strength_used = memory.broken ? 1.0
-                                     : strength_used(law.section, memory.cracked, law.length,
-                                                     {memory.axial, memory.shear, memory.moment});
+  line.strength_used = strength_used(law, memory);
+  line.memory.largest = with_last(law, memory);
   return line;
 }
 

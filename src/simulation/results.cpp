@@ -323,7 +323,8 @@ std::vector<BoltHistoryRow> collect_bolts(const Simulation &simulation) {
   for (const BoltReport &bolt :
        simulation.bolts().report(simulation.communicator(), scene, simulation.blocks())) {
     rows.push_back({scene.bolts[static_cast<std::size_t>(bolt.bolt)].name, bolt.head, bolt.tip, bolt.axial,
-                    bolt.shear, bolt.extension, bolt.slide, bolt.links, bolt.yielded, bolt.broken});
+                    bolt.shear, bolt.extension, bolt.slide, bolt.links, bolt.yielded, bolt.broken,
+                    bolt.largest_axial, bolt.largest_shear});
   }
   return rows;
 }
@@ -381,6 +382,12 @@ std::vector<LinerHistoryRow> collect_liners(const Simulation &simulation) {
     row.cracked += line.memory.cracked ? 1 : 0;
     row.yielded += line.memory.yielded || line.memory.broken ? 1 : 0;
     row.broken += line.memory.broken ? 1 : 0;
+    const LinkPeaks &largest = line.memory.largest;
+    row.largest_compression = std::max(row.largest_compression, largest.compression);
+    row.largest_tension = std::max(row.largest_tension, largest.tension);
+    row.largest_moment = std::max(row.largest_moment, largest.moment);
+    row.largest_shear = std::max(row.largest_shear, largest.shear);
+    row.largest_strength_used = std::max(row.largest_strength_used, largest.strength_used);
   }
   return rows;
 }

@@ -102,21 +102,25 @@ double last_sum(const fs::path &run, std::size_t column) {
   return sum;
 }
 
-/// The table of summary.json against the rows of history/bolts.csv: its forces are theirs, and so are the
-/// times at which bolts were put in, up to the row before the first of each.
+/// The table of summary.json against the rows of history/bolts.csv: largest forces are those of the last row
+/// of a bolt and no less than what any row has, and times at which bolts were put in are those of the rows,
+/// up to the row before the first of each.
 void expect_loads_of_history(const fs::path &run) {
   std::map<std::string, std::array<double, 2>> largest;
   double last = 0.0;
   std::string last_names;
   for (const std::string &line : testing::lines_of(testing::file_text(run / "history/bolts.csv"))) {
-    const CsvRow<13> row(line);
+    const CsvRow<15> row(line);
     if (row.fields[0] == "time[s]") {
       continue;
     }
+    const auto number = [&](std::size_t k) { return std::stod(std::string(row.fields[k])); };
     auto &[axial, shear] = largest[std::string(row.fields[1])];
-    axial = std::max(axial, std::stod(std::string(row.fields[6])));
-    shear = std::max(shear, std::stod(std::string(row.fields[7])));
-    const double time = std::stod(std::string(row.fields[0]));
+    EXPECT_GE(number(13), std::max(axial, number(6)));
+    EXPECT_GE(number(14), std::max(shear, number(7)));
+    axial = number(13);
+    shear = number(14);
+    const double time = number(0);
     last_names = time > last ? "" : last_names;
     last_names += "," + std::string(row.fields[1]) + ",";
     last = time;
@@ -180,6 +184,54 @@ TEST(Bolts, AreTheSameOnAnyNumberOfRanksAndThroughARestart) {
     if (world.size() > 1) {
       EXPECT_GE(summary_number(together, "migrations"), 1);
       EXPECT_GE(summary_number(together, "cross_rank_contacts"), 50);
+    }
+  }
+  world.barrier();
+}
+
+/// Bolts whose largest tension so far exceeds that of every row.
+int loaded_between_rows(const fs::path &run) {
+  std::map<std::string, std::array<double, 2>> largest;
+  for (const std::string &line : testing::lines_of(testing::file_text(run / "history/bolts.csv"))) {
+    const CsvRow<15> row(line);
+    if (row.fields[0] != "time[s]") {
+      auto &[of_rows, so_far] = largest[std::string(row.fields[1])];
+      of_rows = std::max(of_rows, std::stod(std::string(row.fields[6])));
+      so_far = std::stod(std::string(row.fields[13]));
+    }
+  }
+  return static_cast<int>(std::count_if(largest.begin(), largest.end(),
+                                        [](const auto &bolt) { return bolt.second[1] > bolt.second[0]; }));
+}
+
+// A checkpoint between two rows has what links have borne since the first of them; elastic ones, which swing.
+TEST(Bolts, KeepTheirLargestForcesThroughARestartBetweenTwoRows) {
+  const Communicator world = Communicator::world();
+  const testing::SharedFolder folder(world);
+  const testing::CapturedLog log;
+  const Scene scene = testing::scene_of(
+      bolted_wall_toml(),
+      {"output.interval=0.01", "output.history_interval=0.01", "output.checkpoint_interval=0.008",
+       "support.bolt.axial_yield=1e12", "support.bolt.shear_yield=1e12", "support.bolt.bond_strength=1e12",
+       "support.bolt.rupture_strain=10.0", "support.cable.axial_yield=1e12"});
+  const fs::path whole = folder.path("whole");
+  const fs::path resumed = folder.path("resumed");
+  EXPECT_EQ(run_scene(world, scene, {whole, false}), 0);
+  world.barrier();
+  if (world.is_root()) {
+    fs::copy(whole, resumed, fs::copy_options::recursive);
+    fs::remove(checkpoint_files(resumed).back());
+  }
+  world.barrier();
+  EXPECT_EQ(restart_scene(world, scene, scene, resumed), 0);
+  world.barrier();
+  if (world.is_root()) {
+    EXPECT_GT(summary_number(resumed, "restarted_at"), 0.011);
+    EXPECT_LT(summary_number(resumed, "restarted_at"), 0.0195);
+    EXPECT_GE(loaded_between_rows(whole), 3);
+    EXPECT_EQ(testing::summary_text(resumed, "bolts"), testing::summary_text(whole, "bolts"));
+    for (const std::string &difference : compare_runs(resumed, whole)) {
+      ADD_FAILURE() << difference;
     }
   }
   world.barrier();

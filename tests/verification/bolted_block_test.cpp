@@ -4,6 +4,7 @@
 #include "problem.hpp"
 
 #include "simulation/energy_ledger.hpp"
+#include "simulation/results.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -73,6 +74,8 @@ TEST(BoltedBlock, HangsOnASpring) {
                step_length * step_length, worst_residual / (0.5 * weight * weight / stiffness));
   expect_above("bolts: hung square, frequency the step allows for, over its own", 1.0,
                simulation.bound().omega_max / omega);
+  // Seen at every step, and the top of a cosine is flat.
+  EXPECT_NEAR(collect_bolts(simulation)[0].largest_axial / (2.0 * weight), 1.0, step_length * step_length);
 }
 
 // A capacity of 1.5 W stops the fall after x = T^2/(2 k (T - W)) = 2.25 W/k, of which 0.75 W/k is plastic.

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,13 +46,15 @@ struct BoltHistoryRow {
   std::int64_t links = 0;
   std::int64_t yielded = 0;
   std::int64_t broken = 0;
+  double largest_axial = -std::numeric_limits<double>::max(); ///< of the steps so far, N, as the next one
+  double largest_shear = 0.0;
 };
 
 /// What one bolt has borne, for summary.json.
 struct BoltLoad {
   BoltHistoryRow last;    ///< its last row
   double time = 0.0;      ///< of it, s
-  double axial = 0.0;     ///< largest tension of all its rows, N
+  double axial = 0.0;     ///< largest tension so far, N
   double shear = 0.0;     ///< N
   double installed = 0.0; ///< when it was put in last, s; the next two are not known to the history
   bool in_place = false;
@@ -76,13 +79,19 @@ struct LinerHistoryRow {
   std::int64_t cracked = 0;   ///< elements
   std::int64_t yielded = 0;
   std::int64_t broken = 0;
+  /// Of the steps so far.
+  double largest_compression = 0.0; ///< N/m
+  double largest_tension = 0.0;     ///< N/m
+  double largest_moment = 0.0;      ///< N
+  double largest_shear = 0.0;       ///< N/m
+  double largest_strength_used = 0.0;
 };
 
 /// What one liner has borne, for summary.json.
 struct LinerLoad {
   LinerHistoryRow last;     ///< its last row
   double time = 0.0;        ///< of it, s
-  double compression = 0.0; ///< largest of all its rows, as the next ones
+  double compression = 0.0; ///< largest so far, as the next ones
   double tension = 0.0;
   double moment = 0.0;
   double shear = 0.0;

@@ -33,16 +33,19 @@ constexpr const char *energy_header =
     "time[s],kinetic[J/m],strain[J/m],contact_normal[J/m],contact_stick[J/m],gravity[J/m],friction_loss[J/m],"
     "damping_loss[J/m],boundary_work[J/m],residual[J/m],unbalanced_ratio[-],max_speed[m/s]\n";
 constexpr const char *support_columns = ",support[J/m],support_loss[J/m]";
-constexpr const char *bolt_header = "time[s],bolt,x_head[m],y_head[m],x_tip[m],y_tip[m],axial[N],shear[N],"
-                                    "extension[m],slide[m],joints,yielded,broken\n";
+constexpr const char *bolt_header =
+    "time[s],bolt,x_head[m],y_head[m],x_tip[m],y_tip[m],axial[N],shear[N],"
+    "extension[m],slide[m],joints,yielded,broken,largest_axial[N],largest_shear[N]\n";
+constexpr std::size_t bolt_columns = 15;
 constexpr const char *energy_name = "energy";
 constexpr const char *bolts_name = "bolts";
 constexpr const char *liner_header =
     "time[s],liner,elements,compression[N/m],x_compression[m],y_compression[m],tension[N/m],x_tension[m],"
     "y_tension[m],moment[N],x_moment[m],y_moment[m],shear[N/"
     "m],x_shear[m],y_shear[m],strength_used[-],cracked,"
-    "yielded,broken\n";
-constexpr std::size_t liner_columns = 19;
+    "yielded,broken,largest_compression[N/m],largest_tension[N/m],largest_moment[N],largest_shear[N/m],"
+    "largest_strength_used[-]\n";
+constexpr std::size_t liner_columns = 24;
 constexpr const char *liners_name = "liners";
 
 void append_row(std::string &text, std::initializer_list<double> values) {
@@ -217,11 +220,12 @@ std::string &HistoryWriter::pending_of(std::string_view table) {
 
 void HistoryWriter::write_bolts(double time, const std::vector<BoltHistoryRow> &rows) {
   for (const BoltHistoryRow &row : rows) {
+    const BoltLoad &load = note_bolt(time, row);
     pending_of(bolts_name) +=
-        fmt::format("{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{}\n",
+        fmt::format("{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{},{:."
+                    "17g},{:.17g}\n",
                     time, row.name, row.head.x, row.head.y, row.tip.x, row.tip.y, row.axial, row.shear,
-                    row.extension, row.slide, row.links, row.yielded, row.broken);
-    note_bolt(time, row);
+                    row.extension, row.slide, row.links, row.yielded, row.broken, load.axial, load.shear);
   }
 }
 
@@ -232,12 +236,14 @@ void HistoryWriter::write_liners(double time, const std::vector<LinerHistoryRow>
     for (const LinerPeak &peak : {row.compression, row.tension, row.moment, row.shear}) {
       text += fmt::format(",{:.17g},{:.17g},{:.17g}", peak.value, peak.where.x, peak.where.y);
     }
-    text += fmt::format(",{:.17g},{},{},{}\n", row.strength_used, row.cracked, row.yielded, row.broken);
-    note_liner(time, row);
+    const LinerLoad &load = note_liner(time, row);
+    text += fmt::format(",{:.17g},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", row.strength_used,
+                        row.cracked, row.yielded, row.broken, load.compression, load.tension, load.moment,
+                        load.shear, load.strength_used);
   }
 }
 
-void HistoryWriter::note_bolt(double time, const BoltHistoryRow &row) {
+const BoltLoad &HistoryWriter::note_bolt(double time, const BoltHistoryRow &row) {
   const auto [found, is_new] = load_of_.emplace(row.name, bolt_loads_.size());
   if (is_new) {
     bolt_loads_.emplace_back();
@@ -245,11 +251,13 @@ void HistoryWriter::note_bolt(double time, const BoltHistoryRow &row) {
   BoltLoad &load = bolt_loads_[found->second];
   load.last = row;
   load.time = time;
-  load.axial = is_new ? row.axial : std::max(load.axial, row.axial);
-  load.shear = std::max(load.shear, row.shear);
+  const double axial = std::max(row.axial, row.largest_axial);
+  load.axial = is_new ? axial : std::max(load.axial, axial);
+  load.shear = std::max({load.shear, row.shear, row.largest_shear});
+  return load;
 }
 
-void HistoryWriter::note_liner(double time, const LinerHistoryRow &row) {
+const LinerLoad &HistoryWriter::note_liner(double time, const LinerHistoryRow &row) {
   const auto [found, is_new] = liner_of_.emplace(row.name, liner_loads_.size());
   if (is_new) {
     liner_loads_.emplace_back();
@@ -257,11 +265,12 @@ void HistoryWriter::note_liner(double time, const LinerHistoryRow &row) {
   LinerLoad &load = liner_loads_[found->second];
   load.last = row;
   load.time = time;
-  load.compression = std::max(load.compression, row.compression.value);
-  load.tension = std::max(load.tension, row.tension.value);
-  load.moment = std::max(load.moment, row.moment.value);
-  load.shear = std::max(load.shear, row.shear.value);
-  load.strength_used = std::max(load.strength_used, row.strength_used);
+  load.compression = std::max({load.compression, row.compression.value, row.largest_compression});
+  load.tension = std::max({load.tension, row.tension.value, row.largest_tension});
+  load.moment = std::max({load.moment, row.moment.value, row.largest_moment});
+  load.shear = std::max({load.shear, row.shear.value, row.largest_shear});
+  load.strength_used = std::max({load.strength_used, row.strength_used, row.largest_strength_used});
+  return load;
 }
 
 namespace {
@@ -288,13 +297,15 @@ void HistoryWriter::note_rows(const std::string &table, std::string_view rows) {
     const std::string_view text = rows.substr(0, end);
     rows.remove_prefix(end + 1);
     if (table == bolts_name) {
-      const Numbers<13> r(text);
-      note_bolt(r.number(0), {std::string(r.row.fields[1]), r.point(2), r.point(4), r.number(6), r.number(7),
-                              r.number(8), r.number(9), r.count(10), r.count(11), r.count(12)});
+      const Numbers<bolt_columns> r(text);
+      note_bolt(r.number(0),
+                {std::string(r.row.fields[1]), r.point(2), r.point(4), r.number(6), r.number(7), r.number(8),
+                 r.number(9), r.count(10), r.count(11), r.count(12), r.number(13), r.number(14)});
     } else {
       const Numbers<liner_columns> r(text);
       note_liner(r.number(0), {std::string(r.row.fields[1]), r.count(2), r.peak(3), r.peak(6), r.peak(9),
-                               r.peak(12), r.number(15), r.count(16), r.count(17), r.count(18)});
+                               r.peak(12), r.number(15), r.count(16), r.count(17), r.count(18), r.number(19),
+                               r.number(20), r.number(21), r.number(22), r.number(23)});
     }
   }
 }

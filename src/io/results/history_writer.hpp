@@ -65,8 +65,8 @@ public:
 private:
   [[nodiscard]] std::string header_of(std::size_t history) const;
   [[nodiscard]] std::filesystem::path path_of(std::size_t history) const;
-  void note_bolt(double time, const BoltHistoryRow &row);
-  void note_liner(double time, const LinerHistoryRow &row);
+  const BoltLoad &note_bolt(double time, const BoltHistoryRow &row);
+  const LinerLoad &note_liner(double time, const LinerHistoryRow &row);
   void note_rows(const std::string &table, std::string_view rows);
   /// Text of a table that is not of a monitor.
   [[nodiscard]] std::string &pending_of(std::string_view table);

@@ -394,6 +394,24 @@ TEST(LinerLink, LosesWhatItDissipates) {
   }
 }
 
+TEST(LinerLink, RemembersItsLargestForces) {
+  const LinkLaw law = brittle();
+  LinkMemory memory;
+  for (const auto &[extension, slide, turn] :
+       {std::array{2e-5, 0.0, 0.0}, {0.0, -1e-5, 2e-5}, {-1e-5, 0.0, 0.0}}) {
+    memory = respond(law, memory, extension, slide, turn);
+    memory.largest = with_last(law, memory);
+  }
+  ASSERT_FALSE(memory.cracked || memory.yielded);
+  EXPECT_EQ(memory.largest.tension, 2e-5 * law.axial_stiffness);
+  EXPECT_EQ(memory.largest.compression, 1e-5 * law.axial_stiffness);
+  EXPECT_EQ(memory.largest.shear, 1e-5 * law.shear_stiffness);
+  EXPECT_DOUBLE_EQ(memory.largest.moment, 2e-5 * law.bending_stiffness + 0.5 * length * 1e-5 * law.shear_stiffness);
+  EXPECT_LT(memory.largest.strength_used, 1.0);
+  memory.broken = true;
+  EXPECT_EQ(with_last(law, memory).strength_used, 1.0);
+}
+
 TEST(LinerSection, SaysHowMuchOfItsStrengthIsUsed) {
   const LinerSection section = brittle().section;
   const auto used = [&](const LinerForces &forces) { return strength_used(section, false, length, forces); };
