@@ -37,33 +37,30 @@ std::optional<Trace> bridge_to(const PlanarGraph &graph, Vec2 end, const Trace &
 std::vector<Trace> bridges(const PlanarGraph &graph, std::span<const Trace> traces, const EdgeJoints &near,
                            const Aabb &box, double rounding) {
   std::vector<Trace> found;
-  const auto join = [&](Vec2 end, Vec2 far) {
-    const auto ends_there = [&](std::uint32_t k) { return traces[k].from == end || traces[k].to == end; };
-    std::vector<std::uint32_t> own = near.at(end);
+  const auto join = [&](Vec2 point) {
+    const auto ends_there = [&](std::uint32_t k) { return traces[k].from == point || traces[k].to == point; };
+    std::vector<std::uint32_t> own = near.at(point);
     const auto middle = std::stable_partition(own.begin(), own.end(), ends_there);
     const std::vector<std::uint32_t> others(middle, own.end());
     own.erase(middle, own.end());
     for (const std::uint32_t k : others) {
-      if (std::any_of(own.begin(), own.end(),
-                      [&](std::uint32_t i) { return meet(graph, traces[i], traces[k]); })) {
-        return; // joined already
+      const auto is_joined = [&](std::uint32_t i) { // or runs along the other one
+        const Vec2 far = traces[i].from == point ? traces[i].to : traces[i].from;
+        return meet(graph, traces[i], traces[k]) || near.lies_on(far, traces[k]);
+      };
+      if (std::any_of(own.begin(), own.end(), is_joined)) {
+        continue;
       }
-    }
-    for (const std::uint32_t k : others) {
-      if (!near.lies_on(far, traces[k])) { // else the trace runs along the other one
-        if (const auto bridge = bridge_to(graph, end, traces[k], rounding)) {
-          found.push_back(*bridge);
-        }
-        return;
+      if (const auto bridge = bridge_to(graph, point, traces[k], rounding)) {
+        found.push_back(*bridge);
       }
     }
   };
   for (const Trace &trace : traces) {
-    if (!trace.is_side && box.holds(trace.from)) {
-      join(trace.from, trace.to);
-    }
-    if (!trace.is_side && box.holds(trace.to)) {
-      join(trace.to, trace.from);
+    for (const Vec2 point : {trace.from, trace.to}) {
+      if (box.holds(point)) {
+        join(point);
+      }
     }
   }
   return found;

@@ -135,6 +135,50 @@ TEST(MeetingTraces, FaultsThatEndAtOthersToWithinRoundingCut) {
   }
 }
 
+// A fault from rock through the re-entrant corner of an outline or an opening passes it by rounding on either
+// side: through the toe of a slope, and two through the corners of a roof that meet above it.
+TEST(MeetingTraces, FaultsThroughCornersToWithinRoundingCut) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> slope(0.2, 2.5);
+  std::uniform_real_distribution<double> reach(0.3, 1.2);
+  const double left = 4.1;
+  const double right = 6.7;
+  const double low = 3.3;
+  const double high = 5.9;
+  for (const Vec2 origin : {Vec2{}, Vec2{3.0e5, 5.2e6}}) {
+    const auto moved = [&](std::vector<Vec2> outline) {
+      for (Vec2 &p : outline) {
+        p += origin;
+      }
+      return outline;
+    };
+    const auto through = [&](Vec2 corner, Vec2 along, double beyond) {
+      return std::vector<Vec2>{origin + corner - reach(random) * along, origin + corner + beyond * along};
+    };
+    for (int trial = 0; trial < 60; ++trial) {
+      const double rise = slope(random);
+      Scene scene = scene_with_laws();
+      scene.region.outline =
+          moved({{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}, {left, 10.0}, {left, low}, {0.0, low}});
+      scene.region.faults = {{"", 1, through({left, low}, {1.0, rise}, 10.0), {}}};
+      EXPECT_EQ(all_blocks(scene).size(), 2U) << "toe, trial " << trial;
+      scene.region.outline = moved(rectangle_of(10.0, 10.0));
+      Opening opening;
+      opening.outline = moved({{left, low}, {right, low}, {right, high}, {left, high}});
+      scene.region.openings = {opening};
+      const double half = 0.5 * (right - left);
+      scene.region.faults = {{"", 1, through({left, high}, {1.0, rise}, half + 0.01), {}},
+                             {"", 1, through({right, high}, {-1.0, rise}, half + 0.01), {}}};
+      const std::vector<SceneBlock> blocks = all_blocks(scene);
+      EXPECT_TRUE(std::any_of(blocks.begin(), blocks.end(),
+                              [&](const SceneBlock &block) {
+                                return std::abs(signed_area(block.vertices) - half * half * rise) < 1e-6;
+                              }))
+          << "roof, trial " << trial;
+    }
+  }
+}
+
 // A set that is kept to a layer ends at the outline of the layer.
 TEST(MeetingTraces, ASetWithinALayerCutsTheWholeLayer) {
   Scene scene = scene_with_laws();
