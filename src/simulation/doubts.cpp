@@ -9,6 +9,7 @@
 #include "io/results/id_slabs.hpp"
 #include "simulation/dust.hpp"
 #include "simulation/far_coordinates.hpp"
+#include "simulation/fault_doubts.hpp"
 #include "simulation/plausibility.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/stage_changes.hpp"
@@ -364,6 +365,15 @@ void doubt_cuts(RunState &run, std::span<const SceneBlock> slab) {
   }
 }
 
+void doubt_faults(RunState &run, std::span<const SceneBlock> slab) {
+  const std::int64_t all = num_blocks(run.scene);
+  const std::int64_t first = slab_begin(all, run.communicator.size(), run.communicator.rank());
+  if (auto idle = doubt_idle_faults(run.communicator, run.scene.region, slab, first,
+                                    all - run.scene.num_region_blocks)) {
+    run.notes.push_back(std::move(*idle));
+  }
+}
+
 } // namespace
 
 void doubt_blocks(RunState &run, std::span<const SceneBlock> slab) {
@@ -372,6 +382,7 @@ void doubt_blocks(RunState &run, std::span<const SceneBlock> slab) {
   doubt_sizes(run, slab);
   doubt_slivers(run, slab);
   doubt_cuts(run, slab);
+  doubt_faults(run, slab);
   warn_of_light_loads(run.scene, run.notes);
   if (has_errors(run.notes)) {
     throw SceneError(run.notes);

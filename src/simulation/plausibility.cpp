@@ -5,6 +5,7 @@
 #include "geometry/aabb.hpp"
 #include "geometry/point_text.hpp"
 #include "geometry/polygon.hpp"
+#include "simulation/fault_doubts.hpp"
 #include "simulation/plausible_ranges.hpp"
 #include "simulation/shaking_doubts.hpp"
 #include "simulation/short_traces.hpp"
@@ -299,6 +300,9 @@ void judge_region(Doubts &doubts) {
     expect_inside(doubts, "a layer", layer.outline, layer.where);
   }
   warn_of_short_traces(doubts);
+  if (const auto held = doubt_faults_at_corners(region, doubts.scene().run.gravity)) {
+    doubts.warn(held->where, held->what, held->why, held->hint);
+  }
 }
 
 void judge_stress(Doubts &doubts) {
