@@ -242,7 +242,7 @@ std::string words_on_slide(const std::string &stage, const std::string &block, c
 
 std::optional<Diagnostic> warning_of_slide(const Simulation &simulation, const Stage &stage,
                                            const StageResult &result) {
-  if (!result.has_slid()) {
+  if (!result.has_slid() || stage.is_trial()) { // of trials the search tells
     return std::nullopt;
   }
   return Diagnostic{

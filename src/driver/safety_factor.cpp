@@ -387,11 +387,12 @@ private:
   /// The least factor at which blocks hold no longer where they are but somewhere else. Of a mechanism it is
   /// not known: the motion of a trial is that of any block.
   void note_first_slide() {
-    const auto slides = [&](const StrengthTrial &trial) {
+    const double far = scene_.reduction.failure_motion;
+    const auto slides = [far](const StrengthTrial &trial) {
       return trial.decisive && trial.verdict == Verdict::settled &&
-             trial.moved >= scene_.reduction.failure_motion;
+             (trial.moved >= far || trial.slide >= StageResult::telling_slide);
     };
-    if (settled_.slide() >= scene_.reduction.failure_motion && !watches_mechanism()) {
+    if (settled_.slide() >= std::min(far, StageResult::telling_slide) && !watches_mechanism()) {
       report_.first_slide = report_.settled;
       report_.first_slide->moved = settled_.slide();
       return;

@@ -48,12 +48,14 @@ TrialFacts facts_of(double factor, const RunOutcome &outcome, double start_time,
                             ? static_cast<std::int64_t>(stage.first_block)
                             : facts.verdict;
     facts.moved = stage.moved;
+    facts.slide = stage.slide;
     facts.unbalanced_ratio = stage.unbalanced_ratio;
     facts.steps = stage.steps;
     facts.means = static_cast<std::int64_t>(stage.means);
     if (outcome.summary.stages.back().name == confirming_stage) {
       const StageResult &trial = outcome.summary.stages[outcome.summary.stages.size() - 2].result;
       facts.moved = std::max(facts.moved, trial.moved);
+      facts.slide = std::max(facts.slide, trial.slide);
       facts.steps += trial.steps;
       facts.is_confirmed = stage.verdict == trial.verdict ? 1 : 0;
     }
@@ -101,6 +103,7 @@ StrengthTrial trial_of(const TrialFacts &facts) {
   trial.decided_by = words_on_means(facts);
   trial.time = facts.time;
   trial.moved = facts.moved;
+  trial.slide = facts.slide;
   trial.unbalanced_ratio = facts.unbalanced_ratio;
   trial.steps = facts.steps;
   trial.evaluations = facts.evaluations;

@@ -22,6 +22,7 @@ struct TrialFacts {
   std::int64_t first_rests_far = 0; ///< the same for any block
   double time = 0.0;
   double moved = 0.0;
+  double slide = 0.0; ///< StageResult::slide
   double unbalanced_ratio = 0.0;
   std::int64_t steps = 0;
   std::int64_t evaluations = 0;

@@ -17,8 +17,7 @@ double held_ratio(const Stage &stage) {
 
 double held_force(const RunState &run) {
   const Stage &stage = run.clock.stage();
-  const bool looks_for_rest = stage.kind == StageKind::settle || stage.is_trial();
-  const bool holds = run.clock.is_staged && looks_for_rest && !is_static(run);
+  const bool holds = run.clock.is_staged && stage.asks_for_rest() && !is_static(run);
   return holds ? held_ratio(stage) * run.clock.state.memory.last.force : 0.0;
 }
 

@@ -42,12 +42,12 @@ void mark_stage(RunState &run) {
     return; // nobody looks
   }
   keep_unshaken(run);
-  const Stage &stage = run.clock.stage();
-  const bool confirms = stage.begins_at_rest || stage.goes_on_failing; // a trial, under its water
+  const bool fails = run.clock.stage().goes_on_failing;
+  const bool confirms = run.clock.stage().begins_at_rest || fails; // a trial, under its water
   const std::span<BlockMark> marks = mark_rows(run.blocks);
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     const RigidDof &now = run.blocks.displacement[row];
-    marks[row] = {stage.goes_on_failing ? marks[row].stage : now, now, confirms ? marks[row].water : now};
+    marks[row] = {fails ? marks[row].stage : now, now, confirms ? marks[row].water : now};
   }
 }
 
@@ -397,10 +397,10 @@ void end_stage(RunState &run) {
   run.clock.state.results = stage_results(run);
   run.clock.state.end_time = run.clock.time();
   run.clock.state.ended = true;
+  if (stage.asks_for_rest() && run.clock.state.verdict == Verdict::settled && !has_begun_to_shake(run)) {
+    note_slide(run, run.clock.state.results.back());
+  }
   if (stage.kind == StageKind::settle) {
-    if (run.clock.state.verdict == Verdict::settled && !has_begun_to_shake(run)) {
-      note_slide(run, run.clock.state.results.back());
-    }
     close_statics(run);
     unscale_masses(run);
     if (run.clock.state.verdict == Verdict::settled) {

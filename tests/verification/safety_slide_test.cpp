@@ -158,6 +158,17 @@ TEST(SafetySlides, WithoutALimitTheReportSaysWhereBlocksSlide) {
   EXPECT_NE(to_text(report).find("blocks slide to where they hold"), std::string::npos);
 }
 
+// The slide of the small block is 0.08 of its size, that of the large one 0.03: both are told of, with less
+// than failure_motion.
+TEST(SafetySlides, TheReportWarnsOfSlidesFarBelowFailures) {
+  const SafetyReport report = search_before_stops("");
+  ASSERT_TRUE(report.first_slide);
+  const double limit = std::tan(joint_friction_deg * degree) / std::tan(steep_deg * degree);
+  EXPECT_GT(report.first_slide->factor, limit);
+  EXPECT_LT(report.first_slide->moved, 0.09);
+  EXPECT_NE(to_text(report).find("warning: at "), std::string::npos);
+}
+
 // Nothing fails while blocks find hold; the small block governs where each block counts, the large one where
 // areas or places are asked for.
 TEST(SafetySlides, AreasAndRegionsCountAsInFailures) {

@@ -93,6 +93,8 @@ struct Stage {
   [[nodiscard]] bool takes_steps() const { return kind == StageKind::run || kind == StageKind::settle; }
   /// A trial of gcpdda fos.
   [[nodiscard]] bool is_trial() const { return drag_limit < std::numeric_limits<double>::infinity(); }
+  /// Whether the blocks come to rest where they are, or fail.
+  [[nodiscard]] bool asks_for_rest() const { return kind == StageKind::settle || is_trial(); }
   /// A trial whose verdict is that of a part of the blocks (simulation/mechanism.hpp).
   [[nodiscard]] bool watches_mechanism() const { return ignored_area > 0.0 || !watched_region.empty(); }
   /// Local damping of the stage: its own, or else that of the run.
@@ -115,7 +117,7 @@ struct StageResult {
   VerdictMeans means = VerdictMeans::dynamic_step; ///< not in checkpoints: of stages of this process
   /// Verdict on all blocks where that of the trial is on a part of them, else undecided; not in checkpoints.
   Verdict first_block = Verdict::undecided;
-  // Of a settle stage that has settled (simulation/slid_blocks.hpp).
+  // Of a settle stage or a trial that has settled (simulation/slid_blocks.hpp).
   double slide = 0.0;           ///< largest slide of a block, in sizes of that block
   double slide_distance = 0.0;  ///< the same in m
   std::int64_t slid_block = -1; ///< id of that block; -1 where none has slid

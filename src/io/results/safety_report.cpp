@@ -94,9 +94,11 @@ std::string slide_text(const SafetyReport &report) {
   if (!report.first_slide) {
     return {};
   }
-  return fmt::format("at {:.6g} blocks slide to where they hold: one moves by {:.2g} of its size before it "
-                     "rests; fos.largest_motion says from where on that is failure\n",
-                     report.first_slide->factor, report.first_slide->moved);
+  return fmt::format(
+      "warning: at {:.6g} blocks slide to where they hold: one moves by {:.2g} of its size "
+      "before it rests; where that is failure the factor is smaller, and fos.largest_motion = {:g} "
+      "finds it\n",
+      report.first_slide->factor, report.first_slide->moved, StageResult::telling_slide);
 }
 
 std::string earlier_slides_text(const SafetyReport &report) {

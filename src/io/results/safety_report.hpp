@@ -24,6 +24,7 @@ struct StrengthTrial {
   bool decisive = false;  ///< the bracket rests on it; others were run because ranks were free
   double time = 0.0;      ///< simulated, s
   double moved = 0.0;     ///< largest motion of a block, in sizes of that block
+  double slide = 0.0;     ///< largest slide (simulation/slid_blocks.hpp), in the same way
   double unbalanced_ratio = 0.0;
   std::int64_t steps = 0;
   std::int64_t evaluations = 0; ///< of candidate pairs, all ranks
@@ -105,7 +106,7 @@ struct SafetyReport {
       first_block;           ///< where the factor is that of a mechanism (fos.ignore_area, fos.region)
   double ignored_area = 0.0; ///< m^2, fos.ignore_area
   std::optional<StrengthTrial>
-      first_slide; ///< that of the least factor whose blocks move by fos.failure_motion until they rest
+      first_slide; ///< that of the least factor at which blocks slide, or move far, until they rest
 
   /// The bracket is as narrow as asked for.
   [[nodiscard]] bool is_found() const {

@@ -124,8 +124,8 @@ def _trials(page, search):
                                "decided_by": "decided by"})
     slides_from = search.summary.get("slides_from")
     if slides_from:
-        page.text(f"At {slides_from:.5g} blocks slide to where they hold; fos.largest_motion says from where on that "
-                  "is failure.", "note")
+        page.text(f"At {slides_from:.5g} blocks slide to where they hold; where that is failure the factor is smaller, "
+                  "and fos.largest_motion finds it.", "note")
     if search.summary["undecided"]:
         page.text("Trials without a verdict at their limit stay in the bracket; a longer fos.limit may decide them.",
                   "note")
