@@ -76,6 +76,20 @@ std::string hint_at_baseline(const Earthquake &earthquake, const GroundMotion &g
 
 } // namespace
 
+double end_of_shaking(const Earthquake &earthquake) {
+  const std::vector<RecordRow> &rows = earthquake.record;
+  const bool holds_accelerations = earthquake.quantity == RecordQuantity::acceleration;
+  std::size_t last = rows.size() - 1;
+  const auto is_even = [&](std::size_t k) { // from the row before to this one
+    return holds_accelerations ? norm(rows[k].value) == 0.0 && norm(rows[k - 1].value) == 0.0
+                               : norm(rows[k].value - rows[k - 1].value) == 0.0;
+  };
+  while (last > 0 && is_even(last)) {
+    --last;
+  }
+  return rows[last].time - rows[0].time;
+}
+
 void open_earthquake(RunState &run) {
   const Diagnostics faults = open_record(run.communicator, run.scene);
   run.notes.insert(run.notes.end(), faults.begin(), faults.end());
@@ -179,6 +193,35 @@ void keep_unshaken(RunState &run) {
 
 bool has_begun_to_shake(const RunState &run) {
   return run.scene.earthquake.shakes() && run.clock.time() >= shaking_since(run);
+}
+
+bool is_to_shake(const RunState &run) {
+  const Stage &stage = run.clock.stage();
+  if (!run.scene.earthquake.shakes() || stage.kind != StageKind::run || stage.is_trial()) {
+    return false;
+  }
+  const double begin = shaking_since(run);
+  return begin <= run.clock.state.start_time + stage.duration &&
+         run.clock.time() < begin + end_of_shaking(run.scene.earthquake);
+}
+
+std::optional<Diagnostic> warning_of_cut_record(const RunState &run) {
+  const Earthquake &earthquake = run.scene.earthquake;
+  if (!earthquake.shakes() || !run.clock.is_staged || earthquake.stage >= 0) {
+    return std::nullopt; // known before the run
+  }
+  const double length = end_of_shaking(earthquake);
+  const double seen = std::max(0.0, run.clock.time() - earthquake.start);
+  constexpr double rounding = 1e-9;
+  if (seen >= length * (1.0 - rounding)) {
+    return std::nullopt;
+  }
+  return Diagnostic{Severity::warning, earthquake.where,
+                    fmt::format("the run has ended at t = {:g} s after {:g} s of the record, which moves the "
+                                "ground for {:g} s from t = {:g} s on",
+                                run.clock.time(), seen, length, earthquake.start),
+                    "stages before it may have ended earlier than expected",
+                    "name the stage that is to shake in earthquake.stage instead of earthquake.start"};
 }
 
 std::optional<FarthestBlock> permanent_displacement(const RunState &run) {

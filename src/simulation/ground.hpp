@@ -11,6 +11,8 @@
 
 namespace gcpdda {
 
+/// The time from its first row at which the record has ceased to move the ground otherwise than evenly, s.
+[[nodiscard]] double end_of_shaking(const Earthquake &earthquake);
 /// Reads the record; faults and remarks become notes. Collective.
 void open_earthquake(RunState &run);
 /// At the time of the loads; zero before the shaking.
@@ -36,6 +38,10 @@ struct FarthestBlock {
 /// began, if the ground has begun to shake in that stage.
 void keep_unshaken(RunState &run);
 [[nodiscard]] bool has_begun_to_shake(const RunState &run);
+/// Whether the ground shakes, or will in the stage at hand, which is a run: blocks at rest have not settled.
+[[nodiscard]] bool is_to_shake(const RunState &run);
+/// At the end of a run, of a record that `start` sets to go on longer.
+[[nodiscard]] std::optional<Diagnostic> warning_of_cut_record(const RunState &run);
 /// Motion against the ground since the stage began in which the ground began to shake, or since t = 0 in a
 /// scene without stages; nothing before the shaking. Collective.
 [[nodiscard]] std::optional<FarthestBlock> permanent_displacement(const RunState &run);

@@ -1,5 +1,6 @@
 #include "simulation/shaking_doubts.hpp"
 
+#include "simulation/ground.hpp"
 #include "simulation/plausible_ranges.hpp"
 
 #include <fmt/format.h>
@@ -80,21 +81,6 @@ void doubt_strength(const Scene &scene, Diagnostics &doubts) {
            acceleration, fmt::format("{}; if it holds velocities, write \"velocity\"", other_quantity));
     }
   }
-}
-
-/// The time from its first row at which the record has ceased to move the ground otherwise than evenly, s.
-double end_of_shaking(const Earthquake &earthquake) {
-  const std::vector<RecordRow> &rows = earthquake.record;
-  const bool holds_accelerations = earthquake.quantity == RecordQuantity::acceleration;
-  std::size_t last = rows.size() - 1;
-  const auto is_even = [&](std::size_t k) { // from the row before to this one
-    return holds_accelerations ? norm(rows[k].value) == 0.0 && norm(rows[k - 1].value) == 0.0
-                               : norm(rows[k].value - rows[k - 1].value) == 0.0;
-  };
-  while (last > 0 && is_even(last)) {
-    --last;
-  }
-  return rows[last].time - rows[0].time;
 }
 
 /// How to give the record a stage of kind run from `first` on, or before where none follows.
@@ -216,6 +202,24 @@ void doubt_damping(const Scene &scene, Diagnostics &doubts) {
   }
 }
 
+// That of the run is told when it begins.
+void doubt_drag(const Scene &scene, Diagnostics &doubts) {
+  for (std::int64_t number = std::max<std::int64_t>(scene.earthquake.stage, 0);
+       number < std::ssize(scene.stages); ++number) {
+    const Stage &stage = scene.stages[static_cast<std::size_t>(number)];
+    if (stage.kind == StageKind::run && stage.local_damping > 0.0) {
+      doubts.push_back({Severity::warning, stage.where,
+                        fmt::format("stage '{}', in which the ground may shake, has a local damping of {:g}",
+                                    stage.name, stage.local_damping),
+                        "it holds back whatever moves: blocks slide less far, and waves fade",
+                        fmt::format("leave stage.{}.local_damping out; run.contact_damping and run.rayleigh "
+                                    "damp as joints and rock do",
+                                    stage.name)});
+      return;
+    }
+  }
+}
+
 } // namespace
 
 Diagnostics doubts_of_shaking(const Scene &scene) {
@@ -227,6 +231,7 @@ Diagnostics doubts_of_shaking(const Scene &scene) {
     doubt_strength(scene, doubts);
   }
   doubt_damping(scene, doubts);
+  doubt_drag(scene, doubts);
   if (scene.stages.empty()) {
     doubt_duration_of_run(scene, doubts);
   } else {

@@ -131,7 +131,7 @@ bool is_loading(const RunState &run) {
       run.clock.state.unloading.begin(), run.clock.state.unloading.end(), [&](const Unloading &u) {
         return std::isfinite(u.duration) && run.clock.time() < u.begin + u.duration;
       });
-  return unloads || run.clock.time() < run.scene.run.gravity_ramp ||
+  return unloads || is_to_shake(run) || run.clock.time() < run.scene.run.gravity_ramp ||
          run.clock.time() < run.loads.end_of_changes(run.scene, run.clock.state, run.clock.time());
 }
 

@@ -1,11 +1,13 @@
 #include "simulation/step_report.hpp"
 
+#include "simulation/ground.hpp"
 #include "simulation/strain_watch.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace gcpdda {
@@ -94,6 +96,11 @@ Diagnostics warnings_of(const RunState &run) {
   run.communicator.max(largest);
   const auto [turn, share] = largest;
   Diagnostics warnings;
+  if (!run.fault && !run.stop_agreed) {
+    if (auto cut = warning_of_cut_record(run)) {
+      warnings.push_back(std::move(*cut));
+    }
+  }
   if (turn > 0.05) {
     warnings.push_back({Severity::warning,
                         {},

@@ -192,6 +192,36 @@ TEST(ShakenBase, NewmarkBlockSlidesDownAnInclinedPlane) {
                shaken_down(record, dip, 30.0, 1e11, 3.2e-5), 5e-4);
 }
 
+// A run stage with a limit waits for the record, of which nothing moves for the first second.
+TEST(ShakenBase, ARunToAVerdictWaitsForTheRecord) {
+  constexpr double dip = 20.0 * degree;
+  constexpr double k_n = 1e10;
+  std::vector<RecordRow> record = quake_record(8.0);
+  const double way = newmark_way(record, dip, std::tan(30.0 * degree));
+  for (RecordRow &row : record) {
+    row.time += 1.0;
+  }
+  record.insert(record.begin(), {0.0, {}});
+  const double depth = Slab{}.height * rock_density * earth_gravity * std::cos(dip) / k_n;
+  const Slab slab;
+  Scene scene = scene_of(
+      without_duration(
+          head({.time_step = 1e-4, .normal_stiffness = k_n, .friction_deg = 30.0, .damping = slab.damping})) +
+      block_toml("base", placed(rectangle({-9.0, -1.0}, {9.0, 0.0}), -dip, {}), "fixed = true") +
+      block_toml(
+          "block",
+          placed(rectangle({-0.5 * slab.width, -depth}, {0.5 * slab.width, slab.height - depth}), -dip, {})) +
+      "[[stage]]\nkind = \"run\"\nlimit = 20.0\n");
+  scene.earthquake.file = "in memory";
+  scene.earthquake.quantity = RecordQuantity::acceleration;
+  scene.earthquake.record = record;
+  Simulation simulation(Communicator::self(), std::move(scene));
+  run_stages(simulation, step);
+  EXPECT_EQ(simulation.stage().verdict, Verdict::settled);
+  EXPECT_GE(simulation.time(), 9.0);
+  EXPECT_NEAR(dot(displacement_of(simulation, 1).u, Vec2{std::cos(dip), -std::sin(dip)}), way, 1.5e-3 * way);
+}
+
 // It is so high that friction, by its lever h/2, takes the pressure off a part of the base: mu h/2 > w/6.
 // Then its bouncing and its rocking feed on friction, and dashpots must take more than that.
 TEST(ShakenBase, NewmarkSlabThatStandsOnAPartOfItsBase) {

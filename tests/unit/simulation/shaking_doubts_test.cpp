@@ -112,6 +112,17 @@ TEST(ShakingDoubts, OfTheDampingThatNobodyHasChosen) {
   EXPECT_EQ(told("", "set = {\"run.contact_damping\" = 0.3}\n"), std::vector<std::string>{});
 }
 
+TEST(ShakingDoubts, OfDragInTheStageThatShakes) {
+  const std::string by_name = accelerations + "stage = \"shaking\"\n";
+  const std::string drag = "local_damping = 0.3\n";
+  expect_one(doubts_of(scene_toml(by_name, settle + shaking(2.0) + drag), record_of(5.0)),
+             "stage 'shaking', in which the ground may shake, has a local damping of 0.3",
+             "run.contact_damping and run.rayleigh damp as joints and rock do");
+  EXPECT_EQ(
+      doubts_of(scene_toml(by_name, settle + "solver = \"dynamic\"\n" + drag + shaking(2.0)), record_of(5.0)),
+      std::vector<std::string>{});
+}
+
 TEST(ShakingDoubts, OfTheStrengthOfARecord) {
   const std::string stages = shaking(2.0);
   const std::string cm = "if the record is in cm, set earthquake.scale = 0.01; in mm, 0.001";
