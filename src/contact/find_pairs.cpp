@@ -148,14 +148,14 @@ std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &sys
   return pairs;
 }
 
-std::vector<std::pair<BlockIndex, BlockIndex>> find_kept_pairs(const BlockSystem &system) {
+std::vector<std::pair<BlockIndex, BlockIndex>> find_kept_pairs(const BlockSystem &system, double skin) {
   std::vector<std::pair<BlockIndex, BlockIndex>> pairs;
   std::vector<std::uint32_t> rows;
   std::vector<Aabb> boxes;
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (system.properties[row].keeps_its_velocity()) {
       rows.push_back(static_cast<std::uint32_t>(row));
-      boxes.push_back(reach_boxes(system, 0.0, row, row + 1).front());
+      boxes.push_back(reach_boxes(system, 0.0, row, row + 1).front().inflated(0.5 * skin));
     }
   }
   if (!rows.empty()) {

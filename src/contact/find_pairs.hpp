@@ -23,6 +23,7 @@ std::vector<std::pair<BlockIndex, BlockIndex>> find_pairs(const BlockSystem &sys
 
 /// All pairs of rows of which none can be moved, fixed and driven ones, and whose boxes meet, as find_pairs()
 /// lists them. No contact acts between them.
-std::vector<std::pair<BlockIndex, BlockIndex>> find_kept_pairs(const BlockSystem &system);
+/// @param skin  m, half of which each box is inflated by
+std::vector<std::pair<BlockIndex, BlockIndex>> find_kept_pairs(const BlockSystem &system, double skin);
 
 } // namespace gcpdda

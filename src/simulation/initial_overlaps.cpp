@@ -146,7 +146,7 @@ void check_initial_overlaps(RunState &run) {
       mine.push_back(overlap);
     }
   }
-  for (const auto &[lower, higher] : find_kept_pairs(run.blocks)) {
+  for (const auto &[lower, higher] : find_kept_pairs(run.blocks, 0.0)) {
     InitialOverlap overlap = check.of(lower, higher);
     overlap.common_area = check.common_area_above(share_of_same * overlap.larger_area, lower, higher);
     if (overlap.is_same_twice()) {

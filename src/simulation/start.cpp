@@ -130,21 +130,27 @@ void find_laws_on_edges(RunState &run, std::span<const SceneBlock> slab) {
 // What is thinnest and what is smallest.
 void survey_blocks(RunState &run, std::span<const SceneBlock> slab) {
   double smallest_mobile = infinite;
+  double smallest = infinite;
   run.thinnest = infinite;
   std::int64_t num_mobile = 0;
   for (const SceneBlock &block : slab) {
+    const double area = signed_area(block.vertices);
     run.thinnest = std::min(run.thinnest, narrowest_width(block.vertices));
+    smallest = std::min(smallest, area);
     if (!block.fixed) {
-      smallest_mobile = std::min(smallest_mobile, signed_area(block.vertices));
+      smallest_mobile = std::min(smallest_mobile, area);
       ++num_mobile;
     }
   }
   find_laws_on_edges(run, slab);
   smallest_mobile = -agreed_max(run.communicator, -smallest_mobile);
+  smallest = -agreed_max(run.communicator, -smallest);
   run.thinnest = -agreed_max(run.communicator, -run.thinnest);
   num_mobile = agreed_sum(run.communicator, num_mobile);
   constexpr double skin_per_size = 0.1;
-  run.neighbours.base_skin = num_mobile > 0 ? skin_per_size * std::sqrt(smallest_mobile) : 0.0;
+  // A stage may set blocks free where none can move at the start.
+  const double area = num_mobile > 0 ? smallest_mobile : smallest;
+  run.neighbours.base_skin = std::isfinite(area) ? skin_per_size * std::sqrt(area) : 0.0;
 }
 
 // An impact keeps its energy to about (omega dt)^2; dashpots take more than that, but without them it may

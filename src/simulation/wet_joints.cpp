@@ -76,7 +76,8 @@ KnownContacts find_contacts(const RunState &run) {
   const auto pairs = find_pairs(placed, reach_boxes(placed, run.neighbours.base_skin));
   sort_out(run, placed, find_start_contacts(placed, pairs, run.scene.joints), known);
   // A stage may set blocks free that keep their place until then.
-  sort_out(run, placed, find_start_contacts(placed, find_kept_pairs(placed), run.scene.joints), known);
+  const auto kept_pairs = find_kept_pairs(placed, run.neighbours.base_skin);
+  sort_out(run, placed, find_start_contacts(placed, kept_pairs, run.scene.joints), known);
   return known;
 }
 

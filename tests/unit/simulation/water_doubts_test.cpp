@@ -3,6 +3,7 @@
 #include "simulation/simulation.hpp"
 
 #include "support/scenes.hpp"
+#include "support/setting.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -85,6 +86,45 @@ TEST(WaterDoubts, TwoTablesThatAddUp) {
   const std::string tables = table("v", 1.0) + table("w", 3.0, "active = false\n");
   expect_one(warnings_of(slab(tables, raise(""))), "both active in stage 'wet' and act on the same edge");
   EXPECT_EQ(warnings_of(slab(tables, raise(", \"water.v.active\" = false"))), std::vector<std::string>{});
+}
+
+/// A layer of ore on a floor of rock, with a law between them. Both are fixed, and the last stage sets the
+/// layer free.
+/// @param gap    m, between the two as they are drawn
+/// @param wedge  also there is a block that can move from the start, away from them
+std::string held_layer(double gap, bool wedge) {
+  return "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600\n[material.ore]\ndensity = 3000\n"
+         "[joint.default]\nnormal_stiffness = 5e9\nfriction_angle_deg = 40\n"
+         "[joint.seam]\nmaterials = [\"rock\", \"ore\"]\nfriction_angle_deg = 30\n" +
+         table("w", 9.0, "joints = [\"seam\"]\n") +
+         fmt::format("[[block]]\nname = \"b\"\nmaterial = \"ore\"\nfixed = true\n"
+                     "vertices = [[0, {0}], [3.47, {0}], [3.47, 5.41], [0, 5.41]]\n",
+                     1.16 + gap) +
+         "[[block]]\nname = \"a\"\nmaterial = \"rock\"\nfixed = true\n"
+         "vertices = [[0, -0.86], [3.47, -0.86], [3.47, 1.16], [0, 1.16]]\n" +
+         (wedge ? "[[block]]\nname = \"c\"\nmaterial = \"rock\"\n"
+                  "vertices = [[9, 0], [11, 0], [11, 2], [9, 2]]\n"
+                : "") +
+         "[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 20\n"
+         "[[stage]]\nname = \"free\"\nkind = \"settle\"\nlimit = 20\n"
+         "set = { \"block.b.fixed\" = false }\n";
+}
+
+// Faces that are drawn on each other are a joint, also where a rounding or a thousandth parts them.
+TEST(WaterDoubts, JointsOfBlocksThatAStageSetsFreeAreWet) {
+  for (const bool wedge : {false, true}) {
+    for (const double gap : {0.0, 1e-15, 2e-3}) {
+      const Simulation simulation(Communicator::self(), scene_of(held_layer(gap, wedge)));
+      for (const Diagnostic &note : simulation.notes()) {
+        EXPECT_EQ(note.what.find("wets no edge"), std::string::npos) << gap << ": " << to_string(note);
+      }
+      for (const int block : {0, 1}) {
+        const auto wet = simulation.blocks().water_stretches(row_of(simulation, block));
+        ASSERT_EQ(wet.size(), 1U) << "block " << block << ", gap " << gap;
+        EXPECT_NEAR(wet[0].end - wet[0].begin, 1.0, 1e-12);
+      }
+    }
+  }
 }
 
 } // namespace
