@@ -156,6 +156,21 @@ void warn_of_dry_tables(RunState &run, std::span<const WaterState> states,
   }
 }
 
+/// The first block by id, of all ranks, on an edge of which both tables push; no_block if there is none.
+/// Collective.
+std::int64_t first_wet_twice(const RunState &run, std::span<const std::size_t> rows, const Water &one,
+                             const Water &other) {
+  std::int64_t minus_id = -no_block;
+  for (const std::size_t row : rows) {
+    const std::int64_t id = run.blocks.properties[row].id.value;
+    if (-id > minus_id && act_together(run.blocks, row, one, other)) {
+      minus_id = -id;
+    }
+  }
+  run.communicator.max(std::span(&minus_id, 1));
+  return -minus_id;
+}
+
 void warn_of_doubled_pressure(RunState &run, std::span<const WaterState> states,
                               std::span<const std::size_t> rows) {
   for (std::size_t j = 1; j < run.scene.water.size(); ++j) {
@@ -166,12 +181,8 @@ void warn_of_doubled_pressure(RunState &run, std::span<const WaterState> states,
         if (!one.active || !other.active) {
           continue;
         }
-        const auto row = std::find_if(rows.begin(), rows.end(), [&](std::size_t candidate) {
-          return act_together(run.blocks, candidate, one, other);
-        });
-        std::int64_t minus_id = row == rows.end() ? -no_block : -run.blocks.properties[*row].id.value;
-        run.communicator.max(std::span(&minus_id, 1));
-        if (minus_id == -no_block) {
+        const std::int64_t block = first_wet_twice(run, rows, one, other);
+        if (block == no_block) {
           continue;
         }
         const std::string when =
@@ -181,7 +192,7 @@ void warn_of_doubled_pressure(RunState &run, std::span<const WaterState> states,
              state.stage == nullptr ? place_of_key(run.scene, other, "phreatic") : state.stage->where,
              fmt::format(
                  "[water.{}] and [water.{}] are both active {} and act on the same edge of block '{}'",
-                 one.name, other.name, when, block_name(run.scene, -minus_id)),
+                 one.name, other.name, when, block_name(run.scene, block)),
              "their pressures add up there",
              fmt::format("set water.{}.active = false where water.{} is active, or let them wet different "
                          "'joints'",

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 namespace gcpdda::testing::bolt_notes_test {
 namespace {
@@ -92,6 +94,65 @@ TEST(BoltNotes, SayWhichBoltsAnExcavationCuts) {
   EXPECT_EQ(said_of_cut(bar, "b1"), "bolt 'at1' and 1 more are taken away by stage 'cut'\n");
   EXPECT_EQ(said_of_cut(bar, "b2"), "");
   EXPECT_EQ(said_of_cut(cable, "cap"), "");
+}
+
+/// What is said before the first step of a bolt through three layers, the lowest of which holds its head.
+/// @param more    keys of the bolt
+/// @param stages  after one of 0.01 s
+std::vector<std::string> said_at_start(const std::string &support, const std::string &more,
+                                       const std::string &stages) {
+  std::string toml = "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2000\n[joint.default]\n"
+                     "normal_stiffness = 1e8\nfriction_angle_deg = 30\n[support.steel]\n" +
+                     support;
+  for (int k = 0; k < 3; ++k) {
+    toml += block_toml(fmt::format("b{}", k), rectangle({0.0, 1.0 * k}, {4.0, 1.0 + k}),
+                       k < 2 ? "fixed = true" : "");
+  }
+  toml += block_toml("cap", rectangle({0.0, 3.0}, {4.0, 3.5}));
+  toml += "[[bolt]]\nname = \"rod\"\nsupport = \"steel\"\nfrom = [1, 0.5]\nto = [1, 2.5]\n" + more +
+          "[[stage]]\nkind = \"run\"\nduration = 0.01\n" + stages;
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  std::vector<std::string> at_start;
+  for (const Diagnostic &note : simulation.notes()) {
+    at_start.push_back(note.what);
+  }
+  run_stages(simulation);
+  std::vector<std::string> cuts;
+  for (const Diagnostic &note : simulation.notes()) {
+    if (note.what.starts_with("bolt 'rod'") && note.what.find("stage") != std::string::npos) {
+      EXPECT_NE(std::find(at_start.begin(), at_start.end(), note.what), at_start.end())
+          << "only the run says: " << note.what;
+      cuts.push_back(note.what);
+    }
+  }
+  return cuts;
+}
+
+std::string dig(const std::string &name, const std::string &block) {
+  return fmt::format("[[stage]]\nname = \"{}\"\nkind = \"excavate\"\nblocks = [\"{}\"]\n", name, block);
+}
+
+// A bolt that a stage puts in is cut as one that is in place from the start, and a stage that takes the last
+// joint of a bar takes the bar away.
+TEST(BoltNotes, FollowBoltsThroughTheStages) {
+  using Said = std::vector<std::string>;
+  const std::string cable = "kind = \"anchored\"\naxial_stiffness = 1e7\n";
+  const std::string bar = "kind = \"grouted\"\naxial_stiffness = 1e7\nactive_length = 0.2\n";
+  const std::string waits = "active = false\n";
+  const auto set = [](const char *active) {
+    return fmt::format("[[stage]]\nkind = \"change\"\nset = {{ \"bolt.rod.active\" = {} }}\n", active);
+  };
+  EXPECT_EQ(said_at_start(cable, waits, set("true") + dig("cut", "b2")),
+            Said{"bolt 'rod' is taken away by stage 'cut'"});
+  EXPECT_EQ(said_at_start(cable, waits, set("true") + dig("cut", "b1")),
+            Said{"bolt 'rod' crosses rock between head and anchor that stage 'cut' excavates"});
+  EXPECT_EQ(said_at_start(cable, waits, dig("cut", "b2")), Said{}) << "it is not there";
+  EXPECT_EQ(said_at_start(cable, "", set("false") + dig("cut", "b2")), Said{}) << "it is there no longer";
+  EXPECT_EQ(said_at_start(bar, "", dig("first", "b0") + dig("second", "b2")),
+            Said{"bolt 'rod' is taken away by stage 'second'"});
+  // The rock at its head has gone when it is put in: it holds b1 to b2.
+  EXPECT_EQ(said_at_start(cable, waits, dig("first", "b0") + set("true") + dig("second", "b1")),
+            Said{"bolt 'rod' is taken away by stage 'second'"});
 }
 
 } // namespace

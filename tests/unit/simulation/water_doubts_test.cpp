@@ -127,5 +127,13 @@ TEST(WaterDoubts, JointsOfBlocksThatAStageSetsFreeAreWet) {
   }
 }
 
+// Ranks hold other rows in another order: the first block by id is named whoever holds it.
+TEST(WaterDoubts, TheFirstBlockIsNamedWhereSeveralAreWetTwice) {
+  const std::string free_floor = "[[stage]]\nname = \"free\"\nkind = \"settle\"\nlimit = 20\n"
+                                 "set = { \"block.floor.fixed\" = false }\n";
+  expect_one(warnings_of(slab(table("v", 3.0) + table("w", 3.0, "joints = [\"pair\"]\n"), free_floor)),
+             "act on the same edge of block 'floor'");
+}
+
 } // namespace
 } // namespace gcpdda::testing::water_doubts_test
