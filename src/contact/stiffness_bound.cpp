@@ -1,5 +1,7 @@
 #include "contact/stiffness_bound.hpp"
 
+#include "geometry/polygon.hpp"
+
 #include <algorithm>
 
 namespace gcpdda {
@@ -34,6 +36,12 @@ StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material,
     include_partners(-1);
   }
   return bound;
+}
+
+FidelityChoice choose_fidelity(const Scene &scene, const JointLaws &joints, const SceneBlock &block) {
+  return choose_fidelity(block, signed_area(block.vertices),
+                         scene.materials[static_cast<std::size_t>(block.material)],
+                         stiffness_bound(joints, block.material, block.edge_joint).normal, scene.run);
 }
 
 double stiffest_joint(const JointLaws &joints) {

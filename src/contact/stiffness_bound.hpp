@@ -3,6 +3,7 @@
 // The stiffest contact that a block can have.
 
 #include "gcpdda/model/joint_law.hpp"
+#include "model/fidelity.hpp"
 
 #include <cstdint>
 #include <span>
@@ -17,6 +18,10 @@ struct StiffnessBound {
 };
 StiffnessBound stiffness_bound(const JointLaws &joints, std::int32_t material,
                                std::span<const std::int32_t> edge_joint = {});
+
+/// Whether a block is rigid or deformable, by the stiffest contact that it can meet.
+/// @param scene  its materials and settings
+FidelityChoice choose_fidelity(const Scene &scene, const JointLaws &joints, const SceneBlock &block);
 
 /// Largest normal stiffness of all laws, Pa/m.
 double stiffest_joint(const JointLaws &joints);

@@ -8,7 +8,6 @@
 #include "geometry/holds_point.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/id_slabs.hpp"
-#include "model/fidelity.hpp"
 #include "simulation/cut_bolts.hpp"
 #include "simulation/wet_joints.hpp"
 
@@ -107,10 +106,8 @@ void free_block(RunState &run, std::int64_t id, const SceneBlock &block) {
   BlockSystem freed;
   if (slab_owner(num_blocks(run.scene), run.communicator.size(), id) == run.communicator.rank()) {
     const Material &material = run.scene.materials[static_cast<std::size_t>(block.material)];
-    const FidelityChoice choice =
-        choose_fidelity(block, signed_area(block.vertices), material,
-                        stiffness_bound(run.scene.joints, block.material).normal, run.scene.run);
-    append_block(freed, BlockId{id}, block, material, choice.kind, run.scene.run.plane_strain);
+    const BlockKind kind = choose_fidelity(run.scene, run.scene.joints, block).kind;
+    append_block(freed, BlockId{id}, block, material, kind, run.scene.run.plane_strain);
     part_sides(freed, run.scene.joints);
     keep_wet_joints(run.blocks, id, freed);
   }

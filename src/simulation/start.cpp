@@ -8,7 +8,6 @@
 #include "geometry/polygon.hpp"
 #include "io/blocks/block_file.hpp"
 #include "io/results/id_slabs.hpp"
-#include "model/fidelity.hpp"
 #include "model/stiffness.hpp"
 #include "parallel/migration.hpp"
 #include "parallel/packing.hpp"
@@ -181,10 +180,7 @@ const SourcePosition *modulus_alone(const Scene &scene, std::int32_t material) {
 
 /// @param scene  of the stage in which the block is looked at
 bool deforms(const Scene &scene, const JointLaws &joints, const SceneBlock &block) {
-  const Material &material = scene.materials[static_cast<std::size_t>(block.material)];
-  const double stiffness = stiffness_bound(joints, block.material, block.edge_joint).normal;
-  return choose_fidelity(block, signed_area(block.vertices), material, stiffness, scene.run).kind ==
-         BlockKind::deformable;
+  return choose_fidelity(scene, joints, block).kind == BlockKind::deformable;
 }
 
 // With fidelity "auto" stiffness and size decide which blocks deform, also those that a stage sets free: the
@@ -258,9 +254,7 @@ void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
   for (std::size_t k = 0; k < slab.size(); ++k) {
     const SceneBlock &block = slab[k];
     const Material &material = run.scene.materials[static_cast<std::size_t>(block.material)];
-    const FidelityChoice choice = choose_fidelity(
-        block, signed_area(block.vertices), material,
-        stiffness_bound(run.scene.joints, block.material, block.edge_joint).normal, run.scene.run);
+    const FidelityChoice choice = choose_fidelity(run.scene, run.scene.joints, block);
     const bool asked = block.fidelity != Fidelity::automatic || run.scene.run.fidelity != Fidelity::automatic;
     run.fidelity.num_asked += asked && !block.fixed ? 1 : 0;
     run.fidelity.num_rigid += choice.kind == BlockKind::rigid ? 1 : 0;
