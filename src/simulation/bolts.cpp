@@ -2,6 +2,7 @@
 
 #include "base/check.hpp"
 #include "contact/contact_sums.hpp"
+#include "model/find_row.hpp"
 #include "simulation/bolt_pieces.hpp"
 #include "simulation/link_springs.hpp"
 
@@ -14,31 +15,9 @@ namespace gcpdda {
 
 namespace {
 
-/// Row of a block in a range sorted by id; none where it is not there.
-std::optional<std::size_t> row_between(const BlockSystem &system, std::size_t first, std::size_t last,
-                                       std::int64_t id) {
-  const auto begin = system.properties.begin();
-  const auto end = begin + static_cast<std::ptrdiff_t>(last);
-  const auto found =
-      std::lower_bound(begin + static_cast<std::ptrdiff_t>(first), end, id,
-                       [](const BlockProperties &p, std::int64_t wanted) { return p.id.value < wanted; });
-  return found == end || found->id.value != id ? std::nullopt
-                                               : std::optional(static_cast<std::size_t>(found - begin));
-}
-
-std::optional<std::size_t> owned_row(const BlockSystem &system, std::int64_t id) {
-  return row_between(system, 0, system.num_owned, id);
-}
-
-std::optional<std::size_t> fixed_row(const BlockSystem &system, std::int64_t id) {
-  return row_between(system, system.first_fixed(), system.num_rows(), id);
-}
-
 /// Of an owned, ghost or fixed block.
 std::size_t any_row(const BlockSystem &system, std::int64_t id) {
-  auto row = owned_row(system, id);
-  row = row ? row : row_between(system, system.num_owned, system.first_fixed(), id);
-  row = row ? row : fixed_row(system, id);
+  const auto row = find_row(system, id);
   expect(row.has_value(), "the blocks of a bolt are seen by the owners of either");
   return *row;
 }
@@ -144,10 +123,10 @@ void Bolts::find_ends(const Communicator &communicator, const BlockSystem &syste
   for (std::size_t k = first; k < links_.size(); ++k) {
     for (std::size_t side = 0; side < 2; ++side) {
       LinkEnd &end = links_[k].end[side];
-      if (const auto owned = owned_row(system, end.block)) {
+      if (const auto owned = find_owned_row(system, end.block)) {
         mine.push_back({static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(side),
                         in_reference_axes(system, *owned, end)});
-      } else if (const auto fixed = fixed_row(system, end.block)) {
+      } else if (const auto fixed = find_fixed_row(system, end.block)) {
         end = in_reference_axes(system, *fixed, end);
       }
     }
@@ -231,7 +210,7 @@ std::vector<FarGhost> Bolts::partners(const Communicator &communicator, const Bl
   }
   std::vector<std::int64_t> owner(2 * links_.size(), -1);
   for (std::size_t k = 0; k < owner.size(); ++k) {
-    if (owned_row(system, links_[k / 2].end[k % 2].block)) {
+    if (find_owned_row(system, links_[k / 2].end[k % 2].block)) {
       owner[k] = communicator.rank();
     }
   }
@@ -239,7 +218,7 @@ std::vector<FarGhost> Bolts::partners(const Communicator &communicator, const Bl
   for (std::size_t k = 0; k < owner.size(); ++k) {
     const std::int64_t other = owner[k ^ 1U];
     if (owner[k] == communicator.rank() && other >= 0 && other != owner[k]) {
-      const std::size_t row = *owned_row(system, links_[k / 2].end[k % 2].block);
+      const std::size_t row = *find_owned_row(system, links_[k / 2].end[k % 2].block);
       far.push_back({static_cast<int>(other), static_cast<std::uint32_t>(row)});
     }
   }
@@ -249,12 +228,12 @@ std::vector<FarGhost> Bolts::partners(const Communicator &communicator, const Bl
 void Bolts::connect(const BlockSystem &system) {
   here_.clear();
   for (std::size_t k = 0; k < links_.size(); ++k) {
-    const auto first = owned_row(system, links_[k].end[0].block);
-    const auto second = owned_row(system, links_[k].end[1].block);
+    const auto first = find_owned_row(system, links_[k].end[0].block);
+    const auto second = find_owned_row(system, links_[k].end[1].block);
     if (first || second) {
       here_.push_back({static_cast<std::uint32_t>(k),
                        {any_row(system, links_[k].end[0].block), any_row(system, links_[k].end[1].block)},
-                       first || fixed_row(system, links_[k].end[0].block)});
+                       first || find_fixed_row(system, links_[k].end[0].block)});
     }
   }
   forces_.resize(here_.size());

@@ -4,6 +4,7 @@
 #include "contact/in_situ.hpp"
 #include "dynamics/deformable.hpp"
 #include "io/results/id_slabs.hpp"
+#include "model/find_row.hpp"
 #include "parallel/migration.hpp"
 
 #include <algorithm>
@@ -120,13 +121,7 @@ void apply_in_situ_stress(RunState &run) {
   for (std::size_t rank = 0; rank < num_ranks; ++rank) {
     std::span<const Vec2> rest = all_moves[rank];
     for (const Swollen &head : all_heads[rank]) {
-      const auto row =
-          std::lower_bound(run.blocks.properties.begin(),
-                           run.blocks.properties.begin() + static_cast<std::ptrdiff_t>(run.blocks.num_owned),
-                           head.block,
-                           [](const BlockProperties &p, std::int64_t id) { return p.id.value < id; }) -
-          run.blocks.properties.begin();
-      swell(run.blocks, static_cast<std::size_t>(row),
+      swell(run.blocks, find_owned_row(run.blocks, head.block).value(),
             rest.first(static_cast<std::size_t>(head.num_vertices)));
       rest = rest.subspan(static_cast<std::size_t>(head.num_vertices));
     }

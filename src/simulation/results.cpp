@@ -3,6 +3,7 @@
 #include "io/results/id_slabs.hpp"
 
 #include "dynamics/deformable.hpp"
+#include "model/find_row.hpp"
 #include "simulation/water_loads.hpp"
 
 #include <algorithm>
@@ -128,16 +129,6 @@ FrameRow fixed_row(const BlockSystem &blocks, std::size_t index, const std::vect
   row.stress = {dyad.xx / block.area, dyad.yy / block.area, 0.5 * (dyad.xy + dyad.yx) / block.area};
   row.contact_force = {force.x, force.y, dyad.xy - dyad.yx};
   return row;
-}
-
-/// First of rows [begin, end), which are sorted by id, whose id is not below this one.
-std::size_t first_row_from(const BlockSystem &blocks, std::size_t begin, std::size_t end, std::int64_t id) {
-  const auto first = blocks.properties.begin();
-  return static_cast<std::size_t>(
-      std::lower_bound(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
-                       id,
-                       [](const BlockProperties &p, std::int64_t wanted) { return p.id.value < wanted; }) -
-      first);
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include "geometry/holds_point.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/id_slabs.hpp"
+#include "model/find_row.hpp"
 #include "simulation/cut_bolts.hpp"
 #include "simulation/wet_joints.hpp"
 
@@ -70,15 +71,6 @@ void let_go(BlockSystem &system, std::size_t row, double density) {
   system.properties[row].inertia = density * (moments.xx + moments.yy);
 }
 
-std::optional<std::size_t> row_of(const BlockSystem &system, std::int64_t id) {
-  for (std::size_t row = 0; row < system.num_owned; ++row) {
-    if (system.properties[row].id.value == id) {
-      return row;
-    }
-  }
-  return std::nullopt;
-}
-
 void adopt_materials(RunState &run, const std::vector<Material> &before) {
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     BlockProperties &block = run.blocks.properties[row];
@@ -121,7 +113,7 @@ void adopt_block(RunState &run, std::int64_t id, const SceneBlock &before, const
     free_block(run, id, after);
     return;
   }
-  const auto row = row_of(run.blocks, id);
+  const auto row = find_owned_row(run.blocks, id);
   if (!row) {
     return;
   }

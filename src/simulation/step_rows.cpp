@@ -6,6 +6,7 @@
 #include "dynamics/free_rows.hpp"
 #include "dynamics/half_works.hpp"
 #include "dynamics/local_damping.hpp"
+#include "model/find_row.hpp"
 #include "simulation/evaluation.hpp"
 #include "simulation/ground.hpp"
 #include "simulation/held_blocks.hpp"
@@ -20,16 +21,6 @@ namespace gcpdda {
 namespace {
 
 constexpr std::size_t rows_at_once = 64; ///< rows that the cache holds through all their parts of a step
-
-/// Row of a block if this rank owns it.
-std::optional<std::size_t> owned_row(const BlockSystem &blocks, BlockId id) {
-  const auto end = blocks.properties.begin() + static_cast<std::ptrdiff_t>(blocks.num_owned);
-  const auto found = std::lower_bound(blocks.properties.begin(), end, id,
-                                      [](const BlockProperties &p, BlockId wanted) { return p.id < wanted; });
-  return found == end || found->id != id
-             ? std::nullopt
-             : std::optional(static_cast<std::size_t>(found - blocks.properties.begin()));
-}
 
 } // namespace
 
@@ -66,7 +57,7 @@ void StepRows::find_prescribed_rows() {
   const double when = run_.clock.time() + run_.scheme.trial_velocity * run_.clock.plan.time_step;
   prescribed_rows_.clear();
   for (const auto &[block, motion] : run_.loads.prescribed) {
-    if (const auto row = owned_row(run_.blocks, block)) {
+    if (const auto row = find_owned_row(run_.blocks, block.value)) {
       const RigidDof trial = motion.displacement(when);
       prescribed_rows_.push_back({*row, trial, trial - run_.blocks.trial[*row]});
     }
@@ -88,7 +79,7 @@ void StepRows::predict_rows(RowSpan rows) {
 void StepRows::prescribe_motion() {
   const double dt = run_.clock.plan.time_step;
   for (const auto &[block, motion] : run_.loads.prescribed) {
-    if (const auto row = owned_row(run_.blocks, block)) {
+    if (const auto row = find_owned_row(run_.blocks, block.value)) {
       run_.blocks.displacement[*row] = motion.displacement(run_.clock.time());
       run_.blocks.velocity[*row] = motion.velocity(run_.clock.time());
       run_.blocks.acceleration[*row] =

@@ -3,6 +3,7 @@
 #include "contact/find_pairs.hpp"
 #include "contact/start_contacts.hpp"
 #include "io/results/id_slabs.hpp"
+#include "model/find_row.hpp"
 #include "parallel/migration.hpp"
 
 #include <algorithm>
@@ -32,16 +33,6 @@ std::vector<bool> listed_laws(const RunState &run) {
   return listed;
 }
 
-/// @param first, last  rows sorted by id
-bool is_among(const BlockSystem &system, std::size_t first, std::size_t last, std::int64_t id) {
-  const auto begin = system.properties.begin();
-  const auto end = begin + static_cast<std::ptrdiff_t>(last);
-  const auto found =
-      std::lower_bound(begin + static_cast<std::ptrdiff_t>(first), end, id,
-                       [](const BlockProperties &p, std::int64_t value) { return p.id.value < value; });
-  return found != end && found->id.value == id;
-}
-
 /// What this rank knows of the contacts at the start.
 struct KnownContacts {
   std::vector<std::vector<StartContact>> of_mobile; ///< by the owner of the block's slab
@@ -50,10 +41,8 @@ struct KnownContacts {
 
 void sort_out(const RunState &run, const BlockSystem &placed, std::span<const StartContact> contacts,
               KnownContacts &known) {
-  const auto is_owned = [&](std::int64_t id) { return is_among(placed, 0, placed.num_owned, id); };
-  const auto is_fixed = [&](std::int64_t id) {
-    return is_among(placed, placed.first_fixed(), placed.num_rows(), id);
-  };
+  const auto is_owned = [&](std::int64_t id) { return find_owned_row(placed, id).has_value(); };
+  const auto is_fixed = [&](std::int64_t id) { return find_fixed_row(placed, id).has_value(); };
   for (const StartContact &contact : contacts) {
     if (is_owned(contact.block)) {
       const int owner = slab_owner(num_blocks(run.scene), run.communicator.size(), contact.block);
@@ -112,12 +101,10 @@ void find_wet_joints(RunState &run) {
 }
 
 void keep_wet_joints(const BlockSystem &blocks, std::int64_t id, BlockSystem &freed) {
-  for (std::size_t row = blocks.first_fixed(); row < blocks.num_rows(); ++row) {
-    if (blocks.properties[row].id.value == id) {
-      const std::span<const WaterStretch> own = blocks.water_stretches(row);
-      freed.water_stretch.insert(freed.water_stretch.end(), own.begin(), own.end());
-      freed.water_stretch_begin.lengthen(freed.num_rows() - 1, std::ssize(own));
-    }
+  if (const auto row = find_fixed_row(blocks, id)) {
+    const std::span<const WaterStretch> own = blocks.water_stretches(*row);
+    freed.water_stretch.insert(freed.water_stretch.end(), own.begin(), own.end());
+    freed.water_stretch_begin.lengthen(freed.num_rows() - 1, std::ssize(own));
   }
 }
 

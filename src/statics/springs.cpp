@@ -1,6 +1,7 @@
 #include "statics/springs.hpp"
 
 #include "base/check.hpp"
+#include "model/find_row.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -248,34 +249,18 @@ std::vector<SpringRecord> ContactSprings::records() const {
 }
 
 void ContactSprings::take(const BlockSystem &system, std::vector<SpringRecord> records) {
-  const auto row_in = [&](std::size_t first, std::size_t last, BlockId id) {
-    const auto begin = system.properties.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = system.properties.begin() + static_cast<std::ptrdiff_t>(last);
-    const auto found = std::lower_bound(
-        begin, end, id, [](const BlockProperties &p, BlockId wanted) { return p.id < wanted; });
-    return found != end && found->id == id ? static_cast<std::size_t>(found - system.properties.begin())
-                                           : system.num_rows();
-  };
-  const auto row_of = [&](BlockId id) {
-    std::size_t row = row_in(0, system.num_owned, id);
-    if (row == system.num_rows()) {
-      row = row_in(system.num_owned, system.first_fixed(), id);
-    }
-    return row == system.num_rows() ? row_in(system.first_fixed(), system.num_rows(), id) : row;
-  };
   std::stable_sort(records.begin(), records.end(), [](const SpringRecord &a, const SpringRecord &b) {
     return is_before(a.memory, b.memory);
   });
   clear();
   for (SpringRecord &record : records) {
-    const std::size_t lower = row_of(record.memory.lower);
-    const std::size_t higher = row_of(record.memory.higher);
-    if (lower == system.num_rows() || higher == system.num_rows() ||
-        (lower >= system.num_owned && higher >= system.num_owned)) {
+    const auto lower = find_row(system, record.memory.lower.value);
+    const auto higher = find_row(system, record.memory.higher.value);
+    if (!lower || !higher || (*lower >= system.num_owned && *higher >= system.num_owned)) {
       continue;
     }
-    record.spring.lower = static_cast<std::uint32_t>(lower);
-    record.spring.higher = static_cast<std::uint32_t>(higher);
+    record.spring.lower = static_cast<std::uint32_t>(*lower);
+    record.spring.higher = static_cast<std::uint32_t>(*higher);
     at_work_.push_back(record.spring, record.memory);
   }
 }

@@ -7,6 +7,7 @@
 #include "io/hdf5/hdf5_collective_file.hpp"
 #include "io/results/frame_strips.hpp"
 #include "io/results/id_slabs.hpp"
+#include "model/find_row.hpp"
 
 #include <fmt/format.h>
 
@@ -91,13 +92,8 @@ struct OwnedRows {
   std::size_t end;
 };
 OwnedRows owned_rows(const BlockSystem &blocks, IdRange ids) {
-  const auto owned = std::span(blocks.properties).first(blocks.num_owned);
-  const auto first_from = [&](std::int64_t id) {
-    const auto found =
-        std::ranges::lower_bound(owned, id, {}, [](const BlockProperties &block) { return block.id.value; });
-    return static_cast<std::size_t>(found - owned.begin());
-  };
-  return {first_from(ids.first), first_from(ids.last)};
+  return {first_row_from(blocks, 0, blocks.num_owned, ids.first),
+          first_row_from(blocks, 0, blocks.num_owned, ids.last)};
 }
 
 /// One checkpoint on its way to the disk. Its rows travel and are written strip by strip: nobody holds more
