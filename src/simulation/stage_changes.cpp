@@ -93,26 +93,30 @@ void adopt_materials(RunState &run, const std::vector<Material> &before) {
   }
 }
 
-// It belongs to nobody yet: the owner of its slab takes it, and the next refresh brings it where it lies.
-void free_block(RunState &run, std::int64_t id, const SceneBlock &block) {
+// They belong to nobody yet: the owner of its slab takes each, and the next refresh brings it where it lies.
+/// @param ids  ascending
+/// @param blocks  of the scene, by id
+void free_blocks(RunState &run, const std::vector<std::int64_t> &ids, const std::vector<SceneBlock> &blocks) {
+  if (ids.empty()) {
+    return;
+  }
   BlockSystem freed;
-  if (slab_owner(num_blocks(run.scene), run.communicator.size(), id) == run.communicator.rank()) {
-    const Material &material = run.scene.materials[static_cast<std::size_t>(block.material)];
-    const BlockKind kind = choose_fidelity(run.scene, run.scene.joints, block).kind;
-    append_block(freed, BlockId{id}, block, material, kind, run.scene.run.plane_strain);
-    part_sides(freed, run.scene.joints);
-    keep_wet_joints(run.blocks, id, freed);
+  for (const std::int64_t id : ids) {
+    if (slab_owner(num_blocks(run.scene), run.communicator.size(), id) == run.communicator.rank()) {
+      const SceneBlock &block = blocks[static_cast<std::size_t>(id)];
+      const Material &material = run.scene.materials[static_cast<std::size_t>(block.material)];
+      const BlockKind kind = choose_fidelity(run.scene, run.scene.joints, block).kind;
+      append_block(freed, BlockId{id}, block, material, kind, run.scene.run.plane_strain);
+      part_sides(freed, run.scene.joints);
+      keep_wet_joints(run.blocks, id, freed);
+    }
   }
   rebuild(
-      run.blocks, [&](std::size_t row) { return run.blocks.properties[row].id.value != id; }, freed);
-  ++run.clock.state.more_mobile;
+      run.blocks, [&](std::size_t row) { return !holds(ids, run.blocks.properties[row].id.value); }, freed);
+  run.clock.state.more_mobile += std::ssize(ids);
 }
 
 void adopt_block(RunState &run, std::int64_t id, const SceneBlock &before, const SceneBlock &after) {
-  if (before.fixed && !after.fixed) {
-    free_block(run, id, after);
-    return;
-  }
   const auto row = find_owned_row(run.blocks, id);
   if (!row) {
     return;
@@ -201,13 +205,21 @@ void adopt(RunState &run, const Stage &stage, double begin) {
     run.loads.change_side_stress(change);
   }
   std::vector<SceneBlock> blocks = after.blocks;
+  std::vector<std::int64_t> freed;
   for (std::size_t i = 0; i < run.scene.blocks.size(); ++i) {
     const auto id = static_cast<std::int64_t>(i);
-    blocks[i].loads = run.loads.after(run.scene.blocks[i].loads, after.blocks[i].loads, change);
-    if (!is_removed(run.clock.state, id)) {
-      adopt_block(run, id, run.scene.blocks[i], blocks[i]);
+    const SceneBlock &before = run.scene.blocks[i];
+    blocks[i].loads = run.loads.after(before.loads, after.blocks[i].loads, change);
+    if (is_removed(run.clock.state, id)) {
+      continue;
+    }
+    if (before.fixed && !blocks[i].fixed) {
+      freed.push_back(id);
+    } else {
+      adopt_block(run, id, before, blocks[i]);
     }
   }
+  free_blocks(run, freed, blocks);
   run.scene.blocks = std::move(blocks);
 }
 
