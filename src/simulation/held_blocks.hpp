@@ -37,7 +37,7 @@ namespace gcpdda {
 [[nodiscard]] bool is_at_rest(const BlockSystem &blocks, std::size_t row);
 /// What nothing balances on a row, in a measure of forces, N/m.
 [[nodiscard]] double net_force(const BlockSystem &blocks, std::size_t row);
-/// A row that a step has moved is back where it was, at rest.
+/// A row is set to rest where its contacts were last evaluated, so that a step that has moved it is undone.
 void hold(BlockSystem &blocks, std::size_t row);
 
 /// At a look: blocks that hardly move are set to rest. Collective.

@@ -53,15 +53,10 @@ void rebuild(BlockSystem &system, const std::function<bool(std::size_t)> &stays,
   system = std::move(next);
 }
 
-void hold(BlockSystem &system, std::size_t row) {
+void stop_heeding_forces(BlockSystem &system, std::size_t row) {
   system.properties[row].mass = std::numeric_limits<double>::infinity();
   system.properties[row].inertia = std::numeric_limits<double>::infinity();
-  system.velocity[row] = {};
-  system.acceleration[row] = {};
-  if (system.is_deformable(row)) {
-    system.deformation_of(row).rate = {};
-    system.deformation_of(row).acceleration = {};
-  }
+  set_to_rest(system, row);
 }
 
 void let_go(BlockSystem &system, std::size_t row, double density) {
@@ -122,7 +117,7 @@ void adopt_block(RunState &run, std::int64_t id, const SceneBlock &before, const
     return;
   }
   if (!before.driven && after.driven) {
-    hold(run.blocks, *row);
+    stop_heeding_forces(run.blocks, *row);
   } else if (before.driven && !after.driven) {
     let_go(run.blocks, *row, run.scene.materials[static_cast<std::size_t>(after.material)].density);
   }

@@ -163,12 +163,8 @@ void open_statics(RunState &run) {
     return;
   }
   run.clock.state.iteration.skipped = std::max(0.0, end_of_loads(run) - run.clock.time());
-  set_to_rest(run);
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) { // where the contacts of the stage begin
-    run.blocks.displacement[row] = run.blocks.trial[row];
-    if (run.blocks.is_deformable(row)) {
-      run.blocks.deformation_of(row).gradient = run.blocks.deformation_of(row).trial;
-    }
+    hold(run.blocks, row); // blocks with a given velocity are at rest in such a stage
   }
   refresh(run);
   lay_statics(run);
