@@ -1,17 +1,12 @@
 #pragma once
 
-// The stages of a run: their plan, the looks at them, how one ends and the next begins.
+// The stages of a run: the looks at them, how one ends and the next begins.
 
 #include "simulation/run_state.hpp"
 
 #include <vector>
 
 namespace gcpdda {
-
-/// What cannot be run is told before anything is.
-void plan_all_stages(RunState &run);
-/// The steps of the stage that begins.
-void plan_stage(RunState &run);
 
 /// Time since the strengths of a trial have fallen, of another stage since it began, s.
 [[nodiscard]] double time_of_trial(const RunState &run);

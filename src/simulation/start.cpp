@@ -24,7 +24,7 @@
 #include "simulation/region_slabs.hpp"
 #include "simulation/scene_size.hpp"
 #include "simulation/stage_changes.hpp"
-#include "simulation/stage_runner.hpp"
+#include "simulation/stage_plan.hpp"
 #include "simulation/water_doubts.hpp"
 #include "simulation/wet_joints.hpp"
 

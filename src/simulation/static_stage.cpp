@@ -6,6 +6,7 @@
 #include "simulation/evaluation.hpp"
 #include "simulation/held_blocks.hpp"
 #include "simulation/loose_blocks.hpp"
+#include "simulation/stage_plan.hpp"
 #include "simulation/stage_runner.hpp"
 #include "simulation/static_evaluation.hpp"
 #include "simulation/step_report.hpp"
@@ -62,6 +63,7 @@ std::string not_served(const RunState &run) {
 void leave_statics(RunState &run) {
   run.clock.state.iteration.is_left = 1;
   run.clock.plan.lengthen(run.clock.state.iteration.evaluations);
+  note_plan(run);
   close_statics(run);
 }
 void leave_statics(RunState &run, const std::string &reason,
