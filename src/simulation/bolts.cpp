@@ -74,10 +74,12 @@ void note_bolt(const Bolt &bolt, const std::vector<BoltPiece> &pieces, bool has_
 } // namespace
 
 void Bolts::install(const Communicator &communicator, const Scene &scene, const BlockSystem &system,
-                    std::span<const std::int64_t> which, Diagnostics &notes) {
+                    std::span<const std::int64_t> which, const std::function<bool(std::int64_t)> &is_gone,
+                    Diagnostics &notes) {
   std::vector<BoltPiece> mine;
   for (std::size_t row = 0; row < system.num_rows() && !which.empty(); ++row) {
-    const bool tells = row < system.num_owned || (system.is_fixed(row) && communicator.is_root());
+    const bool counts = row < system.num_owned || (system.is_fixed(row) && communicator.is_root());
+    const bool tells = counts && !is_gone(system.properties[row].id.value);
     const std::vector<Vec2> polygon = tells ? current_vertices(system, row) : std::vector<Vec2>();
     for (std::size_t k = 0; k < which.size() && tells; ++k) {
       append_pieces(scene.bolts[static_cast<std::size_t>(which[k])], which[k], polygon,

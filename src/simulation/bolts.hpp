@@ -74,8 +74,10 @@ public:
   /// Collective.
   /// @param system  owned and fixed rows
   /// @param which  indices into Scene::bolts, ascending
+  /// @param is_gone  whether a block is to count as excavated
   void install(const Communicator &communicator, const Scene &scene, const BlockSystem &system,
-               std::span<const std::int64_t> which, Diagnostics &notes);
+               std::span<const std::int64_t> which, const std::function<bool(std::int64_t)> &is_gone,
+               Diagnostics &notes);
   /// The same for liners.
   /// @param which  indices into Scene::liners, ascending
   void install_liners(const Communicator &communicator, const Scene &scene, const BlockSystem &system,

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <string>
+#include <utility>
 
 namespace gcpdda {
 
@@ -17,29 +19,48 @@ bool slips_in_grout(const Scene &scene, std::int32_t bolt) {
   return std::isfinite(scene.supports[static_cast<std::size_t>(support)].bond_strength);
 }
 
-/// Cables that cross excavated rock between their ends. Collective.
-std::set<std::int32_t> crossed_cables(const RunState &run, const std::vector<std::int64_t> &ids) {
-  std::vector<Bolt> cables;
-  std::vector<std::int32_t> numbers;
+bool is_cable(const Scene &scene, std::int32_t bolt) {
+  const std::int32_t support = scene.bolts[static_cast<std::size_t>(bolt)].support;
+  return scene.supports[static_cast<std::size_t>(support)].kind == SupportType::Kind::anchored;
+}
+
+/// Cables between their ends, by their numbers.
+using Cables = std::map<std::int32_t, Bolt>;
+
+Cables cables_in_place(const RunState &run) {
+  Cables cables;
   for (const LinkLine &line : run.bolts.lines(run.communicator, run.blocks)) {
     const std::int32_t number = run.bolts.links()[line.link].bolt;
-    const Bolt &bolt = run.scene.bolts[static_cast<std::size_t>(number)];
-    const SupportType &support = run.scene.supports[static_cast<std::size_t>(bolt.support)];
-    if (support.kind == SupportType::Kind::anchored) {
-      numbers.push_back(number);
-      cables.push_back(bolt);
-      cables.back().from = line.points.front();
-      cables.back().to = line.points.back();
+    if (is_cable(run.scene, number)) {
+      Bolt &cable = cables[number] = run.scene.bolts[static_cast<std::size_t>(number)];
+      cable.from = line.points.front();
+      cable.to = line.points.back();
     }
   }
+  return cables;
+}
+
+Cables cables_as_drawn(const Scene &scene, const Bolts &bolts) {
+  Cables cables;
+  for (const BoltLink &link : bolts.links()) {
+    if (link.liner < 0 && is_cable(scene, link.bolt)) {
+      cables.emplace(link.bolt, scene.bolts[static_cast<std::size_t>(link.bolt)]);
+    }
+  }
+  return cables;
+}
+
+/// Cables that cross excavated rock. Collective.
+std::set<std::int32_t> crossing(const RunState &run, const Cables &cables,
+                                const std::vector<std::int64_t> &ids) {
   std::vector<BoltPiece> pieces;
   for (std::size_t row = 0; row < run.blocks.num_rows() && !cables.empty(); ++row) {
     const std::int64_t id = run.blocks.properties[row].id.value;
     const bool is_here = row < run.blocks.num_owned || run.blocks.is_fixed(row);
     if (is_here && std::binary_search(ids.begin(), ids.end(), id)) {
       const std::vector<Vec2> polygon = current_vertices(run.blocks, row);
-      for (std::size_t k = 0; k < cables.size(); ++k) {
-        append_pieces(cables[k], numbers[k], polygon, id, pieces);
+      for (const auto &[number, cable] : cables) {
+        append_pieces(cable, number, polygon, id, pieces);
       }
     }
   }
@@ -50,6 +71,36 @@ std::set<std::int32_t> crossed_cables(const RunState &run, const std::vector<std
     }
   }
   return crossed;
+}
+
+/// @param crossed  cables, also those one end of which goes
+CutBolts cut_links(const Scene &scene, const Bolts &bolts, const std::vector<std::int64_t> &ids,
+                   std::set<std::int32_t> crossed) {
+  const auto goes = [&](std::int64_t id) { return std::binary_search(ids.begin(), ids.end(), id); };
+  CutBolts cut;
+  cut.crossed = std::move(crossed);
+  std::set<std::int32_t> stay;
+  std::int32_t last = -1;
+  for (const BoltLink &link : bolts.links()) { // along each bolt
+    if (link.liner >= 0) {
+      continue;
+    }
+    const bool is_gone = goes(link.end[0].block) || goes(link.end[1].block);
+    (is_gone ? cut.taken_away : stay).insert(link.bolt);
+    const bool is_plated = !std::isfinite(link.grout[0]) && slips_in_grout(scene, link.bolt);
+    if (link.bolt != last && is_plated && goes(link.end[link.head_first ? 0 : 1].block)) {
+      cut.without_plate.insert(link.bolt);
+    }
+    last = link.bolt;
+  }
+  for (const std::int32_t bolt : stay) {
+    cut.taken_away.erase(bolt);
+  }
+  for (const std::int32_t bolt : cut.taken_away) {
+    cut.without_plate.erase(bolt);
+    cut.crossed.erase(bolt);
+  }
+  return cut;
 }
 
 /// A warning that has not been given yet.
@@ -78,31 +129,12 @@ void CutBolts::forget(const std::function<bool(std::int32_t)> &is_known) {
 }
 
 CutBolts cut_bolts(const RunState &run, const std::vector<std::int64_t> &ids) {
-  const auto goes = [&](std::int64_t id) { return std::binary_search(ids.begin(), ids.end(), id); };
-  CutBolts cut;
-  cut.crossed = crossed_cables(run, ids);
-  std::set<std::int32_t> stay;
-  std::int32_t last = -1;
-  for (const BoltLink &link : run.bolts.links()) { // along each bolt
-    if (link.liner >= 0) {
-      continue;
-    }
-    const bool is_gone = goes(link.end[0].block) || goes(link.end[1].block);
-    (is_gone ? cut.taken_away : stay).insert(link.bolt);
-    const bool is_plated = !std::isfinite(link.grout[0]) && slips_in_grout(run.scene, link.bolt);
-    if (link.bolt != last && is_plated && goes(link.end[link.head_first ? 0 : 1].block)) {
-      cut.without_plate.insert(link.bolt);
-    }
-    last = link.bolt;
-  }
-  for (const std::int32_t bolt : stay) {
-    cut.taken_away.erase(bolt);
-  }
-  for (const std::int32_t bolt : cut.taken_away) {
-    cut.without_plate.erase(bolt);
-    cut.crossed.erase(bolt);
-  }
-  return cut;
+  return cut_links(run.scene, run.bolts, ids, crossing(run, cables_in_place(run), ids));
+}
+
+CutBolts cut_bolts(const RunState &run, const Scene &scene, const Bolts &bolts,
+                   const std::vector<std::int64_t> &ids) {
+  return cut_links(scene, bolts, ids, crossing(run, cables_as_drawn(scene, bolts), ids));
 }
 
 void warn_of_cuts(RunState &run, const Stage &stage, const CutBolts &cut) {

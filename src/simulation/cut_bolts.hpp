@@ -21,9 +21,13 @@ struct CutBolts {
   void forget(const std::function<bool(std::int32_t)> &is_known);
 };
 
-/// In the posed trial configuration. Collective.
+/// Of the run's bolts, in the posed trial configuration. Collective.
 /// @param ids  of the excavated blocks, ascending
 [[nodiscard]] CutBolts cut_bolts(const RunState &run, const std::vector<std::int64_t> &ids);
+/// Of bolts that hold the blocks where the scene draws both. Collective.
+/// @param scene  of the stage
+[[nodiscard]] CutBolts cut_bolts(const RunState &run, const Scene &scene, const Bolts &bolts,
+                                 const std::vector<std::int64_t> &ids);
 
 /// One warning for each kind, unless it has been given.
 void warn_of_cuts(RunState &run, const Stage &stage, const CutBolts &cut);

@@ -60,26 +60,30 @@ void doubt_loads(RunState &run) {
   }
 }
 
+// Bolts and rock as the stages leave them, on blocks that have not moved.
 void doubt_bolts(RunState &run) {
-  std::set<std::int32_t> told; // by an earlier stage
+  const auto excavates = [](const Stage &stage) { return stage.kind == StageKind::excavate; };
+  if (run.scene.bolts.empty() || std::none_of(run.clock.stages.begin(), run.clock.stages.end(), excavates)) {
+    return;
+  }
+  Bolts bolts = run.bolts;
+  std::set<std::int64_t> gone;
+  const auto is_gone = [&](std::int64_t id) { return gone.contains(id); };
+  const Scene *before = &run.scene;
   for (const Stage &stage : run.clock.stages) {
-    if (run.bolts.empty()) {
-      return;
+    const Scene &scene = stage.after ? *stage.after : *before;
+    if (excavates(stage)) {
+      std::vector<std::int64_t> ids = select_blocks(run, stage.excavated);
+      std::erase_if(ids, is_gone);
+      CutBolts cut = cut_bolts(run, *before, bolts, ids);
+      cut.forget([&](std::int32_t bolt) { return !scene.bolts[static_cast<std::size_t>(bolt)].active; });
+      warn_of_cuts(run, stage, cut);
+      gone.insert(ids.begin(), ids.end());
+      bolts.end_at_voids(is_gone);
     }
-    for (std::size_t bolt = 0; stage.after && bolt < stage.after->bolts.size(); ++bolt) {
-      if (!stage.after->bolts[bolt].active) { // taken out before
-        told.insert(static_cast<std::int32_t>(bolt));
-      }
-    }
-    if (stage.kind != StageKind::excavate) {
-      continue;
-    }
-    CutBolts cut = cut_bolts(run, select_blocks(run, stage.excavated));
-    cut.forget([&](std::int32_t bolt) { return told.contains(bolt); });
-    for (const std::set<std::int32_t> *bolts : {&cut.taken_away, &cut.without_plate, &cut.crossed}) {
-      told.insert(bolts->begin(), bolts->end());
-    }
-    warn_of_cuts(run, stage, cut);
+    Diagnostics said_later; // when the stage puts bolts in
+    change_bolts(run, scene, before->bolts, is_gone, bolts, said_later);
+    before = &scene;
   }
 }
 

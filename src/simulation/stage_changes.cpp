@@ -242,6 +242,16 @@ std::vector<std::int64_t> put_in(const std::vector<T> &before, const std::vector
 
 } // namespace
 
+void change_bolts(const RunState &run, const Scene &scene, const std::vector<Bolt> &before,
+                  const std::function<bool(std::int64_t)> &is_gone, Bolts &bolts, Diagnostics &notes) {
+  bolts.remove([&](const BoltLink &link) {
+    const bool is_active = link.liner >= 0 ? scene.liners[static_cast<std::size_t>(link.liner)].active
+                                           : scene.bolts[static_cast<std::size_t>(link.bolt)].active;
+    return !is_active || is_gone(link.end[0].block) || is_gone(link.end[1].block);
+  });
+  bolts.install(run.communicator, scene, run.blocks, put_in(before, scene.bolts), is_gone, notes);
+}
+
 // Those that are in place now and were not are put in where the blocks are; those that are no longer, and all
 // at blocks that are gone, are taken out.
 void change_support(RunState &run, const std::vector<Bolt> &bolts, const std::vector<Liner> &liners) {
@@ -253,12 +263,7 @@ void change_support(RunState &run, const std::vector<Bolt> &bolts, const std::ve
   if (run.clock.stage().kind == StageKind::excavate) { // rock beyond viscous sides goes on
     run.bolts.end_at_voids(is_gone);
   }
-  run.bolts.remove([&](const BoltLink &link) {
-    const bool is_active = link.liner >= 0 ? scene.liners[static_cast<std::size_t>(link.liner)].active
-                                           : scene.bolts[static_cast<std::size_t>(link.bolt)].active;
-    return !is_active || is_gone(link.end[0].block) || is_gone(link.end[1].block);
-  });
-  run.bolts.install(run.communicator, scene, run.blocks, put_in(bolts, scene.bolts), run.notes);
+  change_bolts(run, scene, bolts, is_gone, run.bolts, run.notes);
   run.bolts.install_liners(run.communicator, scene, run.blocks, put_in(liners, scene.liners), run.notes);
   run.bolts.take_laws(scene);
 }

@@ -6,6 +6,7 @@
 #include "simulation/run_state.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace gcpdda {
@@ -23,6 +24,13 @@ void change_strengths(RunState &run, const std::vector<JointLaw> &laws);
 /// longer, and all links at blocks that are gone, are taken out. Collective.
 /// @param bolts, liners  those of the scene in the stage before
 void change_support(RunState &run, const std::vector<Bolt> &bolts, const std::vector<Liner> &liners);
+
+/// What change_support() does to bolts, to a copy of those of the run as well. Collective.
+/// @param scene  of the stage
+/// @param before  the bolts of the scene in the stage before
+/// @param is_gone  whether a block has been excavated
+void change_bolts(const RunState &run, const Scene &scene, const std::vector<Bolt> &before,
+                  const std::function<bool(std::int64_t)> &is_gone, Bolts &bolts, Diagnostics &notes);
 
 /// Ids of the selected blocks, ascending, the same on all ranks. Collective.
 [[nodiscard]] std::vector<std::int64_t> select_blocks(const RunState &run, const BlockSelection &selection);
