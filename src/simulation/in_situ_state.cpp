@@ -1,13 +1,10 @@
 #include "simulation/in_situ_state.hpp"
 
-#include "contact/find_pairs.hpp"
 #include "contact/in_situ.hpp"
 #include "dynamics/deformable.hpp"
 #include "io/results/id_slabs.hpp"
 #include "model/find_row.hpp"
-#include "parallel/migration.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <limits>
 
@@ -100,12 +97,7 @@ void apply_in_situ_stress(RunState &run) {
   std::vector<std::vector<Swollen>> heads(num_ranks);
   std::vector<std::vector<Vec2>> moves(num_ranks);
   {
-    BlockSystem placed = run.blocks;
-    ContactMemory none;
-    migrate(run.communicator, run.neighbours.map, placed, none);
-    Ghosts ghosts(run.communicator);
-    ghosts.rebuild(placed, reach_boxes(placed, run.neighbours.base_skin));
-    const auto pairs = find_pairs(placed, reach_boxes(placed, run.neighbours.base_skin));
+    const auto [placed, pairs] = run.neighbours.place(run.blocks);
     const std::vector<Vec2> by = find_swelling(placed, pairs, run.scene.joints, run.scene.in_situ, report);
     for (std::size_t row = 0; row < placed.num_owned; ++row) {
       const std::int64_t id = placed.properties[row].id.value;

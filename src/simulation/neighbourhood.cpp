@@ -33,6 +33,16 @@ std::vector<RowSpan> waiting_rows(const BlockSystem &blocks, const Candidates &c
 
 } // namespace
 
+PlacedBlocks Neighbourhood::place(BlockSystem blocks) const {
+  PlacedBlocks placed{std::move(blocks), {}};
+  ContactMemory none;
+  migrate(communicator, map, placed.blocks, none);
+  Ghosts around(communicator);
+  around.rebuild(placed.blocks, reach_boxes(placed.blocks, base_skin));
+  placed.pairs = find_pairs(placed.blocks, reach_boxes(placed.blocks, base_skin));
+  return placed;
+}
+
 std::int64_t Neighbourhood::refresh(BlockSystem &blocks, const ContactParameters &parameters, Bolts &bolts,
                                     ContactMemory memory, double least_skin, double time_step) {
   // Rows change places. What is made anew goes first: old and new lists together would be the largest thing

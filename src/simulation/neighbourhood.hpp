@@ -16,9 +16,16 @@
 #include "simulation/bolts.hpp"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace gcpdda {
+
+/// Blocks on the ranks that own them, with ghosts, and the pairs whose boxes meet.
+struct PlacedBlocks {
+  BlockSystem blocks;
+  std::vector<std::pair<BlockIndex, BlockIndex>> pairs;
+};
 
 struct Neighbourhood {
   explicit Neighbourhood(const Communicator &world) : communicator(world), balance(world), ghosts(world) {}
@@ -41,6 +48,9 @@ struct Neighbourhood {
   [[nodiscard]] ContactMemory remembered(const BlockSystem &blocks) const;
   [[nodiscard]] RegionRecord record_of(const BlockSystem &blocks, std::size_t pair,
                                        const RegionMemory &region) const;
+
+  /// Place a copy of the blocks of the slabs, of which nothing has been evaluated yet. Collective.
+  [[nodiscard]] PlacedBlocks place(BlockSystem blocks) const;
 
   /// Collective.
   /// @param memory  of contacts; that of the present candidates has been taken out

@@ -4,7 +4,6 @@
 #include "contact/start_contacts.hpp"
 #include "io/results/id_slabs.hpp"
 #include "model/find_row.hpp"
-#include "parallel/migration.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -57,12 +56,7 @@ void sort_out(const RunState &run, const BlockSystem &placed, std::span<const St
 KnownContacts find_contacts(const RunState &run) {
   KnownContacts known;
   known.of_mobile.resize(static_cast<std::size_t>(run.communicator.size()));
-  BlockSystem placed = run.blocks;
-  ContactMemory empty;
-  migrate(run.communicator, run.neighbours.map, placed, empty);
-  Ghosts ghosts(run.communicator);
-  ghosts.rebuild(placed, reach_boxes(placed, run.neighbours.base_skin));
-  const auto pairs = find_pairs(placed, reach_boxes(placed, run.neighbours.base_skin));
+  const auto [placed, pairs] = run.neighbours.place(run.blocks);
   sort_out(run, placed, find_start_contacts(placed, pairs, run.scene.joints), known);
   // A stage may set blocks free that keep their place until then.
   const auto kept_pairs = find_kept_pairs(placed, run.neighbours.base_skin);
