@@ -79,8 +79,28 @@ struct Outline {
   std::vector<std::int32_t> joints;
 };
 
+/// Takes out a tip at which the outline turns back on itself. A sliver between two lines that coincide to
+/// within rounding, as the wall of an opening on a joint, may border on two blocks on one side: merged with
+/// one of them, it would lie along the other as such a spike.
+bool take_out_spike(Outline &outline, double rounding) {
+  const std::size_t n = outline.vertices.size();
+  for (std::size_t k = 0; k < n && n > 3; ++k) {
+    const std::size_t before = (k + n - 1) % n;
+    const Vec2 there = outline.vertices[k] - outline.vertices[before];
+    const Vec2 back = outline.vertices[(k + 1) % n] - outline.vertices[k];
+    const double longer = std::max(norm(there), norm(back));
+    if (dot(there, back) < 0.0 && std::abs(cross(there, back)) <= rounding * longer) {
+      outline.joints[before] = norm(there) == longer ? outline.joints[before] : outline.joints[k];
+      outline.vertices.erase(outline.vertices.begin() + static_cast<std::ptrdiff_t>(k));
+      outline.joints.erase(outline.joints.begin() + static_cast<std::ptrdiff_t>(k));
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Without the vertices that a person would not draw: those on a straight edge of one joint, where another
-/// joint ends or has ended, and those that rounding has put beside another one.
+/// joint ends or has ended, those that rounding has put beside another one, and spikes.
 Outline simplified(const Ring &ring, const std::vector<std::int32_t> &joints, double rounding) {
   const std::size_t n = ring.size();
   // The vertex farthest from another one is a corner.
@@ -100,6 +120,9 @@ Outline simplified(const Ring &ring, const std::vector<std::int32_t> &joints, do
       outline.vertices.push_back(at);
       outline.joints.push_back(joints[k]);
     }
+  }
+  if (take_out_spike(outline, rounding)) {
+    return simplified(outline.vertices, outline.joints, rounding);
   }
   const auto first = std::min_element(outline.vertices.begin(), outline.vertices.end(), is_before) -
                      outline.vertices.begin();

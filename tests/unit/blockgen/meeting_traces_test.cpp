@@ -3,10 +3,12 @@
 #include "blockgen/region_cutter.hpp"
 #include "support/regions.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace gcpdda::meeting_traces_test {
@@ -175,6 +177,44 @@ TEST(MeetingTraces, FaultsThroughCornersToWithinRoundingCut) {
                                 return std::abs(signed_area(block.vertices) - half * half * rise) < 1e-6;
                               }))
           << "roof, trial " << trial;
+    }
+  }
+}
+
+// Walls of an opening lie on joints up to rounding, 3 x 0.8 against 2.4: no block has a spike along them,
+// whose corner would have no angle at all.
+TEST(MeetingTraces, WallsOnJointsLeaveNoSpikes) {
+  const auto sharpest = [](const std::vector<SceneBlock> &blocks) {
+    double angle = std::numbers::pi;
+    for (const SceneBlock &block : blocks) {
+      const std::size_t n = block.vertices.size();
+      for (std::size_t k = 0; k < n; ++k) {
+        const Vec2 there = block.vertices[(k + 1) % n] - block.vertices[k];
+        const Vec2 back = block.vertices[(k + n - 1) % n] - block.vertices[k];
+        angle = std::min(angle, std::abs(std::atan2(cross(there, back), dot(there, back))));
+      }
+    }
+    return angle;
+  };
+  for (const double size : {0.1, 0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9}) {
+    for (const int half : {3, 5, 6, 7}) {
+      Scene scene = scene_with_laws();
+      const double far = 10.0 * size;
+      scene.region.outline = {{-far, -far}, {far, -far}, {far, far}, {-far, far}};
+      const double wall = std::stod(fmt::format("{:.6g}", half * size)); // as one writes it
+      Opening opening;
+      opening.outline = {{-wall, -wall}, {wall, -wall}, {wall, wall}, {-wall, wall}};
+      scene.region.openings = {opening};
+      scene.region.min_width = 0.02 * size;
+      scene.region.joint_sets = {testing::through_going(0.0, size, 1), testing::through_going(90.0, size, 1)};
+      EXPECT_GT(sharpest(all_blocks(scene)), 1.0) << "joint sets, " << half << " x " << size;
+      scene.region.joint_sets.clear();
+      BrickPattern bricks;
+      bricks.size = {size, size};
+      bricks.bond = 0.5;
+      bricks.joint = 1;
+      scene.region.bricks = {bricks};
+      EXPECT_GT(sharpest(all_blocks(scene)), 1.0) << "bricks, " << half << " x " << size;
     }
   }
 }
