@@ -273,6 +273,27 @@ void warn_of_short_traces(Doubts &doubts) {
               "where it is to end at the line, let it end a little beyond");
 }
 
+/// A roller's law takes what it does not give from [joint.default], as every law does.
+void warn_of_rough_rollers(Doubts &doubts) {
+  const Scene &scene = doubts.scene();
+  const auto law = std::find_if(scene.joints.laws.begin(), scene.joints.laws.end(),
+                                [](const JointLaw &l) { return l.name == "roller"; });
+  const auto is_given = [&](const char *key) { return scene.places.contains(key); };
+  if (!is_given("region.roller") || law == scene.joints.laws.end() || !law->has_friction() ||
+      is_given("joint.roller.friction_angle_deg") || is_given("joint.roller.cohesion") ||
+      is_given("joint.roller.law")) {
+    return;
+  }
+  const auto place = scene.places.find("region.roller");
+  doubts.warn(
+      place->second,
+      fmt::format("[joint.roller] takes a friction angle of {:.3g} degrees and a cohesion of {:.3g} Pa "
+                  "from [joint.default]",
+                  degrees_of(law->tan_friction), law->cohesion),
+      "a roller is to hold the normal direction only",
+      "give joint.roller.friction_angle_deg = 0 and joint.roller.cohesion = 0, or leave [joint.roller] out");
+}
+
 void judge_region(Doubts &doubts) {
   const RockRegion &region = doubts.scene().region;
   if (!region.present()) {
@@ -300,6 +321,7 @@ void judge_region(Doubts &doubts) {
     expect_inside(doubts, "a layer", layer.outline, layer.where);
   }
   warn_of_short_traces(doubts);
+  warn_of_rough_rollers(doubts);
   if (const auto held = doubt_faults_at_corners(region, doubts.scene().run.gravity)) {
     doubts.warn(held->where, held->what, held->why, held->hint);
   }

@@ -407,6 +407,23 @@ vertices = [[0,0],[1,0],[1,1]]
 }
 
 // The same fault of many blocks is one line.
+// A law takes what it does not give from the default one.
+TEST(PlausibleValues, OfRollersThatAreRough) {
+  const auto told = [](const std::string &roller) {
+    return doubts_of(scene_of(
+        "[run]\nduration = 1.0\n[material.rock]\ndensity = 2600\n[joint.default]\n"
+        "normal_stiffness = 1e9\nfriction_angle_deg = 40\n" +
+        roller +
+        "[region]\nmaterial = \"rock\"\npolygon = [[0, 0], [9, 0], [9, 9], [0, 9]]\nroller = [\"left\"]\n"));
+  };
+  const std::vector<std::string> rough = told("[joint.roller]\nnormal_stiffness = 5e9\n");
+  ASSERT_EQ(rough.size(), 1U);
+  EXPECT_NE(rough[0].find("takes a friction angle of 40 degrees and a cohesion of 0 Pa"), std::string::npos);
+  EXPECT_EQ(told(""), std::vector<std::string>{});
+  EXPECT_EQ(told("[joint.roller]\nnormal_stiffness = 5e9\nfriction_angle_deg = 5\n"),
+            std::vector<std::string>{});
+}
+
 TEST(PlausibleValues, OfManyBlocksAreOneLine) {
   std::string scene =
       "[run]\nduration = 1\n[material.rock]\ndensity = 2700\n[joint.default]\nnormal_stiffness = 1e9\n";
