@@ -54,7 +54,7 @@ public:
     const std::size_t start = first_station();
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t station = (start + k) % n;
-      const std::int64_t block = std::max(hits_[station].block, FaceHit::nothing);
+      const std::int64_t block = owner_of(station);
       if (all.empty() || all.back().block != block) {
         all.push_back({block, {}});
       }
@@ -79,10 +79,15 @@ public:
   }
 
 private:
+  /// Block whose face lies at a station. A station that lies inside a block has none either.
+  [[nodiscard]] std::int64_t owner_of(std::size_t station) const {
+    return std::max(hits_[station].block, FaceHit::nothing);
+  }
+
   /// A closed path is read from where the owner changes.
   [[nodiscard]] std::size_t first_station() const {
     for (std::size_t k = 1; k < hits_.size() && path_->is_closed; ++k) {
-      if (hits_[k].block != hits_[k - 1].block) {
+      if (owner_of(k) != owner_of(k - 1)) {
         return k;
       }
     }
