@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace gcpdda {
@@ -106,7 +107,9 @@ private:
   }
 
   [[nodiscard]] double extent_of(const Stretch &stretch) const {
-    return static_cast<double>(stretch.stations.size()) * path_->spacing;
+    return std::accumulate(
+        stretch.stations.begin(), stretch.stations.end(), 0.0,
+        [&](double sum, std::size_t station) { return sum + path_->stations[station].length; });
   }
 
   /// Without the short ones, and those of one block that these have parted joined.
@@ -192,9 +195,9 @@ LinerPath path_of(const Liner &liner, double thickness, bool has_rock_on_right) 
     const auto count = static_cast<std::int64_t>(std::ceil(length / wanted));
     for (std::int64_t i = 0; i < count; ++i) { // symmetric on each edge
       const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-      path.stations.push_back({way + share * length, points[k] + share * edge, -(1.0 / length) * perp(edge)});
+      path.stations.push_back({way + share * length, length / static_cast<double>(count),
+                               points[k] + share * edge, -(1.0 / length) * perp(edge)});
     }
-    path.spacing = std::max(path.spacing, length / static_cast<double>(count));
     way += length;
   }
   return path;

@@ -23,16 +23,16 @@ namespace gcpdda {
 
 /// A place on a liner's path.
 struct LinerStation {
-  double way = 0.0; ///< along the path, m
-  Vec2 point;       ///< m
-  Vec2 inward;      ///< unit vector into the rock
+  double way = 0.0;    ///< along the path, m
+  double length = 0.0; ///< of the part of the path for which it stands, m
+  Vec2 point;          ///< m
+  Vec2 inward;         ///< unit vector into the rock
 };
 
 struct LinerPath {
   std::vector<LinerStation> stations;
-  double spacing = 0.0; ///< longest, m
-  double length = 0.0;  ///< m
-  double reach = 0.0;   ///< m
+  double length = 0.0; ///< m
+  double reach = 0.0;  ///< m
   bool is_closed = false;
 };
 

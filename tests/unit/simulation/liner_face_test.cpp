@@ -87,6 +87,27 @@ TEST(LinerFace, BridgesSliversAndCracks) {
   EXPECT_EQ(elements.num_gaps, 1);
 }
 
+// Edges of 1 cm are shorter than the spacing of the stations on the long edges: 1/8 of 0.2 m. The sliver of
+// 5 cm, a quarter of the thickness, is skipped on either kind of edge.
+TEST(LinerFace, MeasuresSliversOnADigitisedProfile) {
+  auto blocks = squares();
+  blocks[0] = rectangle({0.0, 0.0}, {1.45, 1.0});
+  blocks[1] = rectangle({1.45, 0.0}, {1.5, 1.0});
+  blocks[2] = rectangle({1.5, 0.0}, {3.0, 1.0});
+  std::vector<Vec2> digitised{{3.0, 0.0}};
+  for (int k = 0; k <= 40; ++k) {
+    digitised.push_back({1.7 - 0.01 * k, 0.0});
+  }
+  digitised.push_back({0.0, 0.0});
+  for (const Liner &liner : {roof, liner_on(digitised)}) {
+    const LinerElements elements = lay(liner, blocks, 0.2);
+    EXPECT_EQ(elements.num_stretches, 2);
+    ASSERT_EQ(elements.links.size(), 1U);
+    EXPECT_EQ(elements.links[0].end[0].block, 0);
+    EXPECT_EQ(elements.links[0].end[1].block, 2);
+  }
+}
+
 /// Wedges around a circle of radius 2 that a polygon of as many sides stands for.
 std::vector<std::vector<Vec2>> wedges(int count) {
   std::vector<std::vector<Vec2>> blocks;
