@@ -2,6 +2,7 @@
 
 #include "geometry/aabb.hpp"
 #include "geometry/holds_point.hpp"
+#include "simulation/outline_box.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -107,6 +108,22 @@ void append_pieces(const Bolt &bolt, std::int64_t index, std::span<const Vec2> p
       pieces.push_back({index, block, cuts[k], cuts[k + 1]});
     }
     goes_on = inside;
+  }
+}
+
+void append_pieces(const Scene &scene, std::span<const std::int64_t> which, const BlockSystem &system,
+                   std::size_t row, std::vector<BoltPiece> &pieces) {
+  const Aabb around = box_around(system, row);
+  std::vector<Vec2> polygon; // of the few blocks that are near
+  for (const std::int64_t index : which) {
+    const Bolt &bolt = scene.bolts[static_cast<std::size_t>(index)];
+    const std::array<Vec2, 2> ends{bolt.from, bolt.to};
+    if (around.meets(bounding_box(ends))) {
+      if (polygon.empty()) {
+        polygon = current_vertices(system, row);
+      }
+      append_pieces(bolt, index, polygon, system.properties[row].id.value, pieces);
+    }
   }
 }
 

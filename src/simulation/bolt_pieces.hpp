@@ -4,6 +4,7 @@
 
 #include "dynamics/bolt_link.hpp"
 #include "gcpdda/model/scene.hpp"
+#include "model/block_system.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -23,6 +24,11 @@ struct BoltPiece {
 /// Append the stretches of a bolt inside a simple polygon.
 void append_pieces(const Bolt &bolt, std::int64_t index, std::span<const Vec2> polygon, std::int64_t block,
                    std::vector<BoltPiece> &pieces);
+
+/// Append the stretches of bolts inside a block at t_n.
+/// @param which  into Scene::bolts
+void append_pieces(const Scene &scene, std::span<const std::int64_t> which, const BlockSystem &system,
+                   std::size_t row, std::vector<BoltPiece> &pieces);
 
 /// The links of one bolt; their ends are world positions yet, not those of a block.
 /// @param pieces  of the bolt, in any order; sorted on return

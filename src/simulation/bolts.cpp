@@ -79,11 +79,8 @@ void Bolts::install(const Communicator &communicator, const Scene &scene, const 
   std::vector<BoltPiece> mine;
   for (std::size_t row = 0; row < system.num_rows() && !which.empty(); ++row) {
     const bool counts = row < system.num_owned || (system.is_fixed(row) && communicator.is_root());
-    const bool tells = counts && !is_gone(system.properties[row].id.value);
-    const std::vector<Vec2> polygon = tells ? current_vertices(system, row) : std::vector<Vec2>();
-    for (std::size_t k = 0; k < which.size() && tells; ++k) {
-      append_pieces(scene.bolts[static_cast<std::size_t>(which[k])], which[k], polygon,
-                    system.properties[row].id.value, mine);
+    if (counts && !is_gone(system.properties[row].id.value)) {
+      append_pieces(scene, which, system, row, mine);
     }
   }
   std::vector<BoltPiece> all;

@@ -1,6 +1,5 @@
 #include "simulation/liner_face.hpp"
 
-#include "geometry/aabb.hpp"
 #include "geometry/holds_point.hpp"
 
 #include <algorithm>
@@ -200,6 +199,9 @@ LinerPath path_of(const Liner &liner, double thickness, bool has_rock_on_right) 
     }
     way += length;
   }
+  for (const LinerStation &station : path.stations) {
+    path.box.include(station.point);
+  }
   return path;
 }
 
@@ -215,6 +217,9 @@ bool FaceHit::is_before(const FaceHit &other) const {
 
 void meet(const LinerPath &path, std::span<const Vec2> polygon, std::int64_t block, std::span<FaceHit> hits) {
   const Aabb box = bounding_box(polygon).inflated(path.reach);
+  if (!box.meets(path.box)) {
+    return;
+  }
   for (std::size_t k = 0; k < path.stations.size(); ++k) {
     const LinerStation &station = path.stations[k];
     if (!box.holds(station.point)) {

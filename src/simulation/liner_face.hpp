@@ -14,6 +14,7 @@
 
 #include "dynamics/bolt_link.hpp"
 #include "gcpdda/model/support.hpp"
+#include "geometry/aabb.hpp"
 
 #include <cstdint>
 #include <span>
@@ -33,6 +34,7 @@ struct LinerPath {
   std::vector<LinerStation> stations;
   double length = 0.0; ///< m
   double reach = 0.0;  ///< m
+  Aabb box;            ///< of the stations
   bool is_closed = false;
 };
 

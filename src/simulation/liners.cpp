@@ -1,6 +1,7 @@
 #include "simulation/liners.hpp"
 
 #include "simulation/liner_face.hpp"
+#include "simulation/outline_box.hpp"
 
 #include <algorithm>
 #include <array>
@@ -48,9 +49,16 @@ void find_faces(const Communicator &communicator, const BlockSystem &system, std
     if (row >= system.num_owned && !(system.is_fixed(row) && communicator.is_root())) {
       continue;
     }
-    const std::vector<Vec2> polygon = current_vertices(system, row);
+    const Aabb around = box_around(system, row);
+    std::vector<Vec2> polygon; // of the few blocks that are near
     for (Lining &lining : linings) {
       for (std::size_t side = 0; side < lining.num_sides(); ++side) {
+        if (!around.inflated(lining.path[side].reach).meets(lining.path[side].box)) {
+          continue;
+        }
+        if (polygon.empty()) {
+          polygon = current_vertices(system, row);
+        }
         meet(lining.path[side], polygon, system.properties[row].id.value, lining.hits[side]);
       }
     }
