@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -380,6 +381,18 @@ std::vector<LimitRegion> limit_regions(Simulation &settled, double slip) {
     }
   }
   return found;
+}
+
+// One pair may have several joints on one stretch: a bond beside friction, or laws that a corner has at once.
+void put_in_order(std::vector<LimitRegion> &regions) {
+  const auto key = [](const LimitRegion &region) {
+    const LimitJoint &joint = region.joint;
+    return std::tuple(joint.first, joint.second, joint.begin.x, joint.begin.y, joint.normal.x, joint.normal.y,
+                      joint.end.x, joint.end.y, region.law, region.is_bond, joint.tan_friction,
+                      joint.cohesion, joint.tension);
+  };
+  std::sort(regions.begin(), regions.end(),
+            [&](const LimitRegion &a, const LimitRegion &b) { return key(a) < key(b); });
 }
 
 } // namespace gcpdda

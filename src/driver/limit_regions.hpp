@@ -31,4 +31,7 @@ double size_of_mobile(const BlockProperties &block);
 /// @param slip  of each block, in sizes of it
 std::vector<LimitRegion> limit_regions(Simulation &settled, double slip);
 
+/// Sort the joints of all ranks by what they are: the order does not depend on the one in which they come.
+void put_in_order(std::vector<LimitRegion> &regions);
+
 } // namespace gcpdda

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -65,13 +64,7 @@ std::vector<OwnedBlock> all_mobile(const Simulation &settled) {
 /// Of all ranks, in an order that does not depend on their number.
 std::vector<LimitRegion> all_regions(Simulation &settled, double slip) {
   std::vector<LimitRegion> all = gathered(settled.communicator(), limit_regions(settled, slip));
-  const auto key = [](const LimitRegion &region) {
-    const LimitJoint &joint = region.joint;
-    return std::tuple(joint.first, joint.second, joint.begin.x, joint.begin.y, joint.normal.x,
-                      joint.normal.y);
-  };
-  std::sort(all.begin(), all.end(),
-            [&](const LimitRegion &a, const LimitRegion &b) { return key(a) < key(b); });
+  put_in_order(all);
   return all;
 }
 

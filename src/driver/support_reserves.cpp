@@ -110,13 +110,18 @@ std::vector<LimitForce> support_reserves(const Simulation &settled, double slip)
   for (const std::vector<LimitForce> &part : settled.communicator().all_gather(mine)) {
     all.insert(all.end(), part.begin(), part.end());
   }
-  const auto key = [](const LimitForce &force) {
-    return std::tuple(force.first, force.second, force.point[0].x, force.point[0].y, force.direction.x,
-                      force.direction.y);
-  };
-  std::sort(all.begin(), all.end(),
-            [&](const LimitForce &a, const LimitForce &b) { return key(a) < key(b); });
+  put_in_order(all);
   return all;
+}
+
+// The axis of one bolt may be the line across another one, and two bolts may lie on one line.
+void put_in_order(std::vector<LimitForce> &forces) {
+  const auto key = [](const LimitForce &force) {
+    return std::tuple(force.first, force.second, force.point[0].x, force.point[0].y, force.point[1].x,
+                      force.point[1].y, force.direction.x, force.direction.y, force.least, force.most);
+  };
+  std::sort(forces.begin(), forces.end(),
+            [&](const LimitForce &a, const LimitForce &b) { return key(a) < key(b); });
 }
 
 } // namespace gcpdda

@@ -20,4 +20,7 @@ namespace gcpdda {
 /// @param slip  how far each block moves, in sizes of it, sqrt(area)
 std::vector<LimitForce> support_reserves(const Simulation &settled, double slip);
 
+/// Sort forces by what they are: the order does not depend on the one in which they come.
+void put_in_order(std::vector<LimitForce> &forces);
+
 } // namespace gcpdda
