@@ -47,7 +47,8 @@ public:
     if (code != exit_code::done) {
       return {code, std::move(report_), settled_.message()};
     }
-    return {options_.only_bound ? bound() : search(), std::move(report_), {}};
+    const ExitCode outcome = options_.only_bound ? bound() : search();
+    return {outcome, std::move(report_), std::move(message_)};
   }
 
 private:
@@ -60,7 +61,9 @@ private:
       report_.bound = bounds.sliding;
       report_.resting_bound = bounds.resting;
     } catch (const UnsolvedProgramme &unsolved) {
-      tell(std::string(unsolved.what()) + "\n");
+      message_ = unsolved.what();
+      report_.settled.message = message_;
+      conclude_without_search();
       return exit_code::undecided;
     }
     report_.is_bound_alone = true;
@@ -363,7 +366,7 @@ private:
     }
   }
 
-  /// Where the blocks fail before there is a state to begin from.
+  /// Where the blocks fail before there is a state to begin from, or where their bound is not found.
   void conclude_without_search() {
     report_.tolerance = scene_.reduction.tolerance;
     report_.settled.directory = fs::absolute(settled_.directory()).lexically_normal();
@@ -421,6 +424,7 @@ private:
   bool has_confirmed_ = false; ///< the dynamic step has come to a verdict on an end of the bracket
   std::set<double> stopped_;   ///< factors of those without a verdict because the signal came
   SafetyReport report_;
+  std::string message_; ///< why there is no bound
 };
 
 } // namespace

@@ -41,7 +41,7 @@ struct SafetyOutcome {
   /// undecided: the scene does not settle, or the bracket is wider than asked for
   ExitCode exit_code = exit_code::done;
   SafetyReport report;
-  std::string message; ///< why the search has not begun; empty where it has
+  std::string message; ///< why the search has not begun or has no bound; empty where there is an answer
 };
 
 /// Find the factor of a valid scene and write everything: `settled` (the run up to the end of the last settle
