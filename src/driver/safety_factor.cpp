@@ -232,6 +232,7 @@ private:
     bool is_overturned = false;
     for (std::size_t rank = 0; rank < all.size(); ++rank) {
       for (const TrialFacts &facts : all[rank]) {
+        stopped = stopped || facts.exit_code == exit_code::stopped;
         if (is_overturned) {
           continue; // no end of the bracket any more; one group alone would not have looked
         }
@@ -252,7 +253,6 @@ private:
                                    : void(unconfirmed_.erase(facts.factor));
         trials_[facts.factor] = trial;
         if (facts.exit_code == exit_code::stopped) {
-          stopped = true;
           stopped_.insert(facts.factor);
         }
         tell(fmt::format("factor {:.6g}: {}{} after {:.4g} s, {} steps, {:.2f} CPU s on {} rank{} {}\n",
