@@ -2,6 +2,7 @@
 
 #include "base/round_numbers.hpp"
 #include "geometry/mean_width.hpp"
+#include "geometry/point_text.hpp"
 #include "geometry/polygon.hpp"
 #include "model/generators.hpp"
 #include "simulation/rank_facts.hpp"
@@ -76,9 +77,9 @@ std::optional<Diagnostic> doubt_dust(const Communicator &communicator, const Roc
   return Diagnostic{
       Severity::warning, region.where,
       fmt::format("{} cut from the region {} a mean width below {:.2g} m, 1/1000 of the median side of the "
-                  "blocks: the narrowest is b{} at [{:.6g}, {:.6g}] with {:.2g} m",
+                  "blocks: the narrowest is b{} at {} with {:.2g} m",
                   count == 1 ? "1 block" : fmt::format("{} blocks", count), count == 1 ? "has" : "have",
-                  limit, worst.block, worst.centroid.x, worst.centroid.y, worst.width),
+                  limit, worst.block, point_text(worst.centroid), worst.width),
       "joints that close by an ordinary amount close through such a block, which stops the run, and the "
       "smallest block sets the time step",
       what_to_try(region, side)};

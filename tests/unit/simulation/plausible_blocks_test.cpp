@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -356,6 +357,27 @@ TEST(PlausibleBlocks, AreNoDust) {
   expect_one(texts,
              "2 blocks cut from the region have a mean width below 0.002 m, 1/1000 of the median side");
   EXPECT_EQ(warnings_of(scene_of(twice, with_proposed_width({}, texts.at(0)))), std::vector<std::string>{});
+
+  // In a national grid the place is still to be found. The strip lies in the middle of the left half.
+  std::string far = twice;
+  const auto replace = [&](const std::string &what, const std::string &with) {
+    const std::size_t at = far.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    far.replace(at, what.size(), with);
+  };
+  replace("[[0, 0], [4, 0], [4, 4], [0, 4]]",
+          "[[4512000, 5403000], [4512004, 5403000], [4512004, 5403004], [4512000, 5403004]]");
+  replace("[[-1, 2], [5, 2]]", "[[4511999, 5403002], [4512005, 5403002]]");
+  replace("[[-1, 2.0001], [5, 2.0001]]", "[[4511999, 5403002.0001], [4512005, 5403002.0001]]");
+  replace("[[2, -1], [2, 5]]", "[[4512002, 5402999], [4512002, 5403005]]");
+  const std::vector<std::string> there = warnings_of(scene_of(far));
+  const auto said = std::find_if(there.begin(), there.end(), [](const std::string &text) {
+    return text.find("the narrowest is") != std::string::npos;
+  });
+  ASSERT_NE(said, there.end());
+  EXPECT_TRUE(said->find(" at [4512001, 5403002]") != std::string::npos ||
+              said->find(" at [4512003, 5403002]") != std::string::npos)
+      << *said;
 
   // The error of an overlap names a width for a sliver of the region only.
   Scene scene = scene_of(twice);
