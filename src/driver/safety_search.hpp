@@ -64,9 +64,8 @@ bool watches_mechanism(const StrengthReduction &reduction);
 inline constexpr const char *confirming_stage = "confirm";
 
 /// The scene of a trial: what follows the last settle stage at once, then a run with weakened joints.
-/// @param settled_factor  what strengths were divided by in the settled state; those of a trial by the
-/// dynamic
-///                        step fall from there in increments
+/// @param settled_factor  what strengths were divided by in the settled state; from there those of a trial by
+/// the dynamic step fall in increments
 Scene weakened_scene(const Scene &scene, double factor, double settled_factor = 1.0);
 
 /// A trial in which the static solver finds that the blocks hold, or that they fail, and a stage in which the

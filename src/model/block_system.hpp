@@ -295,7 +295,7 @@ struct BlockSystem {
   RowOffsets pseudo_begin;    ///< one entry for owned blocks in a stage with the static solver
   std::vector<PseudoMotion> pseudo;
 
-  // Derived from the trial configuration, see pose(). Outlines of rigid blocks stand nowhere: to turn them
+  // Derived from the trial configuration, see pose(). Outlines of rigid blocks are not stored: to turn them
   // takes no longer than to read them (TrialOutline).
   std::vector<BlockMotion>
       motion; ///< pose() finds centroid, box and rotation of it, set_trial() the increment

@@ -13,7 +13,7 @@
 namespace gcpdda {
 
 /// What frames and histories tell of all contacts of the last evaluation: one pass over their details, which
-/// stand nowhere.
+/// are not stored.
 struct ContactDigest {
   struct OnRow {
     RigidDof force; ///< N/m and N, torque about the trial centroid

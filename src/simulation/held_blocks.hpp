@@ -12,7 +12,7 @@
 // more than `held_motion` of the largest overlap since the look before, and where the static solver hands
 // over to the dynamic step. The state itself says who is held, so that a restart goes on with the same bits.
 //
-// The static solver has a way of its own (statics/far_rows.hpp). A block that it keeps where it is for a
+// The static solver has its own rule (statics/far_rows.hpp). A block that it keeps where it is for a
 // while need not be at rest: where four of 10,883 blocks creep, 10 to 50 % of all move by more than 1e-5 of
 // the largest overlap in 50 evaluations.
 

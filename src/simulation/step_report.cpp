@@ -112,7 +112,7 @@ Diagnostics warnings_of(const RunState &run) {
     warnings.push_back({Severity::warning,
                         {},
                         fmt::format("two blocks overlapped by {:.2g} of the narrowest width of one", share),
-                        "a joint that closes by more than 0.1 of its blocks is no joint any more",
+                        "a joint that closes by more than 0.1 of its blocks is outside the model's validity",
                         "use a larger joint.normal_stiffness"});
   }
   return warnings;

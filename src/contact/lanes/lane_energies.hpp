@@ -133,7 +133,7 @@ LaneEnergy find_field_energy(const LaneChain &own, const LaneStretches &on_own, 
   return result;
 }
 
-/// The same for any number of lines there is a way of its own for.
+/// The energy of overlaps for any number of lines that has a specialised kernel.
 inline LaneEnergy find_field_energy(const LaneChain &own, const LaneStretches &on_own,
                                     const LaneChain &other) {
   static_assert(most_corner_edges == 4);

@@ -1,11 +1,11 @@
 #pragma once
 
-// Files of folders that are removed again: nobody waits until they are on the disk.
+// Files of folders that are removed again are written without waiting for the disk.
 
 namespace gcpdda {
 
-/// As long as one lives, nobody waits until what this rank writes is on the disk: for folders that go again
-/// before anybody could miss them.
+/// While one exists, writes of this rank skip fsync: for temporary folders, which are removed before a loss
+/// of their files could matter.
 class PassingFiles {
 public:
   PassingFiles();
