@@ -23,6 +23,8 @@ public:
   explicit RecordReader(const std::string &path) : path_(&path) {}
 
   RecordReading read(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF"; // of UTF-8, which spreadsheets write
+    text.remove_prefix(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
     int line = 0;
     for (std::size_t at = 0; at < text.size() && reading_.faults.size() < most_faults;) {
       const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -58,7 +60,7 @@ private:
     const bool is_heading = num_fields_ == 0 && !numbers[0] && !numbers[1];
     if (count < 2 || count > fields.size() || (num_fields_ != 0 && count != num_fields_)) {
       fault(line, 1, fmt::format("a row with {} field{}", count, count == 1 ? "" : "s"),
-            num_fields_ == 0 ? "a row is time,x or time,x,y"
+            num_fields_ == 0 ? "a row is time,x or time,x,y, separated by commas"
                              : fmt::format("the rows before have {}", num_fields_));
       return;
     }

@@ -138,12 +138,31 @@ TEST(Record, FaultsHaveLineAndColumn) {
       "r.csv:5:1: error: a row with 3 fields, the rows before have 2, mend the file",
       "r.csv:6:1: error: 'late' is no time, time is a number of at most 1e+09, mend the file"};
   EXPECT_EQ(faults_of("t,v\n0,0\n1.0, nan\n 0.5,1\n2,3,4\nlate,1\n"), expected);
-  EXPECT_EQ(faults_of("0.1\n0.2\n").front(),
-            "r.csv:1:1: error: a row with 1 field, a row is time,x or time,x,y, mend the file");
+  EXPECT_EQ(
+      faults_of("0.1\n0.2\n").front(),
+      "r.csv:1:1: error: a row with 1 field, a row is time,x or time,x,y, separated by commas, mend the "
+      "file");
   EXPECT_EQ(faults_of(""),
             std::vector<std::string>{"r.csv:1:1: error: a record of 0 rows, it has at least two, time,x or "
                                      "time,x,y, mend the file"});
   EXPECT_EQ(faults_of("0,0\n1,1e999\n").size(), 1U);
+}
+
+TEST(Record, MayBeginWithAByteOrderMark) {
+  for (const std::string heading : {"", "# a remark\n", "t,v\n"}) {
+    const RecordReading reading = read_record("\xEF\xBB\xBF" + heading + "0.5,1\n0.75,2\n", "r.csv");
+    EXPECT_TRUE(reading.faults.empty()) << to_string(reading.faults.front());
+    ASSERT_EQ(reading.rows.size(), 2U);
+    EXPECT_EQ(reading.rows[0].time, 0.5);
+  }
+}
+
+TEST(Record, IsSeparatedByCommas) {
+  for (const std::string separator : {";", "\t", " "}) {
+    const std::string fault = faults_of("0.0" + separator + "1.0\n0.1" + separator + "2.0\n").front();
+    EXPECT_NE(fault.find("r.csv:1:1: error: a row with 1 field"), std::string::npos) << fault;
+    EXPECT_NE(fault.find("separated by commas"), std::string::npos) << fault;
+  }
 }
 
 TEST(Record, ThatIsMissingIsAFaultOfTheScene) {
