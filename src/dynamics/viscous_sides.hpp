@@ -33,9 +33,10 @@ struct Impedance {
   double tangential = 0.0;
 };
 
-/// Impedances of the rock of the block itself and its joints: long waves run through a stack of blocks with
-/// rho c^2 = 1/(1/M + 1/(k h)), M the modulus of the rock, infinite of a rigid block, k the stiffness of the
-/// joints (Pa/m), h their distance: here that of the block, area over length of the edge.
+/// Impedances of a stack of blocks along the side (for joints of other directions see jointed_rock.hpp): long
+/// waves run through it with rho c^2 = 1/(1/M + 1/(k h)), M the modulus of the rock, infinite of a rigid
+/// block, k the stiffness of the joints (Pa/m), h their distance: that of a block, area over length of the
+/// edge.
 /// @param modulus  Pa, of confined compression and of shear; zero for a rigid block
 Impedance impedance_of(double density, std::array<double, 2> modulus, std::array<double, 2> joint_stiffness,
                        double height);

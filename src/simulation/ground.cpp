@@ -16,16 +16,6 @@ namespace gcpdda {
 
 namespace {
 
-/// Moduli of confined compression and of shear of the rock as the block has it; zero where it is rigid.
-std::array<double, 2> moduli_of(const BlockSystem &blocks, std::size_t row) {
-  if (!blocks.is_deformable(row)) {
-    return {};
-  }
-  const Deformation &d = blocks.deformation_of(row);
-  const double area = blocks.properties[row].area;
-  return {d.stiffness_direct / area, d.stiffness_shear / area};
-}
-
 // The time of the record's first row; never for a stage that has not begun.
 double shaking_since(const RunState &run) {
   const std::int64_t stage = run.scene.earthquake.stage;
@@ -122,30 +112,19 @@ Vec2 incoming_wave(const RunState &run) {
 }
 
 // Of the row that was appended last, as the scene draws it.
-void add_dashpot(RunState &run, const SceneBlock &block, const Material &material) {
+void add_dashpot(RunState &run, const SceneBlock &block, const SideRock &rock) {
   const Earthquake &earthquake = run.scene.earthquake;
   const std::size_t row = run.blocks.num_rows() - 1;
-  const JointLaw &law = run.scene.joints.laws.front();
+  const Vec2 centroid = run.blocks.properties[row].centroid;
   std::vector<ViscousEdge> edges;
   for (std::size_t k = 0; k < block.vertices.size(); ++k) {
     const Vec2 a = block.vertices[k];
     const Vec2 b = block.vertices[(k + 1) % block.vertices.size()];
     for (std::size_t side = 0; side < earthquake.viscous.size(); ++side) {
-      if (!earthquake.viscous[side].holds(a) || !earthquake.viscous[side].holds(b)) {
-        continue;
+      if (earthquake.viscous[side].holds(a) && earthquake.viscous[side].holds(b)) {
+        edges.push_back({a - centroid, b - centroid, rock.beyond(run.blocks, row, block, k),
+                         earthquake.is_compliant && side == 0});
       }
-      const double height = run.blocks.properties[row].area / norm(b - a);
-      Impedance impedance =
-          impedance_of(material.density, moduli_of(run.blocks, row),
-                       {law.normal_stiffness, law.tangential_ratio * law.normal_stiffness}, height);
-      if (earthquake.p_wave_speed > 0.0) {
-        impedance.normal = material.density * earthquake.p_wave_speed;
-      }
-      if (earthquake.s_wave_speed > 0.0) {
-        impedance.tangential = material.density * earthquake.s_wave_speed;
-      }
-      const Vec2 centroid = run.blocks.properties[row].centroid;
-      edges.push_back({a - centroid, b - centroid, impedance, earthquake.is_compliant && side == 0});
     }
   }
   if (!edges.empty()) {

@@ -4,6 +4,7 @@
 // dynamics/viscous_sides.hpp).
 
 #include "simulation/run_state.hpp"
+#include "simulation/side_rock.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -20,7 +21,7 @@ void open_earthquake(RunState &run);
 [[nodiscard]] Vec2 incoming_wave(const RunState &run);
 
 /// Of the row that was appended last, as the scene draws it.
-void add_dashpot(RunState &run, const SceneBlock &block, const Material &material);
+void add_dashpot(RunState &run, const SceneBlock &block, const SideRock &rock);
 /// Matrices of all rows for the stage that begins, in which dashpots are awake or not.
 void prepare_matrices(RunState &run);
 

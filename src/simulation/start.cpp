@@ -34,6 +34,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace gcpdda {
 
@@ -250,6 +251,10 @@ void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
   reserve_rows(run.blocks, slab.size(),
                std::transform_reduce(slab.begin(), slab.end(), std::size_t{0}, std::plus<>(),
                                      [](const SceneBlock &block) { return block.vertices.size(); }));
+  std::optional<SideRock> rock; // beyond viscous sides
+  if (!run.scene.earthquake.viscous.empty()) {
+    rock.emplace(run, slab, first);
+  }
   BlockSystem fixed;
   for (std::size_t k = 0; k < slab.size(); ++k) {
     const SceneBlock &block = slab[k];
@@ -267,8 +272,8 @@ void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
     append_block(block.fixed ? fixed : run.blocks, BlockId{first + static_cast<std::int64_t>(k)}, block,
                  material, choice.kind, run.scene.run.plane_strain);
     part_sides(block.fixed ? fixed : run.blocks, run.scene.joints);
-    if (!block.fixed && !run.scene.earthquake.viscous.empty()) {
-      add_dashpot(run, block, material);
+    if (!block.fixed && rock) {
+      add_dashpot(run, block, *rock);
     }
   }
   run.fidelity.num_asked = agreed_sum(run.communicator, run.fidelity.num_asked);
@@ -277,7 +282,7 @@ void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
   run.fidelity.worst_rigid = agreed_max(run.communicator, run.fidelity.worst_rigid);
   run.fidelity.worst_deformable = agreed_max(run.communicator, run.fidelity.worst_deformable);
   doubt_stiff_joints(run);
-  if (!run.scene.earthquake.viscous.empty()) {
+  if (rock) {
     run.notes.push_back(
         on_viscous_sides(run.scene, agreed_sum(run.communicator, std::ssize(run.blocks.dashpot))));
     stop_on_errors(run.notes);

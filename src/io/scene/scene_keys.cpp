@@ -198,8 +198,8 @@ constexpr Key keys_after_joints[] = {
   {"earthquake.start", Kind::number, optional, from_to(0, 1e12), "", "0.0", "2.0", "[s] Time of the first row."},
   {"earthquake.stage", Kind::name, optional, any, "", "<none>", "\"shaking\"", "Stage with which the first row comes, instead of start."},
   {"earthquake.viscous", Kind::words, optional, any, "bottom left right top", "<none>", "[\"bottom\", \"left\", \"right\"]", "Sides of the region that let waves out, from that stage on (from the start without one), by dashpots on the edges that lie on the side at the start. Fixed blocks and rollers beyond them are taken away then, and the forces they held with stay. With the bottom among them the record is the upward wave that comes in there, and the motion written is that of the ground; without it the sides stand in for rock at rest against the base. There is no free field."},
-  {"earthquake.p_wave_speed", Kind::number, optional, above_to(0, 1e6), "", "<that of blocks and joints there>", "3000.0", "[m/s] Speed of compression waves in the rock beyond viscous sides."},
-  {"earthquake.s_wave_speed", Kind::number, optional, above_to(0, 1e6), "", "<that of blocks and joints there>", "1700.0", "[m/s] The same of shear waves."},
+  {"earthquake.p_wave_speed", Kind::number, optional, above_to(0, 1e6), "", "<that of rock like the blocks and joints of the region>", "3000.0", "[m/s] Speed of compression waves in the rock beyond viscous sides. Without it the rock there has, along the side's normal, the mean compliance of the whole blocks of [region] of the same material and of their joints, whatever their directions; where no block is whole, as where slabs go through the region, that of a stack of blocks like the one on the side."},
+  {"earthquake.s_wave_speed", Kind::number, optional, above_to(0, 1e6), "", "<that of rock like the blocks and joints of the region>", "1700.0", "[m/s] The same of shear waves."},
 
   {"output", Kind::table, optional, any, "", "", "[output]", "What is written and when."},
   {"output.interval", Kind::number, optional, above_to(0, 1e12), "", "<duration/100>", "0.02", "[s] Time between frames."},
