@@ -3,6 +3,7 @@
 #include "geometry/polygon.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <tuple>
 
@@ -191,8 +192,18 @@ template <class Place> bool keeps_sound(const Heap &heap, const std::vector<Rock
   });
 }
 
-/// What is near the end of what is seen may be larger, and touch what is not seen. Whether a heap shrinks
-/// depends on the faces around it and on the heaps around these.
+void doubt_faces_of(const Heap &heap, std::vector<RockFace> &faces) {
+  for (const std::size_t i : heap.dust) {
+    faces[i].is_certain = false;
+  }
+  for (const std::size_t i : heap.around) {
+    faces[i].is_certain = false;
+  }
+}
+
+/// What is near the end of what is seen may be larger, and touch what is not seen. A heap there is doubtful,
+/// and so are the heaps that share a face with it. Of these second ones what they are is known, but not
+/// whether they shrink.
 void doubt_near_the_unknown(std::vector<Heap> &heaps, std::vector<RockFace> &faces) {
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
@@ -200,19 +211,94 @@ void doubt_near_the_unknown(std::vector<Heap> &heaps, std::vector<RockFace> &fac
       heap.is_certain = heap.is_certain && std::all_of(heap.around.begin(), heap.around.end(),
                                                        [&](std::size_t i) { return faces[i].is_certain; });
     }
-    for (Heap &heap : heaps) {
+    for (const Heap &heap : heaps) {
       if (!heap.is_certain) {
-        heap.shrinks = false;
-        for (const auto &i : heap.dust) {
-          faces[i].is_certain = false;
-        }
-        for (const std::size_t i : heap.around) {
-          faces[i].is_certain = false;
-        }
+        doubt_faces_of(heap, faces);
       }
     }
   }
 }
+
+/// Heaps that shrink together: a face between several of them may cross itself though it would not with any
+/// one of them. The heaps around such a face stay, which may be too much for the next face, until all faces
+/// are sound.
+class JointShrinking {
+public:
+  JointShrinking(const HeapAt &at, std::vector<Heap> &heaps, std::vector<RockFace> &faces)
+      : at_(&at), heaps_(&heaps), faces_(&faces) {}
+
+  void keep_faces_sound() {
+    bool changes = true;
+    while (changes) {
+      std::vector<Outcome> outcomes; // all of them by what shrinks before any is taken
+      for (const Heap &heap : *heaps_) {
+        outcomes.push_back(heap.shrinks && heap.is_certain ? outcome_of(heap) : Outcome::sound);
+      }
+      changes = false;
+      for (std::size_t h = 0; h < outcomes.size(); ++h) {
+        Heap &heap = (*heaps_)[h];
+        heap.shrinks = heap.shrinks && outcomes[h] != Outcome::unsound;
+        heap.is_certain = heap.is_certain && outcomes[h] != Outcome::unknown;
+        changes = changes || outcomes[h] != Outcome::sound;
+        if (outcomes[h] == Outcome::unknown) {
+          doubt_faces_of(heap, *faces_);
+        }
+      }
+    }
+  }
+
+private:
+  enum class Outcome { sound, unknown, unsound };
+
+  [[nodiscard]] Outcome outcome_of(const Heap &heap) const {
+    Outcome worst = Outcome::sound;
+    for (const std::size_t i : heap.around) {
+      worst = std::max(worst, outcome_of((*faces_)[i]));
+    }
+    return worst;
+  }
+
+  /// Unknown where it depends on which of the doubtful heaps shrink.
+  [[nodiscard]] Outcome outcome_of(const RockFace &face) const {
+    constexpr std::size_t most_doubtful = 4; // all of their choices are tried
+    const std::vector<std::size_t> doubtful = doubtful_around(face);
+    if (doubtful.size() > most_doubtful) {
+      return Outcome::unknown;
+    }
+    const std::size_t num_choices = std::size_t{1} << doubtful.size();
+    std::size_t num_sound = 0;
+    for (std::size_t choice = 0; choice < num_choices; ++choice) {
+      const auto place = [&](Vec2 p) {
+        const auto found = at_->find(p);
+        if (found == at_->end() || !(*heaps_)[found->second].shrinks) {
+          return p;
+        }
+        const auto k = std::find(doubtful.begin(), doubtful.end(), found->second) - doubtful.begin();
+        const bool stays = k < std::ssize(doubtful) && (choice >> k) % 2 == 0;
+        return stays ? p : (*heaps_)[found->second].point;
+      };
+      num_sound += is_sound(moved_face(face.shape, place), face.is_sliver) ? 1 : 0;
+    }
+    return num_sound == num_choices ? Outcome::sound : num_sound == 0 ? Outcome::unsound : Outcome::unknown;
+  }
+
+  [[nodiscard]] std::vector<std::size_t> doubtful_around(const RockFace &face) const {
+    std::set<std::size_t> doubtful;
+    for_each_ring(face.shape, [&](const Ring &ring) {
+      for (const Vec2 p : ring) {
+        const auto found = at_->find(p);
+        if (found != at_->end() && (*heaps_)[found->second].shrinks && !(*heaps_)[found->second].is_certain) {
+          doubtful.insert(found->second);
+        }
+      }
+    });
+    return {doubtful.begin(), doubtful.end()};
+  }
+
+  const HeapAt *at_;
+  std::vector<Heap> *heaps_;
+  std::vector<RockFace> *faces_;
+};
 
 } // namespace
 
@@ -242,16 +328,14 @@ void shrink_dust(const SliverSizes &sizes, std::vector<RockFace> &faces, MovedEd
     };
     heaps[h].shrinks = heaps[h].shrinks && keeps_sound(heaps[h], faces, to_point);
   }
+  JointShrinking(at, heaps, faces).keep_faces_sound();
+  for (Heap &heap : heaps) {
+    heap.shrinks = heap.shrinks && heap.is_certain; // else more has to be seen first
+  }
   const auto place = [&](Vec2 p) {
     const auto found = at.find(p);
     return found != at.end() && heaps[found->second].shrinks ? heaps[found->second].point : p;
   };
-  std::vector<bool> keep_sound(heaps.size()); // all together
-  std::transform(heaps.begin(), heaps.end(), keep_sound.begin(),
-                 [&](const Heap &heap) { return heap.shrinks && keeps_sound(heap, faces, place); });
-  for (std::size_t h = 0; h < heaps.size(); ++h) {
-    heaps[h].shrinks = keep_sound[h];
-  }
   std::set<std::size_t> changed;
   for (const Heap &heap : heaps) {
     if (heap.shrinks) {

@@ -1,5 +1,6 @@
 // Traces that nearly coincide, or nearly cross in one point, leave neither dust nor spikes.
 
+#include "blockgen/dust_faces.hpp"
 #include "geometry/polygon.hpp"
 #include "support/regions.hpp"
 
@@ -129,6 +130,103 @@ TEST(DustFaces, LeaveLargerSliversToBeMerged) {
       mapped({{{-1.0, 5.0}, {21.0, 5.0}}, {{10.0, -1.0}, {10.0, 11.0}}, {{4.02, -1.0}, {16.02, 11.0}}}));
   EXPECT_EQ(blocks.size(), 6U);
   EXPECT_NEAR(total_area(blocks), 200.0, 1e-10);
+}
+
+constexpr blockgen::SliverSizes wide_slivers{10.0, 0.0}; // dust is within 1 m
+
+enum Face : std::size_t { below, strip, right_strip, rightmost, above, top, a, b, c, d, x };
+
+/// Strips of rock with triangles of dust on their borders. Each triangle shrinks to its tip.
+/// - c and d stand side by side on the strip `above`, from which a corner hangs down between them: that strip
+///   holds the tip of one of them, but the line between both would cross the corner.
+/// - a and b do the same to the strip below, with a corner of c between them that goes out of their way where
+///   c shrinks.
+/// - x shares a face with d alone.
+std::vector<blockgen::RockFace> heaps_in_a_row() {
+  const std::vector<std::vector<Vec2>> rings{
+      {{-5, -5}, {5, -5}, {5, 0}, {4, 0}, {2.7, 0}, {0.9, 0}, {0.3, 0}, {-0.3, 0}, {-0.9, 0}, {-5, 0}},
+      {{-5, 0},
+       {-0.9, 0},
+       {-0.6, 0.4},
+       {-0.3, 0},
+       {0.3, 0},
+       {0.6, 0.4},
+       {0.9, 0},
+       {2.7, 0},
+       {2.7, 0.5},
+       {0.75, 0.5},
+       {0, 0.35},
+       {-0.5, 0.5},
+       {-5, 0.5}},
+      {{2.7, 0}, {4, 0}, {4, 0.1}, {3.8, 0.25}, {4, 0.4}, {4, 0.5}, {3.3, 0.5}, {2.7, 0.5}},
+      {{4, 0}, {5, 0}, {5, 0.5}, {4, 0.5}, {4, 0.4}, {4, 0.1}},
+      {{-5, 0.5},
+       {-0.5, 0.5},
+       {0, 0.35},
+       {0.25, 0.95},
+       {0.75, 0.5},
+       {2.7, 0.5},
+       {3, 0.9},
+       {3.3, 0.5},
+       {4, 0.5},
+       {5, 0.5},
+       {5, 2},
+       {1.7, 0.8},
+       {-5, 2}},
+      {{-5, 2}, {1.7, 0.8}, {5, 2}, {5, 5}, {-5, 5}},
+      {{-0.9, 0}, {-0.3, 0}, {-0.6, 0.4}},
+      {{0.3, 0}, {0.9, 0}, {0.6, 0.4}},
+      {{0, 0.35}, {0.75, 0.5}, {0.25, 0.95}},
+      {{2.7, 0.5}, {3.3, 0.5}, {3, 0.9}},
+      {{3.8, 0.25}, {4, 0.1}, {4, 0.4}}};
+  std::vector<blockgen::RockFace> faces;
+  for (const std::vector<Vec2> &ring : rings) {
+    blockgen::RockFace face;
+    face.shape.outer = ring;
+    face.area = signed_area(ring);
+    face.box = bounding_box(ring);
+    face.is_sliver = blockgen::is_sliver(face, wide_slivers);
+    faces.push_back(std::move(face));
+  }
+  return faces;
+}
+
+// That c and d stay leaves a and b with a corner between them.
+TEST(DustFaces, ShrinkTogetherWithoutCrossingAFace) {
+  std::vector<blockgen::RockFace> faces = heaps_in_a_row();
+  blockgen::MovedEdges moved;
+  shrink_dust(wide_slivers, faces, moved);
+  EXPECT_EQ(faces.size(), 10U) << "x shrinks";
+  double area = 0.0;
+  for (const blockgen::RockFace &face : faces) {
+    EXPECT_TRUE(is_simple(face.shape.outer)) << face.corner().x << ", " << face.corner().y;
+    EXPECT_GT(signed_area(face.shape.outer), 0.0);
+    area += signed_area(face.shape.outer);
+  }
+  EXPECT_NEAR(area, 100.0, 1e-12);
+}
+
+// Where more of x may lie beyond what is seen, d is doubtful, and with it c, a and b, one after the other.
+TEST(DustFaces, AreDoubtfulAsFarAsTheUnknownReaches) {
+  std::vector<blockgen::RockFace> faces = heaps_in_a_row();
+  faces[rightmost].is_certain = false;
+  blockgen::MovedEdges moved;
+  shrink_dust(wide_slivers, faces, moved);
+  EXPECT_FALSE(faces[below].is_certain) << "it depends on a and b";
+  EXPECT_TRUE(faces[top].is_certain) << "it has no vertex of dust";
+}
+
+// Without c between them nothing depends on d.
+TEST(DustFaces, AreCertainWhereEveryOutcomeIsTheSame) {
+  std::vector<blockgen::RockFace> faces = heaps_in_a_row();
+  faces[rightmost].is_certain = false;
+  faces[strip].shape.outer[10] = {0, 0.5}; // the corner between a and b lies higher
+  faces[above].shape.outer[2] = {0, 0.5};
+  faces[c].shape.outer[0] = {0, 0.5};
+  blockgen::MovedEdges moved;
+  shrink_dust(wide_slivers, faces, moved);
+  EXPECT_TRUE(faces[below].is_certain);
+  EXPECT_TRUE(is_simple(faces[below].shape.outer));
 }
 
 } // namespace
