@@ -406,7 +406,8 @@ TEST(LinerLink, RemembersItsLargestForces) {
   EXPECT_EQ(memory.largest.tension, 2e-5 * law.axial_stiffness);
   EXPECT_EQ(memory.largest.compression, 1e-5 * law.axial_stiffness);
   EXPECT_EQ(memory.largest.shear, 1e-5 * law.shear_stiffness);
-  EXPECT_DOUBLE_EQ(memory.largest.moment, 2e-5 * law.bending_stiffness + 0.5 * length * 1e-5 * law.shear_stiffness);
+  EXPECT_DOUBLE_EQ(memory.largest.moment,
+                   2e-5 * law.bending_stiffness + 0.5 * length * 1e-5 * law.shear_stiffness);
   EXPECT_LT(memory.largest.strength_used, 1.0);
   memory.broken = true;
   EXPECT_EQ(with_last(law, memory).strength_used, 1.0);
