@@ -126,7 +126,7 @@ bool is_loading(const RunState &run) {
       run.clock.state.unloading.begin(), run.clock.state.unloading.end(), [&](const Unloading &u) {
         return std::isfinite(u.duration) && run.clock.time() < u.begin + u.duration;
       });
-  return unloads || is_to_shake(run) || run.clock.time() < run.scene.run.gravity_ramp ||
+  return unloads || run.clock.time() < run.scene.run.gravity_ramp ||
          run.clock.time() < run.loads.end_of_changes(run.scene, run.clock.state, run.clock.time());
 }
 
@@ -152,7 +152,8 @@ void look_at_stage(RunState &run) {
   if (stage.is_trial() && stage.watches_mechanism() && !is_static(run)) {
     run.clock.state.verdict = judge_mechanism(run, look, run.clock.state.verdict);
   }
-  if (is_loading(run) || (is_weakening(run) && run.clock.state.verdict == Verdict::settled)) {
+  const bool is_no_rest = is_weakening(run) || is_to_shake(run);
+  if (is_loading(run) || (is_no_rest && run.clock.state.verdict == Verdict::settled)) {
     run.clock.state.verdict = Verdict::undecided;
   }
   run.clock.state.end_time = run.clock.time();

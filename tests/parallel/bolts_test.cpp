@@ -213,7 +213,7 @@ TEST(Bolts, KeepTheirLargestForcesThroughARestartBetweenTwoRows) {
       bolted_wall_toml(),
       {"output.interval=0.01", "output.history_interval=0.01", "output.checkpoint_interval=0.008",
        "support.bolt.axial_yield=1e12", "support.bolt.shear_yield=1e12", "support.bolt.bond_strength=1e12",
-       "support.bolt.rupture_strain=10.0", "support.cable.axial_yield=1e12"});
+       "support.bolt.rupture_strain=1.0", "support.cable.axial_yield=1e12"});
   const fs::path whole = folder.path("whole");
   const fs::path resumed = folder.path("resumed");
   EXPECT_EQ(run_scene(world, scene, {whole, false}), 0);
