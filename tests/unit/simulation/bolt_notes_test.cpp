@@ -52,9 +52,8 @@ TEST(BoltNotes, SayWhichEndLiesInNoBlockAndHowToMoveIt) {
   EXPECT_EQ(said_of_bolt(0.5, 2.0), "");
 }
 
-/// What is said of two bolts through three blocks above each other, of which a stage excavates one.
-std::string said_of_cut(const std::string &support, const std::string &excavated,
-                        const std::string &stage = "") {
+/// Three layers, of which the upper one can move, under a cap.
+std::string layers_toml(const std::string &support) {
   std::string toml = "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2000\n[joint.default]\n"
                      "normal_stiffness = 1e8\nfriction_angle_deg = 30\n[support.steel]\n" +
                      support;
@@ -63,6 +62,13 @@ std::string said_of_cut(const std::string &support, const std::string &excavated
                        k < 2 ? "fixed = true" : "");
   }
   toml += block_toml("cap", rectangle({0.0, 3.0}, {4.0, 3.5}));
+  return toml;
+}
+
+/// What is said of two bolts through three blocks above each other, of which a stage excavates one.
+std::string said_of_cut(const std::string &support, const std::string &excavated,
+                        const std::string &stage = "") {
+  std::string toml = layers_toml(support);
   for (const double x : {1.0, 3.0}) {
     toml += fmt::format("[[bolt]]\nname = \"at{0}\"\nsupport = \"steel\"\nfrom = [{0}, 0.5]\n"
                         "to = [{0}, 2.5]\n",
@@ -101,14 +107,7 @@ TEST(BoltNotes, SayWhichBoltsAnExcavationCuts) {
 /// @param stages  after one of 0.01 s
 std::vector<std::string> said_at_start(const std::string &support, const std::string &more,
                                        const std::string &stages) {
-  std::string toml = "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2000\n[joint.default]\n"
-                     "normal_stiffness = 1e8\nfriction_angle_deg = 30\n[support.steel]\n" +
-                     support;
-  for (int k = 0; k < 3; ++k) {
-    toml += block_toml(fmt::format("b{}", k), rectangle({0.0, 1.0 * k}, {4.0, 1.0 + k}),
-                       k < 2 ? "fixed = true" : "");
-  }
-  toml += block_toml("cap", rectangle({0.0, 3.0}, {4.0, 3.5}));
+  std::string toml = layers_toml(support);
   toml += "[[bolt]]\nname = \"rod\"\nsupport = \"steel\"\nfrom = [1, 0.5]\nto = [1, 2.5]\n" + more +
           "[[stage]]\nkind = \"run\"\nduration = 0.01\n" + stages;
   Simulation simulation(Communicator::self(), scene_of(toml));
