@@ -244,6 +244,18 @@ void doubt_stiff_joints(RunState &run) {
   }
 }
 
+void count_kind(RunState &run, const SceneBlock &block, const FidelityChoice &choice) {
+  const bool asked = block.fidelity != Fidelity::automatic || run.scene.run.fidelity != Fidelity::automatic;
+  FidelityReport &report = run.fidelity;
+  report.num_asked += asked && !block.fixed ? 1 : 0;
+  report.num_rigid += choice.kind == BlockKind::rigid ? 1 : 0;
+  report.num_deformable += choice.kind == BlockKind::deformable ? 1 : 0;
+  double &worst = choice.kind == BlockKind::deformable ? report.worst_deformable : report.worst_rigid;
+  if (!block.fixed && !block.driven) {
+    worst = std::max(worst, choice.rigid_error);
+  }
+}
+
 // Mobile blocks of the slab become owned rows, to be migrated; everybody gets all fixed ones.
 void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
   const std::int64_t first =
@@ -260,15 +272,7 @@ void take_blocks(RunState &run, std::vector<SceneBlock> slab) {
     const SceneBlock &block = slab[k];
     const Material &material = run.scene.materials[static_cast<std::size_t>(block.material)];
     const FidelityChoice choice = choose_fidelity(run.scene, run.scene.joints, block);
-    const bool asked = block.fidelity != Fidelity::automatic || run.scene.run.fidelity != Fidelity::automatic;
-    run.fidelity.num_asked += asked && !block.fixed ? 1 : 0;
-    run.fidelity.num_rigid += choice.kind == BlockKind::rigid ? 1 : 0;
-    run.fidelity.num_deformable += choice.kind == BlockKind::deformable ? 1 : 0;
-    double &worst =
-        choice.kind == BlockKind::deformable ? run.fidelity.worst_deformable : run.fidelity.worst_rigid;
-    if (!block.fixed && !block.driven) {
-      worst = std::max(worst, choice.rigid_error);
-    }
+    count_kind(run, block, choice);
     append_block(block.fixed ? fixed : run.blocks, BlockId{first + static_cast<std::int64_t>(k)}, block,
                  material, choice.kind, run.scene.run.plane_strain);
     part_sides(block.fixed ? fixed : run.blocks, run.scene.joints);
