@@ -1,6 +1,5 @@
 #include "driver/safety_factor.hpp"
 
-#include "driver/safety_bound.hpp"
 #include "driver/safety_search.hpp"
 #include "driver/settled_state.hpp"
 #include "driver/svg.hpp"
@@ -8,6 +7,7 @@
 #include "driver/trial_frames.hpp"
 #include "gcpdda/driver/run.hpp"
 #include "limit_analysis/limit_analysis.hpp"
+#include "limit_analysis/safety_bound.hpp"
 #include "model/kept_blocks.hpp"
 #include "simulation/rank_facts.hpp"
 #include "simulation/simulation.hpp"
@@ -381,7 +381,7 @@ private:
 
   void note_families() {
     for (std::size_t i = 0; i < scene_.joints.laws.size(); ++i) {
-      if (is_weakened(scene_.reduction, i)) {
+      if (scene_.reduction.weakens(i)) {
         report_.families.push_back(scene_.joints.laws[i].name);
       }
     }

@@ -141,7 +141,7 @@ private:
 
 void weaken(Scene &scene, const StrengthReduction &reduction, double factor) {
   for (std::size_t i = 0; i < scene.joints.laws.size(); ++i) {
-    if (is_weakened(reduction, i)) {
+    if (reduction.weakens(i)) {
       scene.joints.laws[i].weaken(factor);
     }
   }
@@ -251,11 +251,6 @@ std::vector<std::string> left_out_stages(const Scene &scene) {
     }
   }
   return names;
-}
-
-bool is_weakened(const StrengthReduction &reduction, std::size_t law) {
-  const std::vector<std::int32_t> &chosen = reduction.families;
-  return chosen.empty() || std::count(chosen.begin(), chosen.end(), static_cast<std::int32_t>(law)) > 0;
 }
 
 bool watches_mechanism(const StrengthReduction &reduction) {

@@ -54,9 +54,6 @@ std::vector<std::string> left_out_stages(const Scene &scene);
 /// How Scene::resolved begins after a settling_scene() with another factor than 1; the factor follows.
 inline constexpr std::string_view settled_weaker = "# settled by gcpdda fos: strengths as below divided by ";
 
-/// Whether the strengths of a law are divided.
-bool is_weakened(const StrengthReduction &reduction, std::size_t law);
-
 /// The factor is that of a mechanism, besides which that of the first block is found.
 bool watches_mechanism(const StrengthReduction &reduction);
 

@@ -14,6 +14,7 @@
 #include "gcpdda/model/support.hpp"
 #include "gcpdda/model/water.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -173,6 +174,12 @@ struct StrengthReduction {
   double local_damping = 0.3; ///< without it blocks weakened at once swing beyond their new balance
   double ignored_area = 0.0;  ///< m^2; what fails and is smaller is no failure of the slope
   std::vector<Vec2> region;   ///< only blocks that begin in it count; empty for all
+
+  /// Whether the strengths of a law are divided.
+  [[nodiscard]] bool weakens(std::size_t law) const {
+    return families.empty() ||
+           std::count(families.begin(), families.end(), static_cast<std::int32_t>(law)) > 0;
+  }
 };
 
 class BlockSource;

@@ -1,9 +1,8 @@
-#include "driver/safety_bound.hpp"
+#include "limit_analysis/safety_bound.hpp"
 
-#include "driver/limit_regions.hpp"
-#include "driver/safety_search.hpp"
-#include "driver/support_reserves.hpp"
 #include "limit_analysis/limit_analysis.hpp"
+#include "limit_analysis/limit_regions.hpp"
+#include "limit_analysis/support_reserves.hpp"
 #include "simulation/evaluation.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "driver/support_reserves.hpp"
+#include "limit_analysis/support_reserves.hpp"
 
 #include "dynamics/bolt_link.hpp"
 

@@ -1,8 +1,7 @@
-#include "driver/limit_regions.hpp"
+#include "limit_analysis/limit_regions.hpp"
 
 #include "contact/contact_sums.hpp"
 #include "contact/laws/region_law.hpp"
-#include "driver/safety_search.hpp"
 #include "simulation/evaluation.hpp"
 
 #include <algorithm>
@@ -50,7 +49,7 @@ LimitRegion closed_joint(const Simulation &settled, const RegionForce &region, c
   joint.tension = region.bonded ? length * law.tension : 0.0;
   found.law = number;
   found.is_bond = region.bonded;
-  joint.is_weakened = is_weakened(scene.reduction, static_cast<std::size_t>(number));
+  joint.is_weakened = scene.reduction.weakens(static_cast<std::size_t>(number));
   found.cohesion = is_residual ? law.residual_cohesion : law.cohesion;
   if (law.is_barton_bandis) {
     const StrengthLine line = strength_line(law, length > 0.0 ? std::abs(region.normal_force) / length : 0.0);
@@ -74,7 +73,7 @@ LimitRegion open_joint(const Simulation &settled, std::int32_t law_number, Vec2 
   found.joint.tan_friction = law.is_barton_bandis ? law.tan_friction_at(0.0)
                              : law.has_bonds      ? law.residual_tan_friction
                                                   : law.tan_friction;
-  found.joint.is_weakened = is_weakened(scene.reduction, static_cast<std::size_t>(number));
+  found.joint.is_weakened = scene.reduction.weakens(static_cast<std::size_t>(number));
   found.cohesion = law.has_bonds ? law.residual_cohesion : law.cohesion;
   return found;
 }

@@ -1,7 +1,7 @@
 // The linear programme of a bound is the same whatever rank tells its joints and supports first.
 
-#include "driver/limit_regions.hpp"
-#include "driver/support_reserves.hpp"
+#include "limit_analysis/limit_regions.hpp"
+#include "limit_analysis/support_reserves.hpp"
 
 #include <gtest/gtest.h>
 
