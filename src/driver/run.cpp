@@ -3,19 +3,17 @@
 #include "base/check.hpp"
 #include "base/program_facts.hpp"
 #include "driver/restart_changes.hpp"
+#include "driver/result_files.hpp"
 #include "driver/run_facts.hpp"
 #include "driver/run_log.hpp"
 #include "driver/run_words.hpp"
 #include "driver/stop_signal.hpp"
-#include "gcpdda/io/frame_writer.hpp"
 #include "gcpdda/io/run_summary.hpp"
 #include "io/checkpoint/checkpoint.hpp"
 #include "io/checkpoint/checkpoint_reader.hpp"
-#include "io/checkpoint/checkpoint_writer.hpp"
 #include "io/checkpoint/past_scenes.hpp"
 #include "io/hdf5/durable_file.hpp"
 #include "io/results/folder_lock.hpp"
-#include "io/results/history_writer.hpp"
 #include "io/results/result_directory.hpp"
 #include "io/results/summary.hpp"
 #include "simulation/energy_ledger.hpp"
@@ -59,8 +57,7 @@ public:
   /// @param lock  of the folder, if there is one yet
   SceneRun(const Communicator &communicator, const Scene &scene, const RunOptions &options, FolderLock &lock)
       : communicator_(communicator), directory_(options.directory), is_bare_(options.bare),
-        is_once_(options.once), options_(options), bolts_at_start_(scene.bolts),
-        liners_at_start_(scene.liners), simulation_(communicator, scene, beginning_of(options)) {
+        is_once_(options.once), options_(options), simulation_(communicator, scene, beginning_of(options)) {
     if (options.restart && options.computed_with != nullptr) {
       const StageState &stage = simulation_.stage();
       expect_same_past(*options.computed_with, scene, stage.index + (stage.ended ? 1 : 0));
@@ -171,13 +168,11 @@ private:
       }
       prepare_result_directory(directory_, options.overwrite, scene.resolved);
       keep_drawings(scene);
-      histories_.emplace(directory_, scene.monitors, SupportHistories::of(scene));
     });
     log_.emplace(communicator_.is_root(), directory_, std::ios::trunc, options.quiet, options.progress_of);
-    frames_.emplace(communicator_, directory_, simulation_.num_blocks());
+    files_.emplace(simulation_, scene, directory_, false);
     simulation_.restored() ? ledger_.emplace(simulation_.restored()->facts)
                            : ledger_.emplace(simulation_.state());
-    checkpoints_.emplace(communicator_, directory_, std::filesystem::path());
   }
 
   /// A restart needs neither the drawings nor what has converted them.
@@ -189,7 +184,6 @@ private:
     }
   }
 
-  // What was written after the checkpoint goes: it will be written again.
   void continue_results(const Scene &scene, const Restored &restored) {
     const RunFacts &facts = restored.facts;
     on_root(communicator_, [&] {
@@ -199,12 +193,7 @@ private:
       }
       reopen_result_directory(directory_, scene.resolved);
     });
-    frames_.emplace(communicator_, directory_, simulation_.num_blocks());
-    frames_->continue_behind(facts.frame_times, facts.results);
-    on_root(communicator_, [&] {
-      histories_.emplace(directory_, scene.monitors, facts.time + 0.5 * facts.time_step, facts.results,
-                         SupportHistories::of(scene));
-    });
+    files_.emplace(simulation_, scene, directory_, true);
     log_.emplace(communicator_.is_root(), directory_, std::ios::app);
     for (const std::string &rejected : restored.rejected) {
       log_->line("warning: a checkpoint is not used, " + rejected);
@@ -221,8 +210,6 @@ private:
       }
     }
     ledger_.emplace(facts);
-    num_frames_ = static_cast<int>(facts.frame_times.size());
-    checkpoints_.emplace(communicator_, directory_, restored.path);
   }
 
   void announce() {
@@ -325,26 +312,16 @@ private:
       log_->diagnostic(*warning);
     }
     if (output_due) {
-      const int index = num_frames_++;
-      frames_->write(index, simulation_.time(), SimulationFrame(simulation_));
-      if (simulation_.scene().output.contacts) {
-        frames_->write_contacts(index, simulation_.time(), SimulationContacts(simulation_));
-      }
-      if (!bolts_at_start_.empty()) {
-        frames_->write_bolts(index, simulation_.time(), collect_bolt_lines(simulation_));
-      }
-      if (!liners_at_start_.empty()) {
-        frames_->write_liners(index, simulation_.time(), collect_liner_rows(simulation_));
-      }
+      files_->write_frame(simulation_);
     }
     if (history_due) {
-      write_history(failed);
+      files_->write_history(simulation_, failed ? nullptr : &energy_);
+      contacts_at_end_ = count_contacts();
     }
     simulation_.state().digest.reset();
     output_cpu_seconds_ += cpu_seconds() - cpu_start;
   }
 
-  // After frames and histories of this step, so that a restart owes none.
   void write_checkpoint_if_due() {
     const bool stopping = simulation_.stop_agreed() && !simulation_.finished();
     const bool stage_ends = simulation_.is_staged() && simulation_.stage_is_over();
@@ -356,48 +333,13 @@ private:
     const auto scope = simulation_.phases().measure(Phase::output);
     const double cpu_start = cpu_seconds();
     const Clock::time_point start = Clock::now();
-    on_root(communicator_, [&] { histories_->sync(); });
-    frames_->sync();
-    RunFacts facts = facts_of(simulation_.state());
-    on_root(communicator_, [&] {
-      facts.results = histories_->files();
-      facts.results.insert(facts.results.end(), frames_->files().begin(), frames_->files().end());
-    });
-    ledger_->tell(facts);
-    facts.frame_times = frames_->times();
-    checkpoints_->write(facts, simulation_.blocks(), SimulationContacts(simulation_));
+    files_->write_checkpoint(simulation_, *ledger_);
     log_->line(fmt::format("checkpoint at t = {:.9g} s, written in {:.3g} s", simulation_.time(),
                            seconds_since(start)));
     output_cpu_seconds_ += cpu_seconds() - cpu_start;
   }
 
   [[nodiscard]] double output_seconds() { return simulation_.phases().seconds(Phase::output); }
-
-  void write_history(bool failed) {
-    const std::vector<BlockHistoryRow> rows = collect_monitors(simulation_);
-    const std::vector<BoltHistoryRow> bolts = collect_bolts(simulation_);
-    const std::vector<LinerHistoryRow> liners = collect_liners(simulation_);
-    contacts_at_end_ = count_contacts();
-    on_root(communicator_, [&] {
-      for (std::size_t m = 0; m < rows.size(); ++m) {
-        const std::int64_t block = simulation_.scene().monitors[m].block;
-        if (block < 0 || simulation_.is_removed(block)) {
-          continue;
-        }
-        histories_->write_monitor(m, simulation_.time(), rows[m]);
-      }
-      if (!failed) {
-        histories_->write_energy(simulation_.time(), energy_);
-      }
-      if (!bolts.empty()) {
-        histories_->write_bolts(simulation_.time(), bolts);
-      }
-      if (!liners.empty()) {
-        histories_->write_liners(simulation_.time(), liners);
-      }
-      histories_->flush();
-    });
-  }
 
   std::int64_t count_contacts() {
     std::int64_t count = 0;
@@ -432,7 +374,7 @@ private:
     for (const Diagnostic &warning : warnings_of(simulation_.state())) {
       log_->line(to_string(warning));
     }
-    frames_->sync();
+    files_->sync_frames();
     on_root(communicator_, [&] { write_summary(directory_, summary); });
     write_owners_of_blocks();
     log_->line("wall seconds   min      mean       max over ranks");
@@ -464,10 +406,7 @@ private:
     summary.joint_sets = options_.joint_sets;
     summary.contacts = contacts_at_end_;
     summary.energy = energy_;
-    if (histories_) { // of the root
-      summary.bolts = with_installation(histories_->bolt_loads(), bolts_at_start_, simulation_);
-      summary.liners = with_installation(histories_->liner_loads(), liners_at_start_, simulation_);
-    }
+    files_->tell_supports(simulation_, summary);
     summary.wall_s = spread(communicator_, loop_seconds_)[2];
     const auto num_ranks = static_cast<double>(communicator_.size());
     summary.cpu_s = spread(communicator_, cpu_seconds_)[1] * num_ranks;
@@ -482,18 +421,13 @@ private:
   bool is_bare_;
   bool is_once_;
   const RunOptions &options_;
-  std::vector<Bolt> bolts_at_start_;
-  std::vector<Liner> liners_at_start_;
   Simulation simulation_;
-  std::optional<HistoryWriter> histories_;
+  std::optional<ResultFiles> files_;
   std::optional<RunLog> log_;
-  std::optional<FrameWriter> frames_;
   std::optional<EnergyLedger> ledger_;
-  std::optional<CheckpointWriter> checkpoints_;
   ImpactWatch impacts_;
   StrainWatch strains_;
   EnergyRow energy_;
-  int num_frames_ = 0;
   std::size_t num_notes_ = 0; ///< that have been told
   std::size_t num_links_ = 0;
   std::int64_t first_step_ = 0; ///< of this part of the run
