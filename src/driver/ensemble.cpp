@@ -60,7 +60,8 @@ MemberFacts facts_of(const SafetyOutcome &outcome) {
   return facts;
 }
 
-MemberFacts facts_of(const RunOutcome &outcome) {
+/// @param largest  as far may blocks come to rest from where the ground began to shake, m
+MemberFacts facts_of(const RunOutcome &outcome, double largest) {
   MemberFacts facts;
   facts.stopped = outcome.exit_code == exit_code::stopped;
   const Verdict verdict =
@@ -69,6 +70,10 @@ MemberFacts facts_of(const RunOutcome &outcome) {
                          : verdict == Verdict::failed                      ? MemberOutcome::fails
                          : verdict == Verdict::settled                     ? MemberOutcome::holds
                                                                            : MemberOutcome::undecided;
+  if (facts.member.outcome == MemberOutcome::holds && outcome.summary.permanent_displacement >= 0.0) {
+    facts.member.displacement = outcome.summary.permanent_displacement;
+    facts.member.outcome = *facts.member.displacement > largest ? MemberOutcome::fails : MemberOutcome::holds;
+  }
   const bool is_plain =
       facts.member.outcome == MemberOutcome::holds || facts.member.outcome == MemberOutcome::fails;
   facts.member.message = facts.member.outcome == MemberOutcome::holds
@@ -95,6 +100,9 @@ std::string line_of(const EnsembleMember &member) {
   if (const std::optional<double> factor = member.factor()) {
     text += fmt::format(", factor {:.5g} ({:.5g} to {:.5g})", *factor, *member.holds, *member.fails);
   }
+  if (member.displacement) {
+    text += fmt::format(", permanent displacement {:.3g} m", *member.displacement);
+  }
   text += fmt::format(", {} steps, {:.2f} CPU s", member.steps, member.cpu_s);
   return text + (member.message.empty() ? "" : ": " + member.message) + "\n";
 }
@@ -107,6 +115,8 @@ public:
         group_(world) {
     report_.measure = ensemble_.measure;
     report_.count = ensemble_.count;
+    report_.shakes = ensemble_.measure == Measure::verdict && scene.earthquake.shakes();
+    report_.largest_displacement = ensemble_.largest_displacement;
     for (const Variation &variation : ensemble_.variations) {
       report_.keys.push_back(variation.key);
     }
@@ -150,7 +160,7 @@ private:
   void take(const std::string &rows) {
     for (std::size_t at = 0; at < rows.size();) {
       const std::size_t end = std::min(rows.find('\n', at), rows.size());
-      const auto member = member_of(rows.substr(at, end - at), ensemble_.variations.size());
+      const auto member = member_of(rows.substr(at, end - at), ensemble_.variations.size(), report_.shakes);
       if (member && member->number < ensemble_.count) {
         report_.members.push_back(*member);
       }
@@ -204,9 +214,9 @@ private:
         fs::remove_all(directory);
       }
       if (!facts.stopped) {
-        write_member(options_.directory, facts.member);
+        write_member(options_.directory, facts.member, report_.shakes);
         std::cerr << line_of(facts.member) << std::flush;
-        mine_ += row_of(facts.member) + "\n";
+        mine_ += row_of(facts.member, report_.shakes) + "\n";
       }
     });
   }
@@ -221,7 +231,7 @@ private:
     }
     // Bare, and not with fewer outputs: the time step divides the time between them.
     const RunOptions run{directory, true, false, {}, true, !ensemble_.keep};
-    return facts_of(run_and_tell(group_, with_settle_stage(scene), run));
+    return facts_of(run_and_tell(group_, with_settle_stage(scene), run), ensemble_.largest_displacement);
   }
 
   /// The same on all ranks of the group.
@@ -254,7 +264,9 @@ private:
     const EnsembleStatistics found = statistics_of(report_);
     on_root(world_, [&] {
       write_ensemble_report(options_.directory, report_,
-                            found.factor.number > 0 ? draw_histogram(report_) : std::string());
+                            found.factor.number > 0         ? draw_factors(report_)
+                            : found.displacement.number > 0 ? draw_displacements(report_)
+                                                            : std::string());
       std::cout << to_text(report_) << std::flush;
       if (!is_whole) {
         std::cerr << "stopped by a signal; the same call goes on with the members that are missing\n";

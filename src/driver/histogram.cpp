@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
+#include <optional>
+#include <utility>
 
 namespace gcpdda {
 
@@ -90,6 +93,41 @@ private:
   std::string text_;
 };
 
+/// What a picture shows.
+struct Histogram {
+  std::vector<double> values; ///< at least one
+  std::string title;
+  double edge = 0.0; ///< of a bar
+  std::function<bool(double)> is_failure;
+  std::vector<std::pair<double, std::string>> lines; ///< upright ones: where, and colour
+  std::vector<std::string> words;                    ///< rows above the bars
+};
+
+std::string drawn(const Histogram &histogram) {
+  const Bars bars = bars_of(histogram.values, histogram.edge);
+  Chart chart(bars, *std::max_element(bars.counts.begin(), bars.counts.end()));
+  for (std::size_t k = 0; k < bars.counts.size(); ++k) {
+    chart.bar(k, histogram.is_failure(chart.edge(k) + 0.5 * bars.width) ? "#d1583f" : "#8aa9c8");
+  }
+  chart.axes(histogram.title);
+  for (const auto &[place, colour] : histogram.lines) {
+    if (chart.edge(0) <= place && place <= chart.edge(bars.counts.size())) {
+      chart.upright(place, colour);
+    }
+  }
+  double row = 22.0; // pixels
+  for (const std::string &words : histogram.words) {
+    chart.write(Chart::margin, row, "start", words);
+    row += 20.0;
+  }
+  return chart.whole();
+}
+
+std::string words_on_probability(const EnsembleStatistics &found) {
+  return fmt::format("probability of failure {:.3g}, {:.2g} to {:.2g} with 95 % confidence: {} of {} fail",
+                     found.probability, found.interval.low, found.interval.high, found.fails, found.trials());
+}
+
 } // namespace
 
 Bars bars_of(const std::vector<double> &values, double edge) {
@@ -108,39 +146,50 @@ Bars bars_of(const std::vector<double> &values, double edge) {
   return bars;
 }
 
-std::string draw_histogram(const EnsembleReport &report) {
-  std::vector<double> factors;
+std::string draw_factors(const EnsembleReport &report) {
+  const EnsembleStatistics found = statistics_of(report);
+  Histogram histogram;
   for (const EnsembleMember &member : report.members) {
     if (const std::optional<double> factor = member.factor()) {
-      factors.push_back(*factor);
+      histogram.values.push_back(*factor);
     }
   }
-  const EnsembleStatistics found = statistics_of(report);
-  const Bars bars = bars_of(factors, 1.0);
-  Chart chart(bars, *std::max_element(bars.counts.begin(), bars.counts.end()));
-  for (std::size_t k = 0; k < bars.counts.size(); ++k) {
-    const bool below = chart.edge(k) + 0.5 * bars.width < 1.0;
-    chart.bar(k, below ? "#d1583f" : "#8aa9c8");
-  }
-  chart.axes("factor of safety");
-  const auto is_inside = [&](double x) { return chart.edge(0) <= x && x <= chart.edge(bars.counts.size()); };
-  if (is_inside(1.0)) {
-    chart.upright(1.0, "black");
-  }
-  chart.upright(found.factor.mean, mean_colour);
-  chart.write(Chart::margin, 22.0, "start",
-              fmt::format("{} members: mean {:.4g} (green), standard deviation {:.3g}", found.factor.number,
-                          found.factor.mean, found.factor.deviation));
-  chart.write(
-      Chart::margin, 42.0, "start",
-      fmt::format("probability of failure {:.3g}, {:.2g} to {:.2g} with 95 % confidence: {} of {} fail",
-                  found.probability, found.interval.low, found.interval.high, found.fails, found.trials()));
+  histogram.title = "factor of safety";
+  histogram.edge = 1.0;
+  histogram.is_failure = [](double factor) { return factor < 1.0; };
+  histogram.lines = {{1.0, "black"}, {found.factor.mean, mean_colour}};
   const std::int64_t aside = found.trials() - found.factor.number;
+  histogram.words = {fmt::format("{} members: mean {:.4g} (green), standard deviation {:.3g}",
+                                 found.factor.number, found.factor.mean, found.factor.deviation),
+                     words_on_probability(found)};
   if (aside > 0) {
-    chart.write(Chart::margin, 62.0, "start",
-                fmt::format("{} members without a factor are not shown", aside));
+    histogram.words.push_back(fmt::format("{} members without a factor are not shown", aside));
   }
-  return chart.whole();
+  return drawn(histogram);
+}
+
+std::string draw_displacements(const EnsembleReport &report) {
+  const EnsembleStatistics found = statistics_of(report);
+  const double largest = report.largest_displacement;
+  Histogram histogram;
+  for (const EnsembleMember &member : report.members) {
+    if (member.displacement) {
+      histogram.values.push_back(*member.displacement);
+    }
+  }
+  histogram.title = "permanent displacement, m";
+  histogram.edge = std::isfinite(largest) ? largest : 0.0;
+  histogram.is_failure = [&](double displacement) { return displacement > largest; };
+  histogram.lines = {{largest, "black"}, {found.median_displacement, mean_colour}};
+  const std::int64_t aside = found.trials() - found.displacement.number;
+  histogram.words = {fmt::format("{} members at rest: median {:.3g} m (green), mean {:.3g} m",
+                                 found.displacement.number, found.median_displacement,
+                                 found.displacement.mean),
+                     words_on_probability(found)};
+  if (aside > 0) {
+    histogram.words.push_back(fmt::format("{} members that did not come to rest are not shown", aside));
+  }
+  return drawn(histogram);
 }
 
 } // namespace gcpdda

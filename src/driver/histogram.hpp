@@ -1,6 +1,6 @@
 #pragma once
 
-// The picture of an ensemble: how often which factor of safety was found.
+// The picture of an ensemble: how often which factor of safety, or which permanent displacement, was found.
 
 #include "io/results/ensemble_report.hpp"
 
@@ -21,6 +21,10 @@ struct Bars {
 Bars bars_of(const std::vector<double> &values, double edge);
 
 /// Picture (SVG) of how the factors of safety of the members lie about 1.
-std::string draw_histogram(const EnsembleReport &report);
+std::string draw_factors(const EnsembleReport &report);
+
+/// Picture (SVG) of how far the blocks of the members that are at rest have moved since the ground began to
+/// shake.
+std::string draw_displacements(const EnsembleReport &report);
 
 } // namespace gcpdda

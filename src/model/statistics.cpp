@@ -88,4 +88,13 @@ SampleMoments sample_moments(std::span<const double> sample) {
   return moments;
 }
 
+double median_of(std::vector<double> sample) {
+  if (sample.empty()) {
+    return 0.0;
+  }
+  std::sort(sample.begin(), sample.end());
+  const std::size_t middle = sample.size() / 2;
+  return sample.size() % 2 == 1 ? sample[middle] : 0.5 * (sample[middle - 1] + sample[middle]);
+}
+
 } // namespace gcpdda

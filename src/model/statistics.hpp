@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace gcpdda {
 
@@ -37,5 +38,8 @@ struct SampleMoments {
   [[nodiscard]] double standard_error() const;
 };
 SampleMoments sample_moments(std::span<const double> sample);
+
+/// The middle one of a sample, or the mean of both in the middle; 0 of none.
+double median_of(std::vector<double> sample);
 
 } // namespace gcpdda

@@ -6,7 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
+#include <fmt/format.h>
+#include <numbers>
 
 namespace gcpdda::ensemble_test {
 namespace {
@@ -106,6 +110,59 @@ TEST(Ensemble, MembersAreShaken) {
   const Outcome unstaged = run_gcpdda(0, {"ensemble", "unstaged.toml"}, folder);
   EXPECT_EQ(unstaged.exit_code, 3);
   EXPECT_NE(unstaged.err.find("no stage says when its blocks stand"), std::string::npos) << unstaged.err;
+}
+
+// A slab on a plane of 10 degrees under two pulses that any friction of the members gives way to: each slides
+// some way and rests, and the limit is for the user to set.
+TEST(Ensemble, PermanentDisplacementsAreTold) {
+  const WorkFolder folder;
+  std::string record;
+  for (int k = 0; k <= 200; ++k) {
+    record += fmt::format("{:.3f}, {}\n", 0.005 * k, 6.0 * std::sin(4.0 * std::numbers::pi * 0.005 * k));
+  }
+  folder.write("push.csv", record);
+  constexpr double dip = 10.0 * std::numbers::pi / 180.0;
+  folder.write(
+      "slab.toml",
+      "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600\n[joint.default]\n"
+      "normal_stiffness = 1e9\nfriction_angle_deg = 25\n" +
+          testing::block_toml("plane", testing::placed(testing::rectangle({-20, -2}, {20, 0}), dip, {}),
+                              "fixed = true") +
+          testing::block_toml("slab", testing::placed(testing::rectangle({-1, 0}, {1, 1}), dip, {})) +
+          "[earthquake]\nrecord = \"push.csv\"\nquantity = \"acceleration\"\nstage = \"shaking\"\n"
+          "[[stage]]\nname = \"weight\"\nkind = \"settle\"\nlimit = 5\n"
+          "[[stage]]\nname = \"shaking\"\nkind = \"run\"\nlimit = 9\n"
+          "[ensemble]\ncount = 5\nmeasure = \"verdict\"\n[[ensemble.vary]]\n"
+          "key = \"joint.default.friction_angle_deg\"\ndistribution = \"uniform\"\nmin = 18.0\nmax = 30.0\n");
+  const Outcome free =
+      run_gcpdda(2, {"ensemble", "slab.toml", "--out", "free", "--set", "ensemble.keep=true"}, folder);
+  ASSERT_EQ(free.exit_code, 0) << free.err;
+  EXPECT_NE(free.out.find("members hold wherever they have come to rest"), std::string::npos) << free.out;
+  EXPECT_EQ(json_value(folder / "free/ensemble.json", "fails"), "0");
+  EXPECT_TRUE(fs::exists(folder / "free/ensemble.svg"));
+  const std::vector<std::string> rows = lines_of(file_text(folder / "free/ensemble_members.csv"));
+  EXPECT_EQ(rows[0], "member,outcome,holds,fails,steps,cpu[s],joint.default.friction_angle_deg,"
+                     "permanent_displacement[m],message");
+  std::vector<double> displacements;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    displacements.push_back(
+        std::stod(rows[k].substr(0, rows[k].rfind(',')).substr(rows[k].rfind(',', rows[k].size() - 2) + 1)));
+    const fs::path summary = folder / fmt::format("free/members/member_{:06}/summary.json", k - 1);
+    EXPECT_EQ(displacements.back(), std::stod(json_value(summary, "permanent_displacement")));
+    EXPECT_GT(displacements.back(), 0.01) << "no friction of theirs resists 6 m/s2";
+  }
+  ASSERT_EQ(displacements.size(), 5U);
+  std::sort(displacements.begin(), displacements.end());
+  EXPECT_NEAR(std::stod(json_value(folder / "free/ensemble.json", "median")), displacements[2], 1e-12);
+
+  const double limit = 0.5 * (displacements[2] + displacements[3]);
+  const Outcome limited = run_gcpdda(0,
+                                     {"ensemble", "slab.toml", "--out", "limited", "--set",
+                                      fmt::format("ensemble.largest_displacement={}", limit)},
+                                     folder);
+  EXPECT_EQ(limited.exit_code, 0) << limited.err;
+  EXPECT_NE(limited.out.find("2 of 5 members fail"), std::string::npos) << limited.out;
+  EXPECT_NE(limited.out.find("2 members at rest farther than"), std::string::npos) << limited.out;
 }
 
 // With a tenth of the friction that limit equilibrium asks for, members fail whatever is measured: also where

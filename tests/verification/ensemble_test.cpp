@@ -66,7 +66,7 @@ struct Found {
     ::testing::internal::GetCapturedStdout();
     const std::vector<std::string> lines = lines_of(file_text(folder + "/e/ensemble_members.csv"));
     for (std::size_t k = 1; k < lines.size(); ++k) {
-      members.push_back(member_of(lines[k], 2).value());
+      members.push_back(member_of(lines[k], 2, false).value());
     }
     for (const char *key : {"probability_of_failure", "low", "high"}) {
       json += json_value(folder + "/e/ensemble.json", key) + " ";

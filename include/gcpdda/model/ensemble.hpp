@@ -50,6 +50,8 @@ struct Ensemble {
   Measure measure = Measure::factor;
   std::int64_t ranks = 0; ///< of each member; 0: as few as keep all busy
   bool keep = false;      ///< result folders of the members stay
+  /// m; a member fails, too, whose blocks come to rest farther from where the ground began to shake.
+  double largest_displacement = std::numeric_limits<double>::infinity();
   std::vector<Variation> variations;
   /// Lower triangular factor of the correlation matrix of the normal variables behind the values, by rows;
   /// empty where all are independent (Gaussian copula).

@@ -78,6 +78,27 @@ std::string factor_text(const EnsembleStatistics &found) {
   return text;
 }
 
+std::string displacement_text(const EnsembleReport &report, const EnsembleStatistics &found) {
+  const SampleMoments &displacement = found.displacement;
+  if (!report.shakes) {
+    return {};
+  }
+  if (displacement.number == 0) {
+    return "no member has come to rest after the shaking: none has a permanent displacement\n";
+  }
+  const bool has_limit = std::isfinite(report.largest_displacement);
+  return fmt::format("permanent displacement of {} at rest: median {:.3g} m, mean {:.3g} m, standard "
+                     "deviation {:.2g} "
+                     "m, from {:.3g} to {:.3g} m\n",
+                     members_text(displacement.number), found.median_displacement, displacement.mean,
+                     displacement.deviation, displacement.least, displacement.most) +
+         (has_limit ? fmt::format("{} at rest farther than {:g} m (ensemble.largest_displacement): taken as "
+                                  "failing\n",
+                                  members_text(found.beyond), report.largest_displacement)
+                    : "members hold wherever they have come to rest; ensemble.largest_displacement takes "
+                      "those farther away for failure\n");
+}
+
 std::string trouble_text(const EnsembleReport &report) {
   std::string text;
   constexpr int most = 10;
@@ -95,35 +116,48 @@ std::string trouble_text(const EnsembleReport &report) {
   return text;
 }
 
+JsonObject displacement_object(const EnsembleReport &report, const EnsembleStatistics &found) {
+  const SampleMoments &displacement = found.displacement;
+  return JsonObject()
+      .add("members", displacement.number)
+      .add("median", found.median_displacement)
+      .add("mean", displacement.mean)
+      .add("deviation", displacement.deviation)
+      .add("least", displacement.least)
+      .add("most", displacement.most)
+      .add("largest_allowed", report.largest_displacement)
+      .add("beyond", found.beyond);
+}
+
 std::string json_of(const EnsembleReport &report, const EnsembleStatistics &found) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN(); // null
   const SampleMoments &factor = found.factor;
   const bool has_factor = factor.number > 0;
-  return JsonObject(",\n ")
-             .add("measure", std::string(report.measure == Measure::factor ? "factor" : "verdict"))
-             .add("count", report.count)
-             .add("done", static_cast<std::int64_t>(report.members.size()))
-             .add("keys", report.keys)
-             .add("holds", found.holds)
-             .add("fails", found.fails)
-             .add("undecided", found.undecided)
-             .add("cannot_run", found.cannot_run)
-             .add("holds_after_slide", found.slid)
-             .add("probability_of_failure", found.probability)
-             .add("confidence", confidence)
-             .add("low", found.interval.low)
-             .add("high", found.interval.high)
-             .add("factors", factor.number)
-             .add("mean", has_factor ? factor.mean : none)
-             .add("standard_error", has_factor ? factor.standard_error() : none)
-             .add("deviation", has_factor ? factor.deviation : none)
-             .add("skewness", has_factor ? factor.skewness : none)
-             .add("least", has_factor ? factor.least : none)
-             .add("most", has_factor ? factor.most : none)
-             .add("version", program_version())
-             .add("command", command_line())
-             .text() +
-         "\n";
+  JsonObject object(",\n ");
+  object.add("measure", std::string(report.measure == Measure::factor ? "factor" : "verdict"))
+      .add("count", report.count)
+      .add("done", static_cast<std::int64_t>(report.members.size()))
+      .add("keys", report.keys)
+      .add("holds", found.holds)
+      .add("fails", found.fails)
+      .add("undecided", found.undecided)
+      .add("cannot_run", found.cannot_run)
+      .add("holds_after_slide", found.slid)
+      .add("probability_of_failure", found.probability)
+      .add("confidence", confidence)
+      .add("low", found.interval.low)
+      .add("high", found.interval.high)
+      .add("factors", factor.number)
+      .add("mean", has_factor ? factor.mean : none)
+      .add("standard_error", has_factor ? factor.standard_error() : none)
+      .add("deviation", has_factor ? factor.deviation : none)
+      .add("skewness", has_factor ? factor.skewness : none)
+      .add("least", has_factor ? factor.least : none)
+      .add("most", has_factor ? factor.most : none);
+  if (found.displacement.number > 0) {
+    object.add("permanent_displacement", displacement_object(report, found));
+  }
+  return object.add("version", program_version()).add("command", command_line()).text() + "\n";
 }
 
 std::string members_csv(const EnsembleReport &report) {
@@ -131,9 +165,9 @@ std::string members_csv(const EnsembleReport &report) {
   for (const std::string &key : report.keys) {
     text += "," + key;
   }
-  text += ",message\n";
+  text += report.shakes ? ",permanent_displacement[m],message\n" : ",message\n";
   for (const EnsembleMember &member : report.members) {
-    text += row_of(member) + "\n";
+    text += row_of(member, report.shakes) + "\n";
   }
   return text;
 }
@@ -182,6 +216,7 @@ void remove_ensemble(const fs::path &directory) {
 EnsembleStatistics statistics_of(const EnsembleReport &report) {
   EnsembleStatistics found;
   std::vector<double> factors;
+  std::vector<double> displacements;
   for (const EnsembleMember &member : report.members) {
     found.holds += member.outcome == MemberOutcome::holds ? 1 : 0;
     found.fails += member.outcome == MemberOutcome::fails ? 1 : 0;
@@ -193,6 +228,10 @@ EnsembleStatistics statistics_of(const EnsembleReport &report) {
     if (const std::optional<double> factor = member.factor()) {
       factors.push_back(*factor);
     }
+    if (member.displacement) {
+      displacements.push_back(*member.displacement);
+      found.beyond += *member.displacement > report.largest_displacement ? 1 : 0;
+    }
   }
   found.probability = static_cast<double>(found.fails) / static_cast<double>(found.trials()); // 0/0: NaN
   if (found.trials() > 0) {
@@ -200,15 +239,20 @@ EnsembleStatistics statistics_of(const EnsembleReport &report) {
                       probability_interval(found.fails + found.undecided, found.trials(), confidence).high};
   }
   found.factor = sample_moments(factors);
+  found.displacement = sample_moments(displacements);
+  found.median_displacement = median_of(displacements);
   return found;
 }
 
-std::string row_of(const EnsembleMember &member) {
+std::string row_of(const EnsembleMember &member, bool shakes) {
   std::string row =
       fmt::format("{},{},{},{},{},{:.3f}", member.number, word_of(member.outcome), number_text(member.holds),
                   number_text(member.fails), member.steps, member.cpu_s);
   for (const double value : member.values) {
     row += fmt::format(",{:.17g}", value);
+  }
+  if (shakes) {
+    row += "," + number_text(member.displacement);
   }
   std::string message = member.message; // the last cell: only line ends and quotes would break it
   std::replace(message.begin(), message.end(), '\n', ' ');
@@ -216,8 +260,8 @@ std::string row_of(const EnsembleMember &member) {
   return row + (message.empty() ? "," : ",\"" + message + "\"");
 }
 
-std::optional<EnsembleMember> member_of(const std::string &row, std::size_t num_values) {
-  const std::size_t num_commas = 6 + num_values;
+std::optional<EnsembleMember> member_of(const std::string &row, std::size_t num_values, bool shakes) {
+  const std::size_t num_commas = 6 + num_values + (shakes ? 1 : 0);
   if (static_cast<std::size_t>(std::count(row.begin(), row.end(), ',')) < num_commas) {
     return std::nullopt;
   }
@@ -240,6 +284,9 @@ std::optional<EnsembleMember> member_of(const std::string &row, std::size_t num_
   for (std::size_t i = 0; i < num_values; ++i) {
     member.values.push_back(std::strtod(next_cell(row, at).c_str(), nullptr));
   }
+  if (shakes) {
+    member.displacement = optional_number(next_cell(row, at));
+  }
   if (at < row.size()) {
     member.message = row.substr(at + 1, row.size() - at - 2); // without its quotes
   }
@@ -258,7 +305,7 @@ std::string to_text(const EnsembleReport &report) {
     cpu += member.cpu_s;
     steps += member.steps;
   }
-  std::string text = probability_text(found) + factor_text(found);
+  std::string text = probability_text(found) + factor_text(found) + displacement_text(report, found);
   text += fmt::format(
       "{} of {} done: {} hold, {} fail, {} undecided, {} cannot run; varied: {}; {} steps, {:.2f} "
       "CPU s\n",
@@ -320,8 +367,8 @@ std::vector<std::string> prepare_ensemble_directory(const fs::path &directory, b
   return rows;
 }
 
-void write_member(const fs::path &directory, const EnsembleMember &member) {
-  write_file(directory / "members" / fmt::format("member_{:06}.csv", member.number), row_of(member));
+void write_member(const fs::path &directory, const EnsembleMember &member, bool shakes) {
+  write_file(directory / "members" / fmt::format("member_{:06}.csv", member.number), row_of(member, shakes));
 }
 
 fs::path member_directory(const fs::path &directory, std::int64_t number) {

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,9 +33,10 @@ struct EnsembleMember {
   MemberOutcome outcome = MemberOutcome::undecided;
   std::optional<double> holds; ///< bracket of the factor of safety, where it has been searched and found
   std::optional<double> fails;
-  std::int64_t steps = 0;     ///< of the runs that the outcome rests on
-  double cpu_s = 0.0;         ///< of all runs and ranks
-  std::vector<double> values; ///< drawn, in the order of the variations
+  std::optional<double> displacement; ///< m, permanent since the ground began to shake; of blocks at rest
+  std::int64_t steps = 0;             ///< of the runs that the outcome rests on
+  double cpu_s = 0.0;                 ///< of all runs and ranks
+  std::vector<double> values;         ///< drawn, in the order of the variations
   std::string
       message; ///< why it cannot run, or has no outcome; of one that holds, which blocks have slid before
 
@@ -49,8 +51,10 @@ struct EnsembleMember {
 struct EnsembleReport {
   std::vector<std::string> keys; ///< what varies
   Measure measure = Measure::factor;
-  std::int64_t count = 0;              ///< members asked for
-  std::vector<EnsembleMember> members; ///< those that are done, by number
+  std::int64_t count = 0; ///< members asked for
+  bool shakes = false;    ///< members have permanent displacements
+  double largest_displacement = std::numeric_limits<double>::infinity(); ///< m; farther is failure
+  std::vector<EnsembleMember> members;                                   ///< those that are done, by number
 };
 
 /// What all members together say.
@@ -67,16 +71,20 @@ struct EnsembleStatistics {
   /// 95 % interval of the probability of failure (probability_interval()). Its low end takes the undecided
   /// members as ones that hold, its high end as ones that fail.
   Interval interval{0.0, 1.0};
-  SampleMoments factor; ///< of the members that have one
+  SampleMoments factor;       ///< of the members that have one
+  SampleMoments displacement; ///< permanent, m, of the members that have come to rest
+  double median_displacement = 0.0;
+  std::int64_t beyond = 0; ///< fail where they have come to rest: farther than the largest displacement
 
   [[nodiscard]] std::int64_t trials() const { return holds + fails + undecided; }
 };
 EnsembleStatistics statistics_of(const EnsembleReport &report);
 
 /// One line without its end, as in ensemble_members.csv.
-std::string row_of(const EnsembleMember &member);
+/// @param shakes  it has a cell for the permanent displacement
+std::string row_of(const EnsembleMember &member, bool shakes);
 /// The member of such a line; nothing where it is not whole.
-std::optional<EnsembleMember> member_of(const std::string &row, std::size_t num_values);
+std::optional<EnsembleMember> member_of(const std::string &row, std::size_t num_values, bool shakes);
 
 /// What people read.
 std::string to_text(const EnsembleReport &report);
@@ -96,7 +104,7 @@ std::vector<std::string> prepare_ensemble_directory(const std::filesystem::path 
                                                     const std::string &identity, FolderLock &lock);
 
 /// A member's row goes to the disk at once. Root of the ranks of that member only; throws FileError.
-void write_member(const std::filesystem::path &directory, const EnsembleMember &member);
+void write_member(const std::filesystem::path &directory, const EnsembleMember &member, bool shakes);
 
 /// Where a member runs.
 std::filesystem::path member_directory(const std::filesystem::path &directory, std::int64_t number);

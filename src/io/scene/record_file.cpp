@@ -76,7 +76,9 @@ private:
       if (!numbers[k]) {
         fault(line, columns[k],
               fmt::format("'{}' is no {}", printable(fields[k]), k == 0 ? "time" : "motion"),
-              fmt::format("{} is a number of at most {:g}", names[k], largest_number));
+              fields[k].find(';') != std::string_view::npos
+                  ? std::string("commas part the numbers of a row, whose decimals have a point")
+                  : fmt::format("{} is a number of at most {:g}", names[k], largest_number));
       }
     }
     const RecordRow row{numbers[0].value_or(0.0), {numbers[1].value_or(0.0), numbers[2].value_or(0.0)}};

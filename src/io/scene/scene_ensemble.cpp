@@ -48,6 +48,7 @@ public:
     table.read_choice("ensemble", "measure", ensemble.measure);
     table.read("ranks", ensemble.ranks);
     table.read("keep", ensemble.keep);
+    table.read("largest_displacement", ensemble.largest_displacement);
     for (const Section &vary : table.list("vary")) {
       ensemble.variations.push_back(read_variation(vary));
     }
@@ -58,6 +59,9 @@ public:
     read_correlations(table, ensemble);
     if (ensemble.measure == Measure::verdict && table.sound("measure") != nullptr) {
       expect_verdict(*table.given("measure"));
+    }
+    if (table.sound("largest_displacement") != nullptr) {
+      expect_shaking(*table.given("largest_displacement"), ensemble.measure);
     }
     return ensemble;
   }
@@ -71,6 +75,17 @@ private:
       fault(measure, fmt::format("'measure' in [ensemble] is verdict, and stage '{}' has none", last->name),
             "a run of a given duration does not say whether the blocks stand",
             "give that stage a limit in place of its duration");
+    }
+  }
+
+  /// A permanent displacement is one since the ground began to shake, and a search has none.
+  void expect_shaking(const toml::node &largest, Measure measure) {
+    const bool searches = measure == Measure::factor;
+    if (searches || !scene_.earthquake.shakes()) {
+      fault(largest, "'largest_displacement' in [ensemble] has no meaning",
+            searches ? "measure is factor, and a factor is that of blocks that were never shaken"
+                     : "the scene has no [earthquake]",
+            searches ? "leave it out, or use measure = \"verdict\"" : "leave it out");
     }
   }
 

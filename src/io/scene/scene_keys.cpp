@@ -202,8 +202,8 @@ constexpr Key keys_after_joints[] = {
   {"earthquake.s_wave_speed", Kind::number, optional, above_to(0, 1e6), "", "<that of rock like the blocks and joints of the region>", "1700.0", "[m/s] The same of shear waves."},
 
   {"output", Kind::table, optional, any, "", "", "[output]", "What is written and when."},
-  {"output.interval", Kind::number, optional, above_to(0, 1e12), "", "<duration/100>", "0.02", "[s] Time between frames."},
-  {"output.history_interval", Kind::number, optional, above_to(0, 1e12), "", "<interval>", "0.02", "[s] Time between rows of the histories; divides interval or is a multiple of it."},
+  {"output.interval", Kind::number, optional, above_to(0, 1e12), "", "<duration/100>", "0.02", "[s] Time between frames, a whole number of steps: another one changes an automatic time step a little, and so the last digits of results."},
+  {"output.history_interval", Kind::number, optional, above_to(0, 1e12), "", "<interval>", "0.02", "[s] Time between rows of the histories; divides interval or is a multiple of it, and changes the step in the same way."},
   {"output.checkpoint_interval", Kind::number, optional, from_to(0, 1e12), "", "0.0", "0.5", "[s] Simulated time between checkpoints, from which gcpdda restart goes on; rounded to whole steps; 0 for none but that of SIGUSR1."},
   {"output.contacts", Kind::boolean, optional, any, "", "true", "true", "Whether contacts are written beside the frames."},
 
@@ -297,6 +297,7 @@ constexpr Key keys_after_joints[] = {
   {"ensemble.measure", Kind::choice, optional, any, "verdict factor", "\"factor\"", "\"verdict\"", "verdict: whether each stands, by one run; factor: the factor of safety of each, by a search as [fos] says."},
   {"ensemble.ranks", Kind::count, optional, from_to(1, 1e6), "", "<as few as keep all busy>", "4", "Ranks that work on a member together; for members too large for the memory or the patience of one."},
   {"ensemble.keep", Kind::boolean, optional, any, "", "false", "true", "Whether the result folders of the members stay."},
+  {"ensemble.largest_displacement", Kind::number, optional, above_to(0, 1e9), "", "<none: blocks hold wherever they come to rest>", "0.15", "[m] Where the ground shakes: a member fails, too, one of whose blocks comes to rest farther than this from where the shaking found it. Belongs to measure = \"verdict\"."},
   {"ensemble.vary[]", Kind::table_list, required, any, "", "", "[[ensemble.vary]]", "Values of the scene that each member draws."},
   {"ensemble.vary[].key", Kind::name, required, any, "", "", "\"joint.bedding.friction_angle_deg\"", "Path of the value, as with --set; no stage may set it."},
   {"ensemble.vary[].distribution", Kind::choice, required, any, "normal lognormal uniform triangular seed", "", "\"normal\"", "normal and lognormal with mean and deviation, where they are given cut off at min and max; uniform from min to max; triangular with its peak at mode; seed: a whole number for the seed of a joint set, so that each member has other joints."},

@@ -256,7 +256,7 @@ TEST(Pictures, AHistogramCountsItsMembers) {
     member.fails = factor + 0.005;
     report.members.push_back(member);
   }
-  const std::string svg = draw_histogram(report);
+  const std::string svg = draw_factors(report);
   const std::vector<Text> texts = texts_of(svg);
   Axis up;
   for (const Text &text : texts) {

@@ -310,6 +310,19 @@ deviation = 2
             "friction_angle_deg = 35.0");
 }
 
+TEST(EnsembleScene, DisplacementIsLimitedWhereTheGroundShakes) {
+  const std::string what = "error: 'largest_displacement' in [ensemble] has no meaning, ";
+  const auto told = [](const std::string &measure) {
+    const std::vector<std::string> messages_told =
+        messages(read_scene(ensemble_text, "s.toml",
+                            {"ensemble.measure=\"" + measure + "\"", "ensemble.largest_displacement=0.1"}));
+    return messages_told.empty() ? std::string() : messages_told.front();
+  };
+  EXPECT_NE(told("verdict").find(what + "the scene has no [earthquake]"), std::string::npos)
+      << told("verdict");
+  EXPECT_NE(told("factor").find(what + "measure is factor"), std::string::npos) << told("factor");
+}
+
 TEST(EnsembleScene, StagesMayNotSetWhatVariesAndMustJudge) {
   std::string text = small_scene;
   text.replace(text.find("duration = 2.0\n"), 15, "");
@@ -351,19 +364,59 @@ TEST(EnsembleReport, RowsAreReadAsTheyWereWritten) {
   EnsembleMember member = member_with(12, MemberOutcome::cannot_run);
   member.message = "s.toml:1:2: error: too deep, \"slider\"";
   member.steps = 77;
-  const auto again = member_of(row_of(member), 2);
+  const auto again = member_of(row_of(member, false), 2, false);
   ASSERT_TRUE(again);
-  EXPECT_EQ(row_of(*again), row_of(member));
+  EXPECT_EQ(row_of(*again, false), row_of(member, false));
   EXPECT_EQ(again->message, "s.toml:1:2: error: too deep, 'slider'");
   EXPECT_EQ(again->values, member.values);
   EXPECT_FALSE(again->factor());
   EnsembleMember bracketed = member_with(3, MemberOutcome::fails);
   bracketed.holds = 0.1;
   bracketed.fails = 0.3;
-  EXPECT_EQ(member_of(row_of(bracketed), 2)->factor(), bracketed.factor());
-  const std::string row = row_of(bracketed);
-  EXPECT_FALSE(member_of(row.substr(0, row.size() - 2), 2)) << "cut off by a full disk";
-  EXPECT_FALSE(member_of("", 2));
+  EXPECT_EQ(member_of(row_of(bracketed, false), 2, false)->factor(), bracketed.factor());
+  const std::string row = row_of(bracketed, false);
+  EXPECT_FALSE(member_of(row.substr(0, row.size() - 2), 2, false)) << "cut off by a full disk";
+  EXPECT_FALSE(member_of("", 2, false));
+  EXPECT_FALSE(member_of(row, 2, true)) << "it lacks a cell";
+}
+
+TEST(EnsembleReport, PermanentDisplacementsAreOfMembersAtRest) {
+  EnsembleReport report;
+  report.measure = Measure::verdict;
+  report.keys = {"a", "b"};
+  report.count = 4;
+  report.shakes = true;
+  report.largest_displacement = 0.25;
+  for (const double displacement : {0.1, 0.2, 0.6}) {
+    const bool is_far = displacement > report.largest_displacement;
+    EnsembleMember member = member_with(static_cast<std::int64_t>(report.members.size()),
+                                        is_far ? MemberOutcome::fails : MemberOutcome::holds);
+    member.displacement = displacement;
+    const auto again = member_of(row_of(member, true), 2, true);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->displacement, member.displacement);
+    report.members.push_back(*again);
+  }
+  report.members.push_back(*member_of(row_of(member_with(3, MemberOutcome::fails), true), 2, true));
+  EXPECT_FALSE(report.members.back().displacement) << "it goes on";
+  const EnsembleStatistics found = statistics_of(report);
+  EXPECT_EQ(found.fails, 2);
+  EXPECT_EQ(found.beyond, 1);
+  EXPECT_EQ(found.displacement.number, 3);
+  EXPECT_EQ(found.median_displacement, 0.2);
+  EXPECT_NEAR(found.displacement.mean, 0.3, 1e-15);
+  const std::string text = to_text(report);
+  EXPECT_NE(text.find("permanent displacement of 3 members at rest: median 0.2 m, mean 0.3 m"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("1 member at rest farther than 0.25 m"), std::string::npos) << text;
+}
+
+TEST(Statistics, MedianIsTheMiddle) {
+  EXPECT_EQ(median_of({}), 0.0);
+  EXPECT_EQ(median_of({3.0}), 3.0);
+  EXPECT_EQ(median_of({5.0, 1.0, 3.0}), 3.0);
+  EXPECT_EQ(median_of({5.0, 1.0, 3.0, 4.0}), 3.5);
 }
 
 TEST(EnsembleReport, UndecidedMembersWidenTheIntervalAndTheOthersStayOut) {
