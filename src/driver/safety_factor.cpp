@@ -56,17 +56,17 @@ private:
 
   ExitCode bound() {
     Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_.directory()});
+    report_.is_bound_alone = true;
     try {
       const SafetyBounds bounds = bounds_at(settled, report_.settled.factor);
       report_.bound = bounds.sliding;
       report_.resting_bound = bounds.resting;
     } catch (const UnsolvedProgramme &unsolved) {
       message_ = unsolved.what();
-      report_.settled.message = message_;
+      report_.unsolved_bound = message_;
       conclude_without_search();
       return exit_code::undecided;
     }
-    report_.is_bound_alone = true;
     conclude();
     return report_.bound ? exit_code::done : exit_code::undecided;
   }

@@ -26,6 +26,9 @@ constexpr std::array<const char *, 6> own_names{"fos.txt",        "fos.json", "f
 constexpr double one_degree = std::numbers::pi / 180.0;
 
 std::string bound_text(const SafetyReport &report) {
+  if (!report.unsolved_bound.empty()) {
+    return "limit analysis gives no bound: " + report.unsolved_bound;
+  }
   std::string text =
       report.bound ? fmt::format("factor of safety at most {:.5g}, by limit analysis of rigid blocks at "
                                  "the settled state: with strengths divided by more no forces balance "

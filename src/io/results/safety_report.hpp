@@ -100,6 +100,7 @@ struct SafetyReport {
   std::optional<double> bound;                   ///< upper bound by limit analysis, where it was asked for
   std::optional<double> resting_bound;           ///< the same for blocks that hold as they lie; no larger
   bool is_bound_alone = false;                   ///< no trials were to be run
+  std::string unsolved_bound;                    ///< why limit analysis has come to none
   std::vector<FailingBlock> mechanism;           ///< of `fails`, by BlockId; empty without it
   std::optional<UnconfirmedBracket> unconfirmed; ///< where the search has ended without confirmed ends
   std::optional<FirstBlock>

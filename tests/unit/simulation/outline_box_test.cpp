@@ -3,6 +3,7 @@
 #include "simulation/bolt_pieces.hpp"
 #include "simulation/outline_box.hpp"
 #include "support/blocks.hpp"
+#include "support/scenes.hpp"
 
 #include <gtest/gtest.h>
 
