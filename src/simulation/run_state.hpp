@@ -94,7 +94,7 @@ struct RunState {
   std::optional<statics::PseudoTime> statics; ///< while a stage has the static solver
   StaticState saved_statics;                  ///< of the checkpoint it began with, until the first step
   double local_damping = 0.0;                 ///< of this stage
-  double thinnest = 0.0;                      ///< narrowest width of any block, m
+  double thinnest = 0.0;                      ///< narrowest width of any block that is there, m
   double sag = 0.0;                           ///< largest_sag() of the scene, m
   double in_situ_overlap = 0.0;               ///< largest overlap of the in-situ stress, m
   bool stop_asked = false;

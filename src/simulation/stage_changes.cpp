@@ -340,6 +340,11 @@ void remove_blocks(RunState &run, const std::vector<std::int64_t> &ids) {
   std::int64_t gone = before - static_cast<std::int64_t>(run.blocks.num_owned);
   run.communicator.sum(std::span(&gone, 1));
   run.clock.state.more_mobile -= gone;
+  double thinnest = std::numeric_limits<double>::infinity(); // of those that are left
+  for (std::size_t row = 0; row < run.blocks.num_rows(); ++row) {
+    thinnest = std::min(thinnest, run.blocks.properties[row].width);
+  }
+  run.thinnest = -run.communicator.max(-thinnest);
 }
 
 } // namespace gcpdda
