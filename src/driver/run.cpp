@@ -245,6 +245,12 @@ private:
   }
 
   void report_fidelity(const RunSettings &run) {
+    if (run.rayleigh.present()) {
+      log_->line(
+          fmt::format("rayleigh damping takes {:.2g} of its speed a second from every block that moves: "
+                      "what falls, slides or rolls is held back by it, too",
+                      run.rayleigh.mass_damping));
+    }
     const FidelityReport &fidelity = simulation_.fidelity();
     log_->line(words_on_fidelity(fidelity, run.accepted_error));
     if (fidelity.worst_rigid > run.accepted_error) {

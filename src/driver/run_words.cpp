@@ -56,6 +56,16 @@ std::string fault_message(const Simulation &simulation) {
         where, name(fault.other), fault.value, fault.limit, words_on_dust(simulation, fault),
         words_on_shorter_step(simulation));
   case Fault::Cause::too_fast:
+    if (fault.other.value < 0) {
+      return fmt::format(
+          "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "
+          "no "
+          "block is near it; where it has left the model, put a fixed block below that it lands on, or "
+          "excavate it in a stage before; else try {}",
+          where, fault.value, fault.limit,
+          words_on_shorter_step(simulation, StepBound::share_of_motion * fault.limit / fault.value *
+                                                simulation.plan().time_step));
+    }
     return fmt::format(
         "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "
         "could pass through a block; try {}",

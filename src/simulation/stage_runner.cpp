@@ -32,10 +32,15 @@ double kinetic_energy_of(const BlockSystem &blocks, std::size_t row, const Rigid
                                                    : 0.5 * block.inertia * v.r * v.r;
   return 0.5 * block.mass * dot(v.u, v.u) + turning;
 }
+
+} // namespace
+
 double kinetic_energy_of(const BlockSystem &blocks, std::size_t row) {
   return kinetic_energy_of(blocks, row, blocks.velocity[row],
                            blocks.is_deformable(row) ? blocks.deformation_of(row).rate : Mat2{});
 }
+
+namespace {
 
 void mark_stage(RunState &run) {
   if (!run.clock.is_staged) {

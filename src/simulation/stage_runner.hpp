@@ -22,6 +22,9 @@ void set_to_rest(RunState &run);
 /// So does one in the middle of its motion; its ledger takes what stopping takes.
 void stop(RunState &run, std::size_t row);
 
+/// Of a mobile block by its velocity, J/m.
+double kinetic_energy_of(const BlockSystem &blocks, std::size_t row);
+
 /// Of the stages that are over, and of this one as far as it has come. Collective.
 [[nodiscard]] std::vector<StageResult> stage_results(RunState &run);
 /// A stage that is over gets its result. A settled pile is set to rest, under its own masses. A stage that

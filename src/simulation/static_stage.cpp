@@ -41,6 +41,23 @@ double end_of_loads(const RunState &run) {
   return end;
 }
 
+/// Whether any block goes so fast that it could rise by a thousandth of its size: where such a block rests is
+/// where its motion ends. Collective.
+bool blocks_are_under_way(const RunState &run) {
+  constexpr double telling_rise = 1e-3;
+  const double gravity = norm(run.scene.run.gravity);
+  double most = 0.0;
+  for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
+    const BlockProperties &block = run.blocks.properties[row];
+    const RigidDof &v = run.blocks.velocity[row];
+    const double speed = norm(v.u) + block.radius * std::abs(v.r);
+    if (speed * speed > 2.0 * gravity * telling_rise * std::sqrt(block.area)) {
+      most = speed;
+    }
+  }
+  return run.communicator.max(most) > 0.0;
+}
+
 /// Why the stage at hand is not for the static solver; empty if it is.
 std::string not_served(const RunState &run) {
   double fastest = 0.0; // of what heeds no force
@@ -56,6 +73,9 @@ std::string not_served(const RunState &run) {
   const Earthquake &earthquake = run.scene.earthquake;
   if (!earthquake.viscous.empty() && run.clock.state.index >= earthquake.stage) {
     return "the region has viscous sides";
+  }
+  if (blocks_are_under_way(run)) {
+    return "blocks are under way";
   }
   return std::isfinite(end_of_loads(run)) ? "" : "its loads go on changing";
 }
@@ -166,6 +186,9 @@ void open_statics(RunState &run) {
   }
   run.clock.state.iteration.skipped = std::max(0.0, end_of_loads(run) - run.clock.time());
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) { // where the contacts of the stage begin
+    if (!run.blocks.properties[row].keeps_its_velocity()) {
+      run.blocks.ledger[row].damping -= kinetic_energy_of(run.blocks, row);
+    }
     hold(run.blocks, row); // blocks with a given velocity are at rest in such a stage
   }
   refresh(run);

@@ -19,6 +19,16 @@ constexpr double needs_refresh = 1.0;
 constexpr double asked_to_stop = 2.0; // a refresh does no harm then
 constexpr double failed = 3.0;
 
+/// A block that may touch an owned one before the next refresh; none where nothing is near.
+BlockId any_candidate_of(const RunState &run, std::size_t row) {
+  for (const CandidatePair &pair : run.neighbours.candidates.pairs) {
+    if (pair.lower.value == row || pair.higher.value == row) {
+      return run.blocks.properties[pair.lower.value == row ? pair.higher.value : pair.lower.value].id;
+    }
+  }
+  return {};
+}
+
 double own_status(RunState &run, const AdvanceReport &advance) {
   double status = 0.0;
   for (const RowSpan &rows : advance.rows_to_check) {
@@ -32,9 +42,8 @@ double own_status(RunState &run, const AdvanceReport &advance) {
         status = needs_refresh;
       }
       if (ahead > most_motion_in_step(run) && num_blocks(run.scene) > 1) {
-        keep_first(
-            run.local_fault,
-            {Fault::Cause::too_fast, run.blocks.properties[row].id, {}, ahead, most_motion_in_step(run)});
+        keep_first(run.local_fault, {Fault::Cause::too_fast, run.blocks.properties[row].id,
+                                     any_candidate_of(run, row), ahead, most_motion_in_step(run)});
       }
     }
   }
