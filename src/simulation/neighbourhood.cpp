@@ -31,6 +31,17 @@ std::vector<RowSpan> waiting_rows(const BlockSystem &blocks, const Candidates &c
   return waiting;
 }
 
+/// The most by which bonds of any law open before they break, m. A stage may raise it.
+double largest_stretch(const JointLaws &joints) {
+  double largest = 0.0;
+  for (const JointLaw &law : joints.laws) {
+    if (law.has_bonds) {
+      largest = std::max(largest, law.tension / law.normal_stiffness);
+    }
+  }
+  return largest;
+}
+
 } // namespace
 
 PlacedBlocks Neighbourhood::place(BlockSystem blocks) const {
@@ -71,8 +82,9 @@ std::int64_t Neighbourhood::refresh(BlockSystem &blocks, const ContactParameters
   opening += parameters.joints.largest_opening();
   skin = std::max(least_skin, steps_in_skin * reach);
 
-  // A joint is remembered until it is open by twice that; only one of its blocks may be inflated.
-  const double reach_skin = skin + 4.0 * opening;
+  // A joint that its law has opened is remembered until it is open by twice that, a bond until it breaks;
+  // only one of the blocks may be inflated.
+  const double reach_skin = std::max(skin, 2.0 * largest_stretch(parameters.joints)) + 4.0 * opening;
   std::vector<Aabb> boxes = reach_boxes(blocks, reach_skin);
   ghosts.rebuild(blocks, boxes, bolts.partners(communicator, blocks), &map);
   border_trials.reserve(ghosts.sent_rows().size());
