@@ -78,6 +78,18 @@ void compare_joints(const JointLaws &before, const JointLaws &after, Diagnostics
       !std::equal(before.laws.begin(), before.laws.end(), after.laws.begin(), after.laws.end(), same_name)) {
     faults.push_back(refused({}, "the list of joints", "the contacts in the checkpoint name them by number"));
   }
+  for (const JointLaw &law : after.laws) {
+    const auto same = std::find_if(before.laws.begin(), before.laws.end(),
+                                   [&](const JointLaw &old) { return same_name(old, law); });
+    if (law.has_bonds && same != before.laws.end() && !same->has_bonds) {
+      faults.push_back(
+          {Severity::error,
+           {},
+           fmt::format("a restart cannot give [joint.{}] bonds by tension or residual values", law.name),
+           "bonds form at t = 0 only; contacts without bonds would have the residual values alone",
+           "change cohesion and friction_angle_deg alone, or start a new run with gcpdda run"});
+    }
+  }
 }
 
 bool same_generator(const BrickGenerator &a, const BrickGenerator &b) {

@@ -128,6 +128,36 @@ TreeOfStage tree_of_stage(const Text &text, std::size_t last, Faults &faults) {
   return tree;
 }
 
+/// The key of a table that gives its law bonds.
+const toml::node *key_of_bonds(const toml::table &root, const std::string &law) {
+  for (const char *key : {"tension", "residual_cohesion", "residual_friction_angle_deg"}) {
+    if (const toml::node *node = root["joint"][law][key].node()) {
+      return node;
+    }
+  }
+  return nullptr;
+}
+
+// Bonds form at the start alone. Contacts that have none take the residual values, as if theirs were broken.
+void expect_no_new_bonds(const toml::table &root, const JointLaws &start, const JointLaws &after,
+                         Faults &faults) {
+  for (std::size_t i = 0; i < start.laws.size() && i < after.laws.size(); ++i) {
+    const std::string &name = start.laws[i].name;
+    if (start.laws[i].has_bonds || !after.laws[i].has_bonds) {
+      continue;
+    }
+    const toml::node *own = key_of_bonds(root, name);
+    const toml::node *key = own != nullptr ? own : key_of_bonds(root, "default");
+    faults.add(key != nullptr ? key->source() : root.source(),
+               fmt::format("a stage cannot give [joint.{}] bonds", name),
+               "tension and residual values belong to bonds, which form at t = 0 only, under laws that have "
+               "one of these keys then; contacts without bonds would have the residual values alone",
+               fmt::format("write tension into [joint.{}] itself and let the stage change its value, or set "
+                           "cohesion and friction_angle_deg alone",
+                           name));
+  }
+}
+
 /// The scene of a stage is that of the file with all that is set up to it; its faults are told where they are
 /// set. Moved values leave a copy of the tree that is no longer good: each stage takes a new one.
 void read_changes(const Text &text, Faults &faults, Scene &scene) {
@@ -145,6 +175,7 @@ void read_changes(const Text &text, Faults &faults, Scene &scene) {
     const FaultyNodes faulty = check_keys(*tree.root, own);
     const SceneSource source{*tree.root, faulty, own};
     read_parts(source, text.file, *after);
+    expect_no_new_bonds(*tree.root, scene.joints, after->joints, own);
     if (tree.water_set) { // else it has been told
       expect_gravity_of_water(source, after->water, tree.water_set);
     }
