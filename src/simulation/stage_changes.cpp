@@ -109,6 +109,9 @@ void free_blocks(RunState &run, const std::vector<std::int64_t> &ids, const std:
   rebuild(
       run.blocks, [&](std::size_t row) { return !holds(ids, run.blocks.properties[row].id.value); }, freed);
   run.clock.state.more_mobile += std::ssize(ids);
+  if (run.communicator.max(run.blocks.unshaken.empty() ? 0.0 : 1.0) > 0.0) {
+    unshaken_rows(run.blocks); // a row without an entry would read that of another one
+  }
 }
 
 void adopt_block(RunState &run, std::int64_t id, const SceneBlock &before, const SceneBlock &after) {
