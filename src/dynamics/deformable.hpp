@@ -69,12 +69,11 @@ constexpr Mat2 force_matrix(const GradientDof &h) {
   return {h.ex, h.gxy - 0.5 * h.r, h.gxy + 0.5 * h.r, h.ey};
 }
 
-/// Factorised matrices and spring stiffnesses of rows [0, num_rows) with anchors or dashpots; to be made
+/// Factorised matrices of rows [0, num_rows) with anchors or dashpots, after stiffen_anchors(); to be made
 /// before the first step and whenever the time step changes. A driven block gets none: it heeds no force.
 /// Those of other deformable blocks are found in every step.
 ///
-/// @param normal_stiffness  largest k_n of the scene (Pa/m): anchors are a hundred times as stiff as the
-///                          block's joints or its own elasticity, whatever is more
+/// @param normal_stiffness  largest k_n of the scene (Pa/m), for anchors that have no stiffness yet
 /// @param stiffness_damping  beta of Rayleigh damping (s)
 void make_block_matrices(BlockSystem &system, const Scheme &scheme, double time_step, Elasticity elasticity,
                          double normal_stiffness, double stiffness_damping = 0.0);

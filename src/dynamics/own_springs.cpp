@@ -73,27 +73,32 @@ void add_anchor(const Anchor &anchor, double share, Packed &matrix) {
   }
 }
 
-/// Sets the stiffness of the row's anchors on the way.
-BlockMatrix own_matrix(BlockSystem &system, std::size_t row, const Scheme &scheme, double time_step,
-                       Elasticity elasticity, double normal_stiffness, double stiffness_damping) {
+/// Stiffness of a row's anchors, Pa.
+double anchor_stiffness(const BlockSystem &system, std::size_t row, double normal_stiffness) {
   constexpr double anchor_over_block = 100.0;
   const double area = system.properties[row].area;
+  double stiffness = normal_stiffness * std::sqrt(area);
+  if (system.is_deformable(row)) {
+    stiffness = std::max(stiffness, system.deformation_of(row).stiffness_direct / area);
+  }
+  return anchor_over_block * stiffness;
+}
+
+BlockMatrix own_matrix(const BlockSystem &system, std::size_t row, const Scheme &scheme, double time_step,
+                       Elasticity elasticity, double stiffness_damping) {
   const SpringTime time = spring_time(scheme, time_step);
   const double coming = time.coming;
-  double stiffness = normal_stiffness * std::sqrt(area);
   Packed matrix{};
   add_mass(system, row, 1.0 - scheme.alpha_m, matrix);
   if (system.is_deformable(row)) {
     const Deformation &d = system.deformation_of(row);
-    stiffness = std::max(stiffness, d.stiffness_direct / area);
     if (elasticity_of(scheme, elasticity) == Elasticity::implicit) {
       add_elasticity(d, coming, matrix);
     }
     add_elasticity(d, stiffness_damping * time.rate_coming, matrix);
   }
-  for (std::size_t k = system.anchor_begin[row]; k < system.anchor_begin[row + 1]; ++k) {
-    system.anchor[k].stiffness = anchor_over_block * stiffness;
-    add_anchor(system.anchor[k], coming, matrix);
+  for (const Anchor &anchor : system.anchors_of(row)) {
+    add_anchor(anchor, coming, matrix);
   }
   if (const Dashpot *dashpot = system.dashpot_of(row)) {
     for (std::size_t k = 0; k < matrix.size(); ++k) {
@@ -133,15 +138,26 @@ HeldAcceleration accelerate_held(const BlockSystem &system, std::size_t row, con
   return {{turn(Vec2{x[0], x[1]}), 0.0}, turn * motion_matrix({x[2], x[3], x[4], x[5]})};
 }
 
+void stiffen_anchors(BlockSystem &system, double normal_stiffness) {
+  for (std::size_t row = 0; row < system.num_rows(); ++row) {
+    for (std::size_t k = system.anchor_begin[row]; k < system.anchor_begin[row + 1]; ++k) {
+      Anchor &anchor = system.anchor[k];
+      if (anchor.stiffness == 0.0) {
+        anchor.stiffness = anchor_stiffness(system, row, normal_stiffness);
+      }
+    }
+  }
+}
+
 void make_block_matrices(BlockSystem &system, const Scheme &scheme, double time_step, Elasticity elasticity,
                          double normal_stiffness, double stiffness_damping) {
+  stiffen_anchors(system, normal_stiffness);
   system.matrix_begin.clear();
   system.matrix.clear();
   for (std::size_t row = 0; row < system.num_rows(); ++row) {
     if (!system.properties[row].keeps_its_velocity() &&
         (!system.anchors_of(row).empty() || system.dashpot_of(row) != nullptr)) {
-      system.matrix.push_back(
-          own_matrix(system, row, scheme, time_step, elasticity, normal_stiffness, stiffness_damping));
+      system.matrix.push_back(own_matrix(system, row, scheme, time_step, elasticity, stiffness_damping));
     }
     system.matrix_begin.push_back(static_cast<std::uint32_t>(system.matrix.size()));
   }

@@ -47,4 +47,11 @@ struct HeldAcceleration {
 HeldAcceleration accelerate_held(const BlockSystem &system, std::size_t row, const RigidDof &force,
                                  const Mat2 &gradient_force);
 
+/// Give the anchors of rows [0, num_rows) that have no stiffness yet theirs: a hundred times that of the
+/// block's joints or of its own elasticity, whatever is more. An anchor keeps it, since the force of a spring
+/// that is stretched would jump with its stiffness.
+///
+/// @param normal_stiffness  largest k_n of the scene, Pa/m
+void stiffen_anchors(BlockSystem &system, double normal_stiffness);
+
 } // namespace gcpdda

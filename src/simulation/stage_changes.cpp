@@ -5,6 +5,7 @@
 #include "contact/stiffness_bound.hpp"
 #include "dynamics/deformable.hpp"
 #include "dynamics/frequency_bound.hpp"
+#include "dynamics/own_springs.hpp"
 #include "geometry/holds_point.hpp"
 #include "geometry/polygon.hpp"
 #include "io/results/id_slabs.hpp"
@@ -109,6 +110,7 @@ void free_blocks(RunState &run, const std::vector<std::int64_t> &ids, const std:
   rebuild(
       run.blocks, [&](std::size_t row) { return !holds(ids, run.blocks.properties[row].id.value); }, freed);
   run.clock.state.more_mobile += std::ssize(ids);
+  stiffen_anchors(run.blocks, stiffest_joint(run.scene.joints));
   if (run.communicator.max(run.blocks.unshaken.empty() ? 0.0 : 1.0) > 0.0) {
     unshaken_rows(run.blocks); // a row without an entry would read that of another one
   }

@@ -5,6 +5,7 @@
 #include "contact/stiffness_bound.hpp"
 #include "dynamics/deformable.hpp"
 #include "dynamics/frequency_bound.hpp"
+#include "dynamics/own_springs.hpp"
 #include "geometry/polygon.hpp"
 #include "io/blocks/block_file.hpp"
 #include "io/results/id_slabs.hpp"
@@ -351,6 +352,7 @@ void distribute(RunState &run, const Beginning &beginning) {
   if (run.scene.in_situ.present) {
     apply_in_situ_stress(run);
   }
+  stiffen_anchors(run.blocks, stiffest_joint(run.scene.joints)); // of the start, also for a restart
   ContactMemory memory;
   if (!beginning.folder.empty()) { // rows are those of the slab still
     restore(run, beginning, memory);
