@@ -4,6 +4,7 @@
 
 #include "dynamics/deformable.hpp"
 #include "model/find_row.hpp"
+#include "simulation/stage_changes.hpp"
 #include "simulation/water_loads.hpp"
 
 #include <algorithm>
@@ -70,7 +71,8 @@ BlockHistoryRow point_row(const BlockSystem &blocks, std::size_t index, Vec2 sta
   return row;
 }
 
-/// int f x^T of what acts on a rigid row beside its contacts: loads, water and fixed points, N.
+/// int f x^T of what acts on a rigid row beside its contacts: loads, water, fixed points and what is left of
+/// the forces of excavated blocks, N.
 Mat2 dyad_of_loads(const RunState &run, std::size_t index) {
   const BlockSystem &blocks = run.blocks;
   const RigidDof &trial = blocks.trial[index];
@@ -83,6 +85,7 @@ Mat2 dyad_of_loads(const RunState &run, std::size_t index) {
     const Vec2 arm = turn(anchor.point);
     dyad += outer(-anchor.stiffness * (trial.u + arm - anchor.point - anchor.held), arm);
   }
+  dyad += unloading_of(run, blocks.properties[index].id).gradient * Mat2{turn.c, turn.s, -turn.s, turn.c};
   if (!run.scene.water.empty()) {
     TrialOutline outline;
     dyad += water_on(run, index, -run.loads.gravity(run.scene.run).y, outline).dyad;

@@ -145,9 +145,11 @@ void unload(RunState &run, const std::vector<std::int64_t> &removed, double dura
     for (const RegionForce &force : regions) {
       const ContactPart part = contact_part(force, is_lower, run.blocks.motion[row].centroid);
       load.rigid += {part.force, part.dyad.xy - part.dyad.yx};
-      if (run.blocks.is_deformable(row)) {
-        load.gradient += transposed(run.blocks.trial_inverse[run.blocks.deformation_begin[row]] * part.dyad);
-      }
+      const Rotation turn = Rotation::of(run.blocks.trial[row].r);
+      const Mat2 to_reference = run.blocks.is_deformable(row)
+                                    ? run.blocks.trial_inverse[run.blocks.deformation_begin[row]]
+                                    : Mat2{turn.c, turn.s, -turn.s, turn.c};
+      load.gradient += transposed(to_reference * part.dyad);
     }
   };
   for_regions(run, 0, run.neighbours.candidates.pairs.size(),

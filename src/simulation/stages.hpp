@@ -142,7 +142,7 @@ std::int64_t steps_between_verdicts(std::int64_t num_blocks);
 struct Unloading {
   std::int64_t block = 0;
   RigidDof rigid;        ///< N/m, and N about the centroid
-  Mat2 gradient;         ///< int t X^T (N), of a deformable block
+  Mat2 gradient;         ///< int t X^T, N; in the stress of a rigid block alone
   double begin = 0.0;    ///< s
   double duration = 0.0; ///< s
 };
