@@ -25,6 +25,7 @@
 #include "simulation/region_slabs.hpp"
 #include "simulation/scene_size.hpp"
 #include "simulation/stage_changes.hpp"
+#include "simulation/stage_doubts.hpp"
 #include "simulation/stage_plan.hpp"
 #include "simulation/water_doubts.hpp"
 #include "simulation/wet_joints.hpp"
@@ -402,6 +403,8 @@ void start(RunState &run, const Beginning &beginning) {
     doubt_monitors(run);
     doubt_loads(run);
     doubt_bolts(run);
+    doubt_stiffness(run);
+    doubt_stretch_of_bonds(run);
   }
   stop_on_errors(run.notes);
   std::stable_sort(run.notes.begin(), run.notes.end(), // warnings in one block
