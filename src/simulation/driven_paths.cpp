@@ -2,6 +2,8 @@
 
 #include "contact/block_view.hpp"
 #include "contact/contact_forces.hpp"
+#include "contact/find_pairs.hpp"
+#include "contact/start_contacts.hpp"
 #include "dynamics/integrate.hpp"
 #include "model/generators.hpp"
 
@@ -16,7 +18,10 @@ namespace {
 /// in one place: that of initial overlaps.
 constexpr double largest_share = 0.05;
 
-bool overlap_too_deep(const BlockSystem &first, std::size_t i, const BlockSystem &second, std::size_t j) {
+/// Whether some piece of the common part of two blocks is as `says(piece, the smaller width)`.
+template <class Says>
+bool overlap_as(Says &&says, const BlockSystem &first, std::size_t i, const BlockSystem &second,
+                std::size_t j) {
   std::array<TrialOutline, 2> outlines;
   const BlockView a = view_of(first, i, outlines[0]);
   const BlockView b = view_of(second, j, outlines[1]);
@@ -24,10 +29,19 @@ bool overlap_too_deep(const BlockSystem &first, std::size_t i, const BlockSystem
   if (!a.box.meets(b.box) || !overlap.find(a, b, PotentialKind::exact)) {
     return false;
   }
-  const double limit = largest_share * std::min(first.properties[i].width, second.properties[j].width);
-  return std::ranges::any_of(overlap.pieces(), [&](const Piece &piece) {
-    return std::max(piece.depth_begin, piece.depth_end) > limit;
-  });
+  const double width = std::min(first.properties[i].width, second.properties[j].width);
+  return std::ranges::any_of(overlap.pieces(), [&](const Piece &piece) { return says(piece, width); });
+}
+
+bool is_too_deep(const Piece &piece, double width) {
+  return std::max(piece.depth_begin, piece.depth_end) > largest_share * width;
+}
+
+/// A face on a face, and not a corner: of such a length, and deeper than rounding.
+bool is_of_face(const Piece &piece, double width) {
+  constexpr double rounding = 1e-6;
+  return piece.length > largest_share * width &&
+         std::max(piece.depth_begin, piece.depth_end) > rounding * width;
 }
 
 /// The driven blocks of the scene alone, row by row.
@@ -35,6 +49,14 @@ struct Driven {
   BlockSystem blocks;
   std::vector<PrescribedMotion> motions;
   std::vector<bool> told;
+
+  /// Place all where they are at a time, s.
+  void move_to(double time) {
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      blocks.trial[i] = motions[i].displacement(time);
+    }
+    pose(blocks, 0, motions.size());
+  }
 };
 
 Driven driven_blocks(const Scene &scene) {
@@ -53,41 +75,76 @@ Driven driven_blocks(const Scene &scene) {
   return driven;
 }
 
-} // namespace
+constexpr int looks = 500;
 
-void warn_of_driven_paths(const Scene &scene, const BlockSystem &blocks, Diagnostics &notes) {
-  Driven driven = driven_blocks(scene);
+/// visit(i, id of the other, s) where driven block i overlaps a block so, until it has been told of i.
+template <class Says, class Visit>
+void follow_paths(double duration, Says &&says, const BlockSystem &blocks, Driven &driven, Visit &&visit) {
   const std::size_t count = driven.motions.size();
-  const auto warn = [&](std::size_t i, BlockId other, double time) {
-    driven.told[i] = true;
-    notes.push_back({Severity::warning,
-                     scene.blocks[static_cast<std::size_t>(driven.blocks.properties[i].id.value)].where,
-                     fmt::format("driven block '{}' passes through block '{}' at about t = {:.3g} s",
-                                 block_name(scene, driven.blocks.properties[i].id.value),
-                                 block_name(scene, other.value), time),
-                     "two blocks that keep their velocity whatever acts on them make no contact",
-                     "let one of them move freely or change the path"});
-  };
-  constexpr int looks = 500;
   for (int k = 1; k <= looks && count > 0; ++k) {
-    const double time = scene.run.duration * k / looks;
-    for (std::size_t i = 0; i < count; ++i) {
-      driven.blocks.trial[i] = driven.motions[i].displacement(time);
-    }
-    pose(driven.blocks, 0, count);
+    const double time = duration * k / looks;
+    driven.move_to(time);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t row = blocks.first_fixed(); row < blocks.num_rows() && !driven.told[i]; ++row) {
-        if (overlap_too_deep(driven.blocks, i, blocks, row)) {
-          warn(i, blocks.properties[row].id, time);
+        if (overlap_as(says, driven.blocks, i, blocks, row)) {
+          visit(i, blocks.properties[row].id, time);
         }
       }
       for (std::size_t j = i + 1; j < count && !driven.told[i]; ++j) {
-        if (overlap_too_deep(driven.blocks, i, driven.blocks, j)) {
-          warn(i, driven.blocks.properties[j].id, time);
+        if (overlap_as(says, driven.blocks, i, driven.blocks, j)) {
+          visit(i, driven.blocks.properties[j].id, time);
         }
       }
     }
   }
+}
+
+/// visit(i, id of the other, 0) where an edge of driven block i lies on one of a block at t = 0, until it has
+/// been told of i.
+template <class Visit>
+void find_flush_faces(const JointLaws &joints, const BlockSystem &blocks, const Driven &driven,
+                      Visit &&visit) {
+  BlockSystem all = driven.blocks;
+  all.num_owned = all.num_rows();
+  for (std::size_t row = blocks.first_fixed(); row < blocks.num_rows(); ++row) {
+    append_row(all, blocks, row);
+  }
+  all.num_fixed = all.num_rows() - all.num_owned;
+  for (const StartContact &contact : find_start_contacts(all, find_kept_pairs(all, 0.0), joints)) {
+    for (std::size_t i = 0; i < driven.motions.size(); ++i) {
+      if (driven.blocks.properties[i].id.value == contact.block && !driven.told[i]) {
+        visit(i, BlockId{contact.other}, 0.0);
+      }
+    }
+  }
+}
+
+} // namespace
+
+void warn_of_driven_paths(const Scene &scene, const BlockSystem &blocks, Diagnostics &notes) {
+  Driven driven = driven_blocks(scene);
+  if (driven.motions.empty()) {
+    return;
+  }
+  const auto warn = [&](const char *how, const char *hint) {
+    return [&, how, hint](std::size_t i, BlockId other, double time) {
+      driven.told[i] = true;
+      notes.push_back({Severity::warning,
+                       scene.blocks[static_cast<std::size_t>(driven.blocks.properties[i].id.value)].where,
+                       fmt::format("driven block '{}' {} block '{}' at about t = {:.3g} s",
+                                   block_name(scene, driven.blocks.properties[i].id.value), how,
+                                   block_name(scene, other.value), time),
+                       "two blocks that keep their velocity whatever acts on them make no contact", hint});
+    };
+  };
+  const double duration = scene.run.duration;
+  follow_paths(duration, is_too_deep, blocks, driven,
+               warn("passes through", "let one of them move freely or change the path"));
+  const auto warn_of_touch = warn(
+      "touches", "to shear a joint, drive one of its blocks, and load the other one and hold it by stops");
+  driven.move_to(0.0);
+  find_flush_faces(scene.joints, blocks, driven, warn_of_touch);
+  follow_paths(duration, is_of_face, blocks, driven, warn_of_touch);
 }
 
 } // namespace gcpdda
