@@ -1,19 +1,76 @@
 #include "simulation/excavation_doubts.hpp"
 
+#include "geometry/holds_point.hpp"
 #include "model/generators.hpp"
 #include "simulation/cut_bolts.hpp"
 #include "simulation/loads.hpp"
 #include "simulation/stage_changes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 namespace gcpdda {
+
+namespace {
+
+/// Blocks whose centroids lie on the outline of an excavation, but for a hair's breadth.
+struct OnOutline {
+  std::int64_t count = 0;
+  std::int64_t first = std::numeric_limits<std::int64_t>::max(); ///< least id
+};
+
+/// Collective.
+OnOutline blocks_on_outline(const RunState &run, const Stage &stage) {
+  constexpr double hair = 1e-3; // of a block's size
+  OnOutline mine;
+  for (std::size_t row = 0; row < run.blocks.num_rows(); ++row) {
+    const BlockProperties &block = run.blocks.properties[row];
+    const bool counts = row < run.blocks.num_owned ||
+                        (run.blocks.is_fixed(row) && run.communicator.is_root()); // all ranks have them
+    if (counts &&
+        !std::binary_search(stage.excavated.blocks.begin(), stage.excavated.blocks.end(), block.id.value) &&
+        distance_to_boundary(stage.excavated.region, run.blocks.centroid(row)) <
+            hair * std::sqrt(block.area)) {
+      ++mine.count;
+      mine.first = std::min(mine.first, block.id.value);
+    }
+  }
+  OnOutline all;
+  for (const auto &theirs : run.communicator.all_gather(std::vector<OnOutline>{mine})) {
+    all.count += theirs.front().count;
+    all.first = std::min(all.first, theirs.front().first);
+  }
+  return all;
+}
+
+} // namespace
+
+void doubt_outlines(RunState &run) {
+  for (const Stage &stage : run.clock.stages) {
+    if (stage.excavated.region.empty()) {
+      continue;
+    }
+    const OnOutline found = blocks_on_outline(run, stage);
+    if (found.count > 0) {
+      run.notes.push_back(
+          {Severity::warning, stage.where,
+           fmt::format(
+               "the outline of 'region' in stage '{}' passes through the centroids of {} block{}, the "
+               "first is '{}'",
+               stage.name, found.count, found.count == 1 ? "" : "s", block_name(run.scene, found.first)),
+           "a region removes the blocks whose centroids lie in it, so that it depends on hair's breadths "
+           "which of these go",
+           "move the outline away from the centroids, or name the blocks in 'blocks'"});
+    }
+  }
+}
 
 void doubt_monitors(RunState &run) {
   std::vector<bool> has_ended(run.scene.monitors.size(), false); // by an earlier stage

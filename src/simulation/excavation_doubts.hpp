@@ -6,6 +6,9 @@
 
 namespace gcpdda {
 
+/// Warn of excavations by a polygon whose outline passes through centroids: rounding decides about such
+/// blocks. Collective.
+void doubt_outlines(RunState &run);
 /// Warn of monitors of blocks that a stage excavates. Collective.
 void doubt_monitors(RunState &run);
 /// Warn of loads that a stage sets on blocks which it or an earlier stage excavates. Collective.

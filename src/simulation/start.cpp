@@ -400,6 +400,7 @@ void start(RunState &run, const Beginning &beginning) {
   } else {
     find_initial_state(run);
     doubt_gaps(run);
+    doubt_outlines(run);
     doubt_monitors(run);
     doubt_loads(run);
     doubt_bolts(run);

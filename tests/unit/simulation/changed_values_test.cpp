@@ -221,6 +221,26 @@ TEST(ChangedValues, StressOfARigidBlockHoldsWhatIsLeftOfExcavatedRock) {
   EXPECT_NEAR(rows[0].stress[1], -(left + 0.5 * 2.0 * weight) / 2.0, 5e-3 * left);
 }
 
+TEST(ChangedValues, AnOutlineOfAnExcavationThroughACentroidIsTold) {
+  const auto told = [](double top) {
+    return warnings_in(
+        Simulation(Communicator::self(),
+                   scene_of("[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2500\n[joint.default]\n"
+                            "normal_stiffness = 1e9\n" +
+                            block_toml("floor", rectangle({-3.0, -1.0}, {3.0, 0.0}), "fixed = true") +
+                            block_toml("low", rectangle({-1.0, 0.0}, {1.0, 1.0})) +
+                            block_toml("high", rectangle({-1.0, 1.0}, {1.0, 2.0})) +
+                            "[output]\ninterval = 0.1\n[[stage]]\nkind = \"settle\"\nlimit = 5.0\n[[stage]]\n"
+                            "name = \"dig\"\nkind = \"excavate\"\n" +
+                            fmt::format("region = [[-2, 1.1], [2, 1.1], [2, {0}], [-2, {0}]]\n", top))),
+        "outline");
+  };
+  EXPECT_EQ(told(1.5005),
+            "the outline of 'region' in stage 'dig' passes through the centroids of 1 block, the "
+            "first is 'high'\n");
+  EXPECT_EQ(told(1.6), "");
+}
+
 TEST(ChangedValues, ADrivenBlockThatTouchesAFixedOneIsTold) {
   const auto told = [](double gap, const std::string &velocity) {
     std::string toml = block_on_floor("", velocity, "\"joint.default.friction_angle_deg\" = 25");
