@@ -2,8 +2,6 @@
 
 #include "contact/block_view.hpp"
 #include "contact/contact_forces.hpp"
-#include "contact/find_pairs.hpp"
-#include "contact/start_contacts.hpp"
 #include "dynamics/integrate.hpp"
 #include "model/generators.hpp"
 
@@ -99,26 +97,6 @@ void follow_paths(double duration, Says &&says, const BlockSystem &blocks, Drive
   }
 }
 
-/// visit(i, id of the other, 0) where an edge of driven block i lies on one of a block at t = 0, until it has
-/// been told of i.
-template <class Visit>
-void find_flush_faces(const JointLaws &joints, const BlockSystem &blocks, const Driven &driven,
-                      Visit &&visit) {
-  BlockSystem all = driven.blocks;
-  all.num_owned = all.num_rows();
-  for (std::size_t row = blocks.first_fixed(); row < blocks.num_rows(); ++row) {
-    append_row(all, blocks, row);
-  }
-  all.num_fixed = all.num_rows() - all.num_owned;
-  for (const StartContact &contact : find_start_contacts(all, find_kept_pairs(all, 0.0), joints)) {
-    for (std::size_t i = 0; i < driven.motions.size(); ++i) {
-      if (driven.blocks.properties[i].id.value == contact.block && !driven.told[i]) {
-        visit(i, BlockId{contact.other}, 0.0);
-      }
-    }
-  }
-}
-
 } // namespace
 
 void warn_of_driven_paths(const Scene &scene, const BlockSystem &blocks, Diagnostics &notes) {
@@ -140,11 +118,10 @@ void warn_of_driven_paths(const Scene &scene, const BlockSystem &blocks, Diagnos
   const double duration = scene.run.duration;
   follow_paths(duration, is_too_deep, blocks, driven,
                warn("passes through", "let one of them move freely or change the path"));
-  const auto warn_of_touch = warn(
-      "touches", "to shear a joint, drive one of its blocks, and load the other one and hold it by stops");
-  driven.move_to(0.0);
-  find_flush_faces(scene.joints, blocks, driven, warn_of_touch);
-  follow_paths(duration, is_of_face, blocks, driven, warn_of_touch);
+  follow_paths(duration, is_of_face, blocks, driven,
+               warn("closes on",
+                    "to shear a joint, drive one of its blocks, and load the other one and hold it "
+                    "by stops"));
 }
 
 } // namespace gcpdda
