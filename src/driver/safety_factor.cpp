@@ -55,10 +55,14 @@ private:
   void prepare_directory() { prepare_safety_directory(options_.directory, options_.overwrite, lock_); }
 
   ExitCode bound() {
-    Simulation settled(world_, settling_scene(scene_, report_.settled.factor), {settled_.directory()});
+    const Scene before = settling_scene(scene_, report_.settled.factor);
+    Simulation state(world_, bounded_scene(scene_, report_.settled.factor), {settled_.directory(), &before});
+    while (!state.finished()) {
+      state.begin_next_stage();
+    }
     report_.is_bound_alone = true;
     try {
-      const SafetyBounds bounds = bounds_at(settled, report_.settled.factor);
+      const SafetyBounds bounds = bounds_at(state, report_.settled.factor);
       report_.bound = bounds.sliding;
       report_.resting_bound = bounds.resting;
     } catch (const UnsolvedProgramme &unsolved) {

@@ -215,30 +215,54 @@ Scene with_settle_stage(Scene scene) {
   return scene;
 }
 
-Scene settling_scene(const Scene &scene, double factor) {
-  Scene start = scene;
-  const auto last = std::find_if(start.stages.rbegin(), start.stages.rend(),
+namespace {
+
+/// The first stage behind the last settle stage.
+/// @throws SceneError where no stage is of kind settle
+std::vector<Stage>::iterator behind_settling(std::vector<Stage> &stages) {
+  const auto last = std::find_if(stages.rbegin(), stages.rend(),
                                  [](const Stage &stage) { return stage.kind == StageKind::settle; });
-  if (last == start.stages.rend()) {
+  if (last == stages.rend()) {
     throw SceneError({{Severity::error,
                        {},
                        "the scene has stages but none of kind settle",
                        "strengths are lowered from a state of rest",
                        "write [[stage]] with kind = \"settle\" and a limit"}});
   }
-  start.stages.erase(last.base(), start.stages.end());
+  return last.base();
+}
+
+/// Divide strengths from the beginning, in all stages.
+void weaken_throughout(Scene &start, const StrengthReduction &reduction, double factor) {
   if (factor == 1.0) {
-    return start;
+    return;
   }
-  weaken(start, scene.reduction, factor);
+  start.resolved = fmt::format("{}{:.17g}\n", settled_weaker, factor) + start.resolved;
+  weaken(start, reduction, factor);
   for (Stage &stage : start.stages) {
     if (stage.after) {
       auto after = std::make_shared<Scene>(*stage.after);
-      weaken(*after, scene.reduction, factor);
+      weaken(*after, reduction, factor);
       stage.after = std::move(after);
     }
   }
-  start.resolved = fmt::format("{}{:.17g}\n", settled_weaker, factor) + scene.resolved;
+}
+
+} // namespace
+
+Scene settling_scene(const Scene &scene, double factor) {
+  Scene start = scene;
+  start.stages.erase(behind_settling(start.stages), start.stages.end());
+  weaken_throughout(start, scene.reduction, factor);
+  return start;
+}
+
+Scene bounded_scene(const Scene &scene, double factor) {
+  Scene start = scene;
+  start.stages.erase(std::remove_if(behind_settling(start.stages), start.stages.end(),
+                                    [](const Stage &stage) { return stage.takes_steps(); }),
+                     start.stages.end());
+  weaken_throughout(start, scene.reduction, factor);
   return start;
 }
 

@@ -48,6 +48,11 @@ Scene searched_scene(Scene scene);
 /// @throws SceneError where no stage is of kind settle
 Scene settling_scene(const Scene &scene, double factor);
 
+/// The same with the stages behind it that take no steps: what the trials of a search and the bound of limit
+/// analysis are about.
+/// @throws SceneError where no stage is of kind settle
+Scene bounded_scene(const Scene &scene, double factor);
+
 /// Stages that change the scene after the last settle stage and take time, which are no part of a search.
 std::vector<std::string> left_out_stages(const Scene &scene);
 

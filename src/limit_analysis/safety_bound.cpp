@@ -1,9 +1,12 @@
 #include "limit_analysis/safety_bound.hpp"
 
+#include "dynamics/deformable.hpp"
 #include "limit_analysis/limit_analysis.hpp"
 #include "limit_analysis/limit_regions.hpp"
 #include "limit_analysis/support_reserves.hpp"
 #include "simulation/evaluation.hpp"
+#include "simulation/static_stage.hpp"
+#include "simulation/step_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -45,6 +48,30 @@ template <class T> std::vector<T> gathered(const Communicator &communicator, con
   return all;
 }
 
+/// A stage without steps has changed the scene since the blocks came to rest.
+bool is_changed(const Simulation &settled) {
+  return !settled.state().clock.stage().takes_steps();
+}
+
+/// All forces on owned rows with the loads that stay, after an evaluation of the contacts.
+void complete_loads(RunState &run) {
+  run.loads.time = end_of_loads(run);
+  run.local_damping = 0.0; // its share is no load
+  accelerate_owned(run);
+}
+
+/// Add what nothing balances on a row.
+void add_unbalanced(const BlockSystem &blocks, std::size_t row, LimitBlock &block) {
+  const RigidDof force = blocks.contact[row].force + blocks.anchor_force(row);
+  block.load = block.load + force.u;
+  block.torque += force.r;
+  if (blocks.is_deformable(row)) { // the moment stands in the force on F alone
+    const Deformation &d = blocks.deformation_of(row);
+    const Mat2 dyad = d.trial * transposed(unbalanced_on_gradient(d));
+    block.torque += dyad.xy - dyad.yx - force.r;
+  }
+}
+
 /// Of all ranks, by id.
 std::vector<OwnedBlock> all_mobile(const Simulation &settled) {
   std::vector<OwnedBlock> mine;
@@ -53,6 +80,9 @@ std::vector<OwnedBlock> all_mobile(const Simulation &settled) {
     if (!block.keeps_its_velocity()) {
       mine.push_back(
           {block.id.value, {settled.blocks().motion[row].centroid, std::sqrt(block.area), {}, 0.0}});
+      if (is_changed(settled)) {
+        add_unbalanced(settled.blocks(), row, mine.back().block);
+      }
     }
   }
   std::vector<OwnedBlock> all = gathered(settled.communicator(), mine);
@@ -86,7 +116,7 @@ std::optional<double> further_bound(Simulation &settled, double slip, double lea
     joint.second = number_of(region.joint.second);
     const std::array<std::int64_t, 2> ends{joint.first, joint.second};
     for (std::size_t side = 0; side < 2; ++side) {
-      if (ends[side] >= 0) { // in equilibrium: the rest of the load is what its contacts balance
+      if (ends[side] >= 0) { // the load is what is out of balance but for contacts
         LimitBlock &block = model.blocks[static_cast<std::size_t>(ends[side])];
         block.load = block.load - region.force[side];
         block.torque -= region.torque[side];
@@ -108,6 +138,9 @@ std::optional<double> further_bound(Simulation &settled, double slip, double lea
 SafetyBounds bounds_at(Simulation &settled, double settled_factor) {
   look_farther(settled.state());
   evaluate_still(settled.state());
+  if (is_changed(settled)) {
+    complete_loads(settled.state());
+  }
   const StrengthReduction &reduction = settled.scene().reduction;
   const double least = reduction.from / settled_factor;
   const double most = reduction.to / settled_factor;

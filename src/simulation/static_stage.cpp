@@ -22,13 +22,6 @@
 
 namespace gcpdda {
 
-namespace {
-
-/// Over the skin of blocks at rest: how far apart the boxes of two blocks may be while the spring of their
-/// contact is kept after it has opened.
-constexpr double spring_reach = 0.25;
-
-/// When the loads of the stage at hand are complete, s; infinite where that is never.
 double end_of_loads(const RunState &run) {
   const double now = run.clock.time();
   double end =
@@ -40,6 +33,12 @@ double end_of_loads(const RunState &run) {
   }
   return end;
 }
+
+namespace {
+
+/// Over the skin of blocks at rest: how far apart the boxes of two blocks may be while the spring of their
+/// contact is kept after it has opened.
+constexpr double spring_reach = 0.25;
 
 /// Whether any block goes so fast that it could rise by a thousandth of its size: where such a block rests is
 /// where its motion ends. Collective.

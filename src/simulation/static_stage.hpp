@@ -29,6 +29,8 @@ namespace gcpdda {
 
 /// The stage at hand takes steps of the static solver.
 [[nodiscard]] bool is_static(const RunState &run);
+/// When the loads of the stage at hand are what they stay, s; infinite where that is never.
+[[nodiscard]] double end_of_loads(const RunState &run);
 /// Before a step of a stage with that solver: the iteration begins, goes on after a restart, or leaves the
 /// stage to the dynamic solver if it does not serve it. Collective.
 void prepare_statics(RunState &run);
