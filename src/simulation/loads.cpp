@@ -14,6 +14,36 @@ bool same_load(const PointLoad &a, const PointLoad &b) {
   return a.point == b.point && a.force == b.force && a.ramp == b.ramp && a.table == b.table;
 }
 
+/// The factor of a table rises and falls on the way from a value before a time (s) to what it stays.
+bool turns_back(const LoadCourse &course, double before, double now) {
+  constexpr int parts = 8; // of a row, in which ramps bend what is straight in the table
+  constexpr double rounding = 1e-9;
+  double last = before;
+  double up = 0.0;
+  double down = 0.0;
+  double largest = std::abs(before);
+  const auto go_to = [&](double time) {
+    const double next = course.factor(time);
+    up = std::max(up, next - last);
+    down = std::max(down, last - next);
+    largest = std::max(largest, std::abs(next));
+    last = next;
+  };
+  go_to(now);
+  double from = now;
+  const auto go_on_to = [&](double time) {
+    for (int k = 1; k <= parts && time > from; ++k) {
+      go_to(k == parts ? time : from + k * (time - from) / parts);
+    }
+    from = std::max(from, time);
+  };
+  for (const LoadRow &row : course.table) {
+    go_on_to(std::min(course.begin + row.time, course.end()));
+  }
+  go_on_to(course.end());
+  return std::min(up, down) > rounding * largest;
+}
+
 bool is_constant(const PointLoad &load) {
   return load.ramp == 0.0 && load.table.empty();
 }
@@ -150,6 +180,23 @@ void adopt_loads(BlockSystem &blocks, std::size_t row, const std::vector<PointLo
   if (!std::equal(before.begin(), before.end(), after.begin(), after.end(), same)) {
     replace_loads(blocks, row, before.size(), after);
   }
+}
+
+std::int64_t Loads::find_pulse(const Scene &scene, const StageState &stage, double now) const {
+  for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
+    const auto id = static_cast<std::int64_t>(i);
+    if (scene.blocks[i].loads.empty() || is_removed(stage, id)) {
+      continue;
+    }
+    for (const PointLoad &load : scene.blocks[i].loads) {
+      const LoadCourse &course = courses_[static_cast<std::size_t>(load.course)];
+      const double before = course.begin >= stage.start_time ? 0.0 : course.factor(now);
+      if (!course.table.empty() && turns_back(course, before, now)) {
+        return id;
+      }
+    }
+  }
+  return -1;
 }
 
 double Loads::end_of_changes(const Scene &scene, const StageState &stage, double now) const {

@@ -53,6 +53,10 @@ public:
   /// is never, and at least now.
   /// @param now  s
   [[nodiscard]] double end_of_changes(const Scene &scene, const StageState &stage, double now) const;
+  /// A block that is still there with a load whose table rises and falls between now and its end, one that is
+  /// greatest when it comes in among them: who looks at its last value alone misses an extreme. -1: none.
+  /// @param now  s
+  [[nodiscard]] std::int64_t find_pulse(const Scene &scene, const StageState &stage, double now) const;
 
 private:
   std::int64_t new_course(LoadCourse course);

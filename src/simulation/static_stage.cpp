@@ -76,6 +76,12 @@ std::string not_served(const RunState &run) {
   if (blocks_are_under_way(run)) {
     return "blocks are under way";
   }
+  const std::int64_t block = run.loads.find_pulse(run.scene, run.clock.state, run.clock.time());
+  if (block >= 0) {
+    return fmt::format("the table of a load of block '{}' rises and falls, and the static solver would see "
+                       "no more of it than its last value",
+                       run.scene.blocks[static_cast<std::size_t>(block)].name);
+  }
   return std::isfinite(end_of_loads(run)) ? "" : "its loads go on changing";
 }
 

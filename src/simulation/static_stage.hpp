@@ -10,7 +10,8 @@
 // Time goes on by the step of the dynamic solver, so that frames, histories and the limit of a stage are
 // those of any stage; it means nothing else. Loads that take their time (run.gravity_ramp, relax, ramp) would
 // have it mean something: the time of the stage therefore begins when they are complete, and the iteration
-// lets them in by its own increments.
+// lets them in by its own increments. A load whose table rises and falls would lose its extremes by that, so
+// that such a stage is one of damped motion.
 //
 // A checkpoint holds the whole state of the iteration. It is written, and a run stops, only where the coarse
 // matrix is due anyway, so that a restart goes on with the same bits.

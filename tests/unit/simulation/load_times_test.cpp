@@ -1,0 +1,82 @@
+// Loads that change in time: what the static solver does with them.
+
+#include "support/contact_regions.hpp"
+#include "support/incline.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace gcpdda::testing::load_times_test {
+namespace {
+
+const std::string statically = "solver = \"static\"\n";
+const std::string dynamically = "solver = \"dynamic\"\n";
+
+std::string settle(const std::string &keys) {
+  return "[[stage]]\nkind = \"settle\"\nlimit = 10.0\n" + keys;
+}
+
+/// A block of 2 m x 1 m on a level floor, with a level force on its lower part that friction can bear for
+/// factors below 0.87: it has a weight of 51 kN and a friction angle of 35 degrees.
+Scene pushed_block(const std::string &course, const std::string &stages) {
+  return scene_of("[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600.0\n[joint.default]\n"
+                  "normal_stiffness = 1e10\nfriction_angle_deg = 35.0\n[output]\ninterval = 0.1\n" +
+                  block_toml("floor", rectangle({-9.0, -1.0}, {9.0, 0.0}), "fixed = true") +
+                  block_toml("b", rectangle({0.0, 0.0}, {2.0, 1.0})) +
+                  "[[block.load]]\npoint = [0.0, 0.1]\nforce = [4.1e4, 0.0]\n" + course + stages);
+}
+
+bool has_note(const Simulation &simulation, const std::string &part) {
+  const Diagnostics &notes = simulation.notes();
+  return std::any_of(notes.begin(), notes.end(), [&](const Diagnostic &note) {
+    return (note.what + " " + note.why).find(part) != std::string::npos;
+  });
+}
+
+struct Course {
+  std::string table;
+  bool is_pulse;
+};
+
+// A stage in which a load has an extreme on its way is one of damped motion. So is one that begins with a
+// jump to more than what stays. A load that grows, or one of a stage before that only falls, is not.
+TEST(LoadTimes, ATableThatRisesAndFallsIsLeftToDampedMotion) {
+  for (const Course &course :
+       {Course{"[[0, 0], [0.5, 1], [2, 1], [2.1, 0]]", true},
+        Course{"[[0, 0], [0.2, 0.3], [0.4, -0.3]]", true}, Course{"[[0, 0], [0.2, -0.3], [0.4, 0.3]]", true},
+        Course{"[[0, 0.5], [0.3, 0.1]]", true},
+        Course{"[[0, 0], [0.1, 0.1], [0.3, 0.3], [0.7, 0.3], [0.8, 0.5]]", false},
+        Course{"[[0, 0], [0.1, -0.1], [0.3, -0.3]]", false}, Course{"[[0, 0.5], [0.3, 0.5]]", false}}) {
+    Simulation simulation(Communicator::self(),
+                          pushed_block("table = " + course.table + "\n", settle(statically)));
+    simulation.step();
+    EXPECT_EQ(has_note(simulation, "block 'b' rises and falls"), course.is_pulse) << course.table;
+    EXPECT_EQ(simulation.stage().iteration.is_left, course.is_pulse ? 1 : 0) << course.table;
+  }
+}
+
+// The greatest force is 41 kN, beyond the 35.7 kN that friction bears, for 0.2 s. Of the rest local damping
+// takes 0.8, so that a block of 5.2 t slides by about 0.2 (41 - 35.7)/5.2 m/s2 (0.2 s)^2/2 = 4 mm meanwhile.
+// The last value of the table would leave it where it is.
+TEST(LoadTimes, TheGreatestValueOfATableActsInASettleStage) {
+  Simulation simulation(Communicator::self(),
+                        pushed_block("table = [[0, 0], [0.1, 1], [0.3, 1], [0.4, 0]]\n", settle(statically)));
+  run_stages(simulation);
+  EXPECT_EQ(simulation.stage_results().back().verdict, Verdict::settled);
+  EXPECT_GT(displacement_of(simulation, 1).u.x, 1e-3);
+}
+
+// Once a stage before has brought the load in, a later one has nothing to follow.
+TEST(LoadTimes, ATableThatIsOverIsNoPulse) {
+  Simulation simulation(Communicator::self(), pushed_block("table = [[0, 0], [0.1, 0.5], [0.2, 0.1]]\n",
+                                                           settle(dynamically) + settle(statically)));
+  run_stages(simulation);
+  EXPECT_FALSE(has_note(simulation, "rises and falls"));
+  EXPECT_EQ(simulation.stage_results().back().means, VerdictMeans::static_solver);
+}
+
+} // namespace
+} // namespace gcpdda::testing::load_times_test
