@@ -393,6 +393,13 @@ void judge_earthquake(Doubts &doubts) {
   doubts.add(doubts_of_shaking(doubts.scene()));
 }
 
+/// Until when the factor of a table is zero from its beginning on, s; 0 where it is at no time another one.
+double end_of_zeros(const std::vector<LoadRow> &table) {
+  const auto first =
+      std::find_if(table.begin(), table.end(), [](const LoadRow &row) { return row.factor != 0.0; });
+  return first == table.begin() || first == table.end() ? 0.0 : std::prev(first)->time;
+}
+
 /// What begins or comes round after the end of the run never does.
 void judge_times(Doubts &doubts) {
   const Scene &scene = doubts.scene();
@@ -416,14 +423,24 @@ void judge_times(Doubts &doubts) {
   judge("output.interval", scene.output.interval, nothing);
   judge("output.history_interval", scene.output.history_interval, nothing);
   judge("output.checkpoint_interval", scene.output.checkpoint_interval, "no checkpoint is written by time");
-  judge("run.gravity_ramp", scene.run.gravity_ramp, "gravity never acts in full");
+  const bool completes_loads = // the time of such a stage begins when its loads are complete
+      std::any_of(scene.stages.begin(), scene.stages.end(),
+                  [](const Stage &stage) { return stage.solver == Solver::statics; });
+  if (!completes_loads) {
+    judge("run.gravity_ramp", scene.run.gravity_ramp, "gravity never acts in full");
+  }
   if (scene.earthquake.stage < 0 && scene.earthquake.shakes()) {
     judge("earthquake.start", scene.earthquake.start, "the ground never moves");
   }
   for (const SceneBlock &block : scene.blocks) {
     for (const PointLoad &load : block.loads) {
-      judge(fmt::format("block.{}: the ramp of a load", block.name), load.ramp,
-            "the force never acts in full", block.where);
+      if (!completes_loads) {
+        judge(fmt::format("block.{}: the ramp of a load", block.name), load.ramp,
+              "the force never acts in full", block.where);
+        judge(fmt::format("block.{}: the last time of a load's table at which its factor is still 0",
+                          block.name),
+              end_of_zeros(load.table), "the force never acts", block.where);
+      }
     }
   }
 }

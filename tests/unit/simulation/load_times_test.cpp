@@ -1,4 +1,5 @@
-// Loads that change in time: what the static solver does with them.
+// Loads that change in time: what the static solver does with them, and what is said of those that a run is
+// too short for.
 
 #include "support/contact_regions.hpp"
 #include "support/incline.hpp"
@@ -76,6 +77,21 @@ TEST(LoadTimes, ATableThatIsOverIsNoPulse) {
   run_stages(simulation);
   EXPECT_FALSE(has_note(simulation, "rises and falls"));
   EXPECT_EQ(simulation.stage_results().back().means, VerdictMeans::static_solver);
+}
+
+// The time of a static stage begins when its loads are complete, so that none is too long for it.
+TEST(LoadTimes, AreTooLongForDampedMotionAlone) {
+  const std::string ramp = "ramp = 20.0\n";
+  const std::string late = "table = [[0, 0], [15, 0], [16, 0.5]]\n";
+  const std::string in_full = "never acts in full";
+  const auto has = [](const std::string &course, const std::string &keys, const std::string &part) {
+    return has_note(Simulation(Communicator::self(), pushed_block(course, settle(keys))), part);
+  };
+  EXPECT_TRUE(has(ramp, dynamically, in_full));
+  EXPECT_FALSE(has(ramp, statically, in_full));
+  EXPECT_TRUE(has(late, dynamically, "the force never acts"));
+  EXPECT_FALSE(has(late, statically, "the force never acts"));
+  EXPECT_FALSE(has("table = [[0, 0], [5, 0], [16, 0.5]]\n", dynamically, "the force never acts"));
 }
 
 } // namespace
