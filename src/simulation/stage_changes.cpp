@@ -228,9 +228,7 @@ void adopt(RunState &run, const Stage &stage, double begin) {
 void change_strengths(RunState &run, const std::vector<JointLaw> &laws) {
   take_laws(run, laws);
   run.contacts = ContactForces(contact_parameters(run.scene));
-  std::vector<LawConstants> &known = run.neighbours.candidates.laws;
-  std::transform(run.scene.joints.laws.begin(), run.scene.joints.laws.end(), known.begin(),
-                 [](const JointLaw &law) { return law.constants(); });
+  run.neighbours.candidates.laws = run.scene.joints.all_constants(); // those of mixed regions among them
 }
 
 namespace {

@@ -1,6 +1,7 @@
-// Loads that change in time: what the static solver does with them, and what is said of those that a run is
-// too short for.
+// Loads and strengths that change in time: what the static solver does with loads, what is said of those that
+// a run is too short for, and which contacts learn of strengths that fall.
 
+#include "simulation/stage_changes.hpp"
 #include "support/contact_regions.hpp"
 #include "support/incline.hpp"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace gcpdda::testing::load_times_test {
 namespace {
@@ -92,6 +94,31 @@ TEST(LoadTimes, AreTooLongForDampedMotionAlone) {
   EXPECT_TRUE(has(late, dynamically, "the force never acts"));
   EXPECT_FALSE(has(late, statically, "the force never acts"));
   EXPECT_FALSE(has("table = [[0, 0], [5, 0], [16, 0.5]]\n", dynamically, "the force never acts"));
+}
+
+// Two stiffnesses meet at the edges of one pair: kernels know the law of such a region by a number of its
+// own.
+TEST(LoadTimes, StrengthsThatFallReachRegionsOfTwoStiffnesses) {
+  const std::string toml =
+      "[run]\nfidelity = \"rigid\"\n[material.rock]\ndensity = 2600.0\n[joint.default]\n"
+      "normal_stiffness = 1e10\nfriction_angle_deg = 35.0\n[joint.soft]\nnormal_stiffness = 1e9\n"
+      "friction_angle_deg = 20.0\n[output]\ninterval = 0.1\n" +
+      block_toml("floor", rectangle({-9.0, -1.0}, {9.0, 0.0}),
+                 "fixed = true\nedge_joints = [\"\", \"\", \"soft\", \"\"]") +
+      block_toml("b", rectangle({0.0, 0.0}, {2.0, 1.0})) + settle(dynamically);
+  Simulation simulation(Communicator::self(), scene_of(toml));
+  std::vector<JointLaw> laws = simulation.scene().joints.laws;
+  for (JointLaw &law : laws) {
+    law.weaken(2.0);
+  }
+  change_strengths(simulation.state(), laws);
+  const std::vector<LawConstants> &known = simulation.candidates().laws;
+  const std::size_t count = laws.size();
+  ASSERT_EQ(known.size(), count * (1 + count));
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const double largest = std::max(laws[0].tan_friction, laws[1].tan_friction);
+    EXPECT_LE(known[k].tan_friction, largest) << "number " << k;
+  }
 }
 
 } // namespace
