@@ -216,8 +216,7 @@ private:
     return outcome.exit_code == exit_code::numerical_failure && trial.stages.back().solver == Solver::statics;
   }
   RunOutcome run_dynamic_trial(const fs::path &directory, double factor) {
-    Scene trial = trial_scene(factor);
-    trial.stages.back().solver = Solver::dynamic;
+    const Scene trial = with_dynamic_solver(trial_scene(factor), scene_, factor, report_.settled.factor);
     return run_in(directory, trial, settled_.directory(), factor);
   }
 

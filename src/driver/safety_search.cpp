@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <iterator>
 #include <numeric>
+#include <span>
 
 namespace gcpdda {
 
@@ -162,6 +163,18 @@ std::vector<std::vector<JointLaw>> laws_between(const Scene &scene, const Streng
   return laws;
 }
 
+/// The scene at the end of some stages, without any.
+Scene scene_behind(const Scene &scene, std::span<const Stage> stages) {
+  Scene after = scene;
+  for (const Stage &stage : stages) {
+    if (stage.after) {
+      after = *stage.after;
+    }
+  }
+  after.stages.clear();
+  return after;
+}
+
 } // namespace
 
 SafetySearch follow(const SearchRange &range, const TrialVerdicts &verdicts) {
@@ -289,13 +302,7 @@ Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   std::copy_if(last_settle, scene.stages.end(), std::back_inserter(weakened.stages),
                [](const Stage &stage) { return !stage.takes_steps(); });
 
-  auto after = std::make_shared<Scene>(scene);
-  for (const Stage &stage : weakened.stages) {
-    if (stage.after) {
-      *after = *stage.after;
-    }
-  }
-  after->stages.clear();
+  auto after = std::make_shared<Scene>(scene_behind(scene, weakened.stages));
   Stage trial;
   trial.name = "trial";
   const double limit = scene.reduction.limit > 0.0 ? scene.reduction.limit : std::prev(last_settle)->duration;
@@ -317,6 +324,14 @@ Scene weakened_scene(const Scene &scene, double factor, double settled_factor) {
   trial.after = std::move(after);
   weakened.output = {limit, limit, 0.0, scene.output.contacts};
   weakened.stages.push_back(std::move(trial));
+  return weakened;
+}
+
+Scene with_dynamic_solver(Scene weakened, const Scene &scene, double factor, double settled_factor) {
+  Stage &trial = weakened.stages.back();
+  trial.solver = Solver::dynamic;
+  const Scene before = scene_behind(scene, std::span(weakened.stages).first(weakened.stages.size() - 1));
+  trial.weakening = laws_between(before, scene.reduction, settled_factor, factor);
   return weakened;
 }
 

@@ -70,6 +70,10 @@ inline constexpr const char *confirming_stage = "confirm";
 /// the dynamic step fall in increments
 Scene weakened_scene(const Scene &scene, double factor, double settled_factor = 1.0);
 
+/// A trial of weakened_scene() by the dynamic step, whatever the solver of the settle stage.
+/// @param scene  that of the search; both factors as for weakened_scene()
+Scene with_dynamic_solver(Scene weakened, const Scene &scene, double factor, double settled_factor);
+
 /// A trial in which the static solver finds that the blocks hold, or that they fail, and a stage in which the
 /// dynamic step confirms it.
 Scene with_confirming_stage(Scene weakened, Verdict found);

@@ -271,6 +271,24 @@ TEST(WeakenedScene, FallsInSmallIncrements) {
   }
 }
 
+// Where the static solver has failed in a trial, the dynamic one takes the strengths down just as it does in
+// a trial of its own.
+TEST(WeakenedScene, FallsInTheSameIncrementsWhereTheStaticSolverHasFailed) {
+  Scene scene = staged_scene();
+  const Stage expected = weakened_scene(scene, 2.0, 0.5).stages.back();
+  scene.stages[0].solver = Solver::statics;
+  const Stage trial = with_dynamic_solver(weakened_scene(scene, 2.0, 0.5), scene, 2.0, 0.5).stages.back();
+  EXPECT_EQ(trial.solver, Solver::dynamic);
+  ASSERT_EQ(trial.weakening.size(), expected.weakening.size());
+  ASSERT_FALSE(trial.weakening.empty());
+  for (std::size_t k = 0; k < trial.weakening.size(); ++k) {
+    for (std::size_t law = 0; law < trial.weakening[k].size(); ++law) {
+      EXPECT_EQ(trial.weakening[k][law].tan_friction, expected.weakening[k][law].tan_friction);
+      EXPECT_EQ(trial.weakening[k][law].cohesion, expected.weakening[k][law].cohesion);
+    }
+  }
+}
+
 TEST(WeakenedScene, DilatesNoMoreThanItsFrictionAllows) {
   const std::vector<JointLaw> laws = weakened_scene(staged_scene(), 2.0).stages.back().after->joints.laws;
   EXPECT_EQ(laws[0].tan_dilation, 0.35);
