@@ -54,7 +54,7 @@ ExitCode SettledState::settle_as_it_can(const std::function<void()> &prepare) {
     code = exit_code::undecided;
   }
   if (code == exit_code::undecided) {
-    message_ = words_on_no_rest(run_);
+    message_ = words_on_no_rest(run_, scene_);
     run_.message = message_;
     say(world_, options_, message_ + "\n");
   }

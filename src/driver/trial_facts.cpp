@@ -4,6 +4,7 @@
 #include "driver/safety_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <numeric>
 #include <string>
@@ -79,8 +80,29 @@ std::vector<EarlierSlide> slides_of(const std::vector<RunSummary::StageLine> &st
   return slides;
 }
 
-std::string words_on_no_rest(const StrengthTrial &settled) {
+namespace {
+
+/// A block that a given velocity moves without end; empty where there is none.
+std::string block_that_never_stops(const Scene &scene) {
+  for (const SceneBlock &block : scene.blocks) {
+    const std::array<double, 3> &last =
+        block.velocity_table.empty() ? block.velocity : block.velocity_table.back().velocity;
+    if (block.driven && last != std::array<double, 3>{}) {
+      return block.name;
+    }
+  }
+  return {};
+}
+
+} // namespace
+
+std::string words_on_no_rest(const StrengthTrial &settled, const Scene &scene) {
   const std::string begin = "the blocks do not settle, not even with the largest strength tried: ";
+  if (const std::string driven = block_that_never_stops(scene); !driven.empty()) {
+    return begin + fmt::format("block '{}' moves by a given velocity that never ends; let it end, by a "
+                               "velocity_table whose last row has zero velocities",
+                               driven);
+  }
   if (settled.verdict != Verdict::failed) {
     return begin +
            "let them settle with more (stage[].set) and bring it back in a stage of kind change, or give "

@@ -3,6 +3,7 @@
 // What the groups of ranks that search for a factor of safety tell each other of their trials.
 
 #include "gcpdda/driver/run.hpp"
+#include "gcpdda/model/scene.hpp"
 #include "io/results/safety_report.hpp"
 
 #include <cstdint>
@@ -42,7 +43,8 @@ bool is_by_statics_alone(const TrialFacts &facts);
 std::vector<EarlierSlide> slides_of(const std::vector<RunSummary::StageLine> &stages);
 
 /// Why no search begins where the blocks do not settle with the largest strength tried.
-std::string words_on_no_rest(const StrengthTrial &settled);
+/// @param scene  that of the search
+std::string words_on_no_rest(const StrengthTrial &settled, const Scene &scene);
 
 /// Without its message and its folder.
 StrengthTrial trial_of(const TrialFacts &facts);
