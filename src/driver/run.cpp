@@ -251,6 +251,16 @@ private:
                       "what falls, slides or rolls is held back by it, too",
                       run.rayleigh.mass_damping));
     }
+    const std::vector<Stage> &stages = simulation_.scene().stages;
+    const bool moves_freely = stages.empty() || std::any_of(stages.begin(), stages.end(), [](const Stage &s) {
+                                return s.kind == StageKind::run;
+                              });
+    if (constexpr double strong = 0.3; moves_freely && run.contact_damping > strong) {
+      log_->line(
+          fmt::format("warning: with a contact damping of {:g} a part of impacts has no friction: blocks "
+                      "that land while they slide run out too far, compare with a smaller one",
+                      run.contact_damping));
+    }
     const FidelityReport &fidelity = simulation_.fidelity();
     log_->line(words_on_fidelity(fidelity, run.accepted_error));
     if (fidelity.worst_rigid > run.accepted_error) {

@@ -59,9 +59,8 @@ std::string fault_message(const Simulation &simulation) {
     if (fault.other.value < 0) {
       return fmt::format(
           "{}: moves {:.4g} m in one step, more than {:.4g} m, a quarter of the narrowest block width, and "
-          "no "
-          "block is near it; where it has left the model, put a fixed block below that it lands on, or "
-          "excavate it in a stage before; else try {}",
+          "could pass through a block, though none is near it now; where it has left the model, put a fixed "
+          "block below that it lands on, or excavate it in a stage before; else try {}",
           where, fault.value, fault.limit,
           words_on_shorter_step(simulation, StepBound::share_of_motion * fault.limit / fault.value *
                                                 simulation.plan().time_step));
