@@ -40,19 +40,21 @@ namespace {
 /// contact is kept after it has opened.
 constexpr double spring_reach = 0.25;
 
-/// Whether any block goes so fast that it could rise by a thousandth of its size: where such a block rests is
-/// where its motion ends. Collective.
+/// Whether any block goes so fast that it could rise by a thousandth of its size or, without gravity, go by
+/// its size within the limit: where such a block rests is where its motion ends. Collective.
 bool blocks_are_under_way(const RunState &run) {
   constexpr double telling_rise = 1e-3;
   const double gravity = norm(run.scene.run.gravity);
+  const double limit = run.clock.stage().duration;
   double most = 0.0;
   for (std::size_t row = 0; row < run.blocks.num_owned; ++row) {
     const BlockProperties &block = run.blocks.properties[row];
     const RigidDof &v = run.blocks.velocity[row];
     const double speed = norm(v.u) + block.radius * std::abs(v.r);
-    if (speed * speed > 2.0 * gravity * telling_rise * std::sqrt(block.area)) {
-      most = speed;
-    }
+    const double size = std::sqrt(block.area);
+    const bool is_fast =
+        gravity > 0.0 ? speed * speed > 2.0 * gravity * telling_rise * size : speed * limit > size;
+    most = is_fast ? speed : most;
   }
   return run.communicator.max(most) > 0.0;
 }

@@ -86,6 +86,25 @@ TEST(MovingBlocks, LittleMotionIsTakenAndBooked) {
   }
 }
 
+// Without gravity a square that trembles is for the static solver, and one that would go by its size within
+// the limit is not.
+TEST(MovingBlocks, WithoutGravityTheLimitSaysWhatIsFast) {
+  const WorkFolder folder;
+  const auto is_under_way = [&](const std::string &fidelity, double speed, const std::string &limit) {
+    folder.write("slider.toml", slider(fidelity, speed));
+    const Outcome outcome = run_gcpdda(0,
+                                       {"run", "slider.toml", "--out", "out", "--overwrite", "--set",
+                                        "run.gravity=[0, 0]", "--set", "stage.rest.limit=" + limit},
+                                       folder);
+    return count_of(outcome.err, "blocks are under way") == 1;
+  };
+  for (const std::string fidelity : {"rigid", "auto"}) {
+    EXPECT_FALSE(is_under_way(fidelity, 1e-6, "2.0"));
+    EXPECT_FALSE(is_under_way(fidelity, 1.0, "0.5"));
+    EXPECT_TRUE(is_under_way(fidelity, 1.0, "2.0"));
+  }
+}
+
 // A plate of 0.02 m lets no block move by more than 5 mm in a step; once it is excavated it has no say.
 TEST(MovingBlocks, ExcavatedBlocksBoundNoMotion) {
   const WorkFolder folder;
